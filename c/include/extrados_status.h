@@ -1,0 +1,25 @@
+/* The one list of status codes. C uses the enum; the build writes Fortran's
+ * common_status from the same lines; Python reads them back through api_status.
+ * Codes below 100 are errors (the outputs must not be used); 130 is a cancelled
+ * run, whose outputs are valid up to the point that was reached. */
+#ifndef EXTRADOS_STATUS_H
+#define EXTRADOS_STATUS_H
+
+#define EXTRADOS_STATUS_LIST(ENTRY) \
+  ENTRY(0, ok, "done") \
+  ENTRY(1, invalid_argument, "an argument is outside its range") \
+  ENTRY(2, not_finite, "a number is not finite") \
+  ENTRY(3, out_of_memory, "not enough memory") \
+  ENTRY(4, not_positive_definite, "the stiffness matrix is not positive definite: a mechanism") \
+  ENTRY(5, singular, "a small system of equations is singular") \
+  ENTRY(6, too_many_steps, "the integrator needed too many steps") \
+  ENTRY(7, step_too_small, "the integrator cannot reach its tolerance: the step vanished") \
+  ENTRY(8, bad_geometry, "the geometry is impossible") \
+  ENTRY(9, library_failed, "a numerical library reported a failure") \
+  ENTRY(130, cancelled, "cancelled")
+
+#define EXTRADOS_ENUM_ENTRY(code, name, text) EXTRADOS_##name = code,
+enum extrados_status { EXTRADOS_STATUS_LIST(EXTRADOS_ENUM_ENTRY) };
+#undef EXTRADOS_ENUM_ENTRY
+
+#endif

@@ -1,0 +1,56 @@
+!> Status list, cancel flag, library versions.
+module api_support
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+   implicit none
+   private
+   public :: status_entry, set_cancel, init_libraries, cholmod_version, random_phases
+
+contains
+
+   !> Entry of the status list; found = 0 past its end
+   subroutine status_entry(position, found, code, name, text)
+      use common_c_bindings, only : extrados_status_entry
+      integer(c_int), intent(in) :: position    !! 0-based
+      integer(c_int), intent(out) :: found
+      integer(c_int), intent(out) :: code
+      character(len=64), intent(out) :: name
+      character(len=128), intent(out) :: text
+      code = 0
+      name = ' '
+      text = ' '
+      found = extrados_status_entry(position, code, 64_c_int, name, 128_c_int, text)
+   end subroutine status_entry
+
+   !> Ask the running loops to stop (1), or clear the flag (0)
+   subroutine set_cancel(value)
+      use common_cancel, only : cancel_set
+      integer(c_int), intent(in) :: value
+      call cancel_set(value)
+   end subroutine set_cancel
+
+   !> Once per process: GSL's aborting error handler is turned off
+   subroutine init_libraries()
+      use common_c_bindings, only : extrados_library_init
+      call extrados_library_init()
+   end subroutine init_libraries
+
+   !> The linked CHOLMOD as major*10000 + minor*100 + patch
+   subroutine cholmod_version(version)
+      use common_c_bindings, only : extrados_cholmod_version
+      integer(c_int), intent(out) :: version
+      version = extrados_cholmod_version()
+   end subroutine cholmod_version
+
+   !> Independent uniform phases in [0, 2 pi) from one seed
+   subroutine random_phases(seed, n, phase, status)
+      use common_c_bindings, only : extrados_random_phases
+      integer(c_int64_t), intent(in) :: seed
+      integer(c_int), intent(in) :: n
+      real(c_double), intent(out) :: phase(n)   !! [rad]
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      phase = 0.0_c_double
+      status = extrados_random_phases(seed, int(n, c_int64_t), phase)
+   end subroutine random_phases
+
+end module api_support

@@ -1,0 +1,50 @@
+!> Interfaces of the C part, one for each function of c/include/extrados.h.
+module common_c_bindings
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_char
+   implicit none
+   private
+   public :: extrados_status_entry, extrados_library_init, extrados_cholmod_version, extrados_random_phases
+   public :: extrados_cancel_set, extrados_cancel_get
+
+   interface
+      subroutine extrados_cancel_set(value) bind(c)
+         import :: c_int
+         implicit none (type, external)
+         integer(c_int), value, intent(in) :: value
+      end subroutine extrados_cancel_set
+
+      function extrados_cancel_get() bind(c) result(value)
+         import :: c_int
+         implicit none (type, external)
+         integer(c_int) :: value
+      end function extrados_cancel_get
+
+      function extrados_status_entry(index, code, name_size, name, text_size, text) bind(c) result(found)
+         import :: c_int, c_char
+         implicit none (type, external)
+         integer(c_int), value, intent(in) :: index, name_size, text_size
+         integer(c_int), intent(out) :: code
+         character(kind=c_char), intent(out) :: name(*), text(*)
+         integer(c_int) :: found
+      end function extrados_status_entry
+
+      subroutine extrados_library_init() bind(c)
+         implicit none (type, external)
+      end subroutine extrados_library_init
+
+      function extrados_cholmod_version() bind(c) result(version)
+         import :: c_int
+         implicit none (type, external)
+         integer(c_int) :: version
+      end function extrados_cholmod_version
+
+      function extrados_random_phases(seed, count, phase) bind(c) result(status)
+         import :: c_int, c_int64_t, c_double
+         implicit none (type, external)
+         integer(c_int64_t), value, intent(in) :: seed, count
+         real(c_double), intent(out) :: phase(*)
+         integer(c_int) :: status
+      end function extrados_random_phases
+   end interface
+
+end module common_c_bindings

@@ -1,0 +1,124 @@
+!> Two functions of time with common break points: the horizontal and the vertical ground
+!> acceleration. Between breaks each is smooth, so an integrator that stops at every break
+!> keeps its order. Before the first and after the last break both are zero.
+module common_signal
+   use common_kinds, only : wp
+   implicit none
+   private
+   public :: signal, signal_sampled, signal_piecewise
+
+   type :: signal
+      integer :: segments = 0                            !! intervals between breaks
+      real(wp), pointer, contiguous :: breaks(:) => null()      !! (segments+1) [s], piecewise form only
+      !> Sampled form: (channels, segments+1) values joined by straight lines
+      real(wp), pointer, contiguous :: samples(:, :) => null()
+      real(wp) :: start = 0.0_wp                         !! time of the first sample [s]
+      real(wp) :: step = 0.0_wp                          !! sampling step [s]
+      !> Piecewise form: (2, channels, segments), value and slope at the segment's start
+      real(wp), pointer, contiguous :: linear(:, :, :) => null()
+      !> (4, terms, channels, segments): amplitude, its growth per second, angular frequency
+      !> [rad/s] and phase of (a + b tau) sin(w tau + phi), tau from the segment's start
+      real(wp), pointer, contiguous :: harmonic(:, :, :, :) => null()
+      real(wp) :: scale = 1.0_wp                         !! factor on every value
+   contains
+      procedure :: break_time
+      procedure :: value_at
+      procedure :: smooth_to_next
+      procedure :: has_harmonics
+   end type signal
+
+contains
+
+   !> Samples at equal steps, joined by straight lines
+   function signal_sampled(start, step, samples, scale) result(s)
+      real(wp), intent(in) :: start                          !! time of the first sample [s]
+      real(wp), intent(in) :: step                           !! sampling step [s]
+      real(wp), intent(in), target, contiguous :: samples(:, :)  !! (channels, points)
+      real(wp), intent(in) :: scale                          !! factor on every value
+      type(signal) :: s
+      s%segments = size(samples, 2) - 1
+      s%start = start
+      s%step = step
+      s%samples => samples
+      s%scale = scale
+   end function signal_sampled
+
+   !> Straight lines and sines on each segment
+   function signal_piecewise(breaks, linear, harmonic, scale) result(s)
+      real(wp), intent(in), target, contiguous :: breaks(:)             !! (segments+1) [s]
+      real(wp), intent(in), target, contiguous :: linear(:, :, :)       !! (2, channels, segments)
+      real(wp), intent(in), target, contiguous :: harmonic(:, :, :, :)  !! (4, terms, channels, segments)
+      real(wp), intent(in) :: scale                                     !! factor on every value
+      type(signal) :: s
+      s%segments = size(linear, 3)
+      s%breaks => breaks
+      s%linear => linear
+      s%harmonic => harmonic
+      s%scale = scale
+      s%start = breaks(1)
+   end function signal_piecewise
+
+   !> Start time of segment k (1-based); k = segments + 1 gives the end of the signal
+   pure function break_time(self, k) result(t)
+      class(signal), intent(in) :: self
+      integer, intent(in) :: k
+      real(wp) :: t
+      if (associated(self%samples)) then
+         t = self%start + real(k - 1, wp) * self%step
+      else
+         t = self%breaks(k)
+      end if
+   end function break_time
+
+   !> Horizontal and vertical value in segment k; k outside 1..segments is the quiet time around
+   pure subroutine value_at(self, k, t, horizontal, vertical)
+      class(signal), intent(in) :: self
+      integer, intent(in) :: k               !! segment
+      real(wp), intent(in) :: t              !! time [s]
+      real(wp), intent(out) :: horizontal
+      real(wp), intent(out) :: vertical
+      real(wp) :: tau, value(2)
+      integer :: c, i, channels
+
+      horizontal = 0.0_wp
+      vertical = 0.0_wp
+      if (k < 1 .or. k > self%segments) return
+      value = 0.0_wp
+      if (associated(self%samples)) then
+         tau = (t - self%start) / self%step - real(k - 1, wp)
+         do c = 1, size(self%samples, 1)
+            value(c) = self%samples(c, k) + tau * (self%samples(c, k + 1) - self%samples(c, k))
+         end do
+      else
+         tau = t - self%breaks(k)
+         channels = size(self%linear, 2)
+         do c = 1, channels
+            value(c) = self%linear(1, c, k) + tau * self%linear(2, c, k)
+            do i = 1, size(self%harmonic, 2)
+               associate (h => self%harmonic(:, i, c, k))
+                  value(c) = value(c) + (h(1) + tau * h(2)) * sin(h(3) * tau + h(4))
+               end associate
+            end do
+         end do
+      end if
+      horizontal = self%scale * value(1)
+      vertical = self%scale * value(2)
+   end subroutine value_at
+
+   !> True where the signal is continuous from segment k into k + 1: samples joined by lines are
+   pure function smooth_to_next(self, k) result(answer)
+      class(signal), intent(in) :: self
+      integer, intent(in) :: k
+      logical :: answer
+      answer = associated(self%samples) .and. k >= 1 .and. k < self%segments
+   end function smooth_to_next
+
+   !> True where a segment may curve, so that a threshold is crossed more than once in it
+   pure function has_harmonics(self) result(answer)
+      class(signal), intent(in) :: self
+      logical :: answer
+      answer = .false.
+      if (associated(self%harmonic)) answer = size(self%harmonic, 2) > 0
+   end function has_harmonics
+
+end module common_signal

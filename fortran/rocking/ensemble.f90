@@ -1,0 +1,102 @@
+!> Many independent responses at once: every pair of structure and motion is one run.
+module rocking_ensemble
+   use common_kinds, only : wp
+   use common_cancel, only : cancel_requested
+   use common_signal, only : signal, signal_sampled, signal_piecewise
+   use common_status, only : status_ok, status_cancelled, status_invalid_argument
+   use rocking_arch_rocker, only : arch_rocker, arch_rocker_new
+   use rocking_response, only : respond, response, response_options
+   use rocking_rocker, only : rocker
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: motion_set, body_arch, make_body, make_motion, run_ensemble
+
+   !> Kinds of rocking structure, as the facades number them
+   integer(c_int), parameter :: body_arch = 1
+
+   !> Ground motions stored one behind the other in flat arrays
+   type :: motion_set
+      integer(c_int), pointer, contiguous :: sampled(:) => null()   !! 1: samples, 0: pieces
+      integer(c_int), pointer, contiguous :: first(:) => null()     !! first sample or break, 1-based
+      integer(c_int), pointer, contiguous :: segments(:) => null()  !! number of segments
+      real(wp), pointer, contiguous :: start(:) => null()           !! [s], sampled motions
+      real(wp), pointer, contiguous :: step(:) => null()            !! [s], sampled motions
+      real(wp), pointer, contiguous :: samples(:, :) => null()      !! (channels, points) [m/s^2]
+      real(wp), pointer, contiguous :: breaks(:) => null()          !! [s]
+      !> (2, channels, breaks): the entry of a motion's last break is not used
+      real(wp), pointer, contiguous :: linear(:, :, :) => null()
+      real(wp), pointer, contiguous :: harmonic(:, :, :, :) => null()  !! (4, terms, channels, breaks)
+   end type motion_set
+
+contains
+
+   !> Motion k of the set, scaled
+   function make_motion(set, k, scale) result(ground)
+      type(motion_set), intent(in) :: set
+      integer, intent(in) :: k
+      real(wp), intent(in) :: scale
+      type(signal) :: ground
+      integer :: first, last
+      first = set%first(k)
+      last = first + set%segments(k)
+      if (set%sampled(k) /= 0) then
+         ground = signal_sampled(set%start(k), set%step(k), set%samples(:, first:last), scale)
+      else
+         ground = signal_piecewise(set%breaks(first:last), set%linear(:, :, first:last - 1), &
+            set%harmonic(:, :, :, first:last - 1), scale)
+      end if
+   end function make_motion
+
+   !> A rocking structure from its flat parameter list
+   subroutine make_body(kind, parameters, body, status)
+      integer(c_int), intent(in) :: kind
+      real(wp), intent(in) :: parameters(:)
+      class(rocker), allocatable, intent(out) :: body
+      integer(c_int), intent(out) :: status
+      type(arch_rocker), allocatable :: arch
+
+      select case (kind)
+      case (body_arch)
+         allocate (arch)
+         call arch_rocker_new(parameters, arch, status)
+         call move_alloc(arch, body)
+      case default
+         status = status_invalid_argument
+      end select
+   end subroutine make_body
+
+   !> Run all members; the result of a member does not depend on the others or on the threads
+   subroutine run_ensemble(kind, bodies, set, run_body, run_motion, run_scale, options, threads, &
+                           answers, run_status, status)
+      integer(c_int), intent(in) :: kind(:)           !! (nbody)
+      real(wp), intent(in) :: bodies(:, :)            !! (parameters, nbody)
+      type(motion_set), intent(in) :: set
+      integer(c_int), intent(in) :: run_body(:)       !! (nrun), 1-based
+      integer(c_int), intent(in) :: run_motion(:)     !! (nrun), 1-based
+      real(wp), intent(in) :: run_scale(:)            !! (nrun)
+      type(response_options), intent(in) :: options(:)  !! (nrun)
+      integer(c_int), intent(in) :: threads
+      type(response), intent(out) :: answers(:)
+      integer(c_int), intent(out) :: run_status(:)    !! per member; cancelled members were not run
+      integer(c_int), intent(out) :: status
+      integer :: k
+      class(rocker), allocatable :: body
+      type(signal) :: ground
+
+      run_status = status_cancelled
+      !$omp parallel do schedule(dynamic) default(none) num_threads(threads) &
+      !$omp shared(kind, bodies, set, run_body, run_motion, run_scale, options, answers, run_status) &
+      !$omp private(k, body, ground)
+      do k = 1, size(run_body)
+         if (cancel_requested()) cycle
+         call make_body(kind(run_body(k)), bodies(:, run_body(k)), body, run_status(k))
+         if (run_status(k) /= status_ok) cycle
+         ground = make_motion(set, int(run_motion(k)), run_scale(k))
+         call respond(body, ground, options(k), answers(k), run_status(k))
+      end do
+      !$omp end parallel do
+      status = merge(status_cancelled, status_ok, any(run_status == status_cancelled))
+   end subroutine run_ensemble
+
+end module rocking_ensemble

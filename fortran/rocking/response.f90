@@ -1,0 +1,618 @@
+!> The response of any rocking structure to a ground motion: uplift, rocking, impacts, rest, collapse.
+!>
+!> One integrator serves blocks and arches. It stops at every break of the ground motion, so that
+!> the order of the method holds; finds impacts on the dense output and polishes them by repeating
+!> the step; rests explicitly and looks for re-uplift, because free rocking makes infinitely many
+!> impacts in finite time.
+module rocking_response
+   use common_kinds, only : wp, gravity
+   use common_cancel, only : cancel_requested
+   use common_dopri5, only : oscillator, dopri5_step, dopri5_attempt, dopri5_factor, step_memory
+   use common_signal, only : signal
+   use common_status, only : status_ok, status_cancelled, status_too_many_steps, status_step_too_small
+   use rocking_rocker, only : rocker, side_index
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: respond, response, response_options, response_history
+   public :: outcome_no_hinging, outcome_recovery, outcome_collapse
+   public :: event_uplift, event_impact, event_peak, event_rest, event_collapse
+
+   integer(c_int), parameter :: outcome_no_hinging = 0, outcome_recovery = 1, outcome_collapse = 2
+   integer(c_int), parameter :: event_uplift = 1, event_impact = 2, event_peak = 3, event_rest = 4, event_collapse = 5
+
+   type :: response_options
+      real(wp) :: end_time = 0.0_wp      !! [s]
+      real(wp) :: tolerance = 1.0e-8_wp  !! relative, per step
+      real(wp) :: start_q = 0.0_wp       !! initial rotation, >= 0 [rad]
+      real(wp) :: start_v = 0.0_wp       !! initial rate [rad/s]
+      integer :: start_side = 1          !! side of the initial rotation
+      integer :: max_steps = 50000000    !! attempts
+      !> Stop once the motion is over and the energy left cannot reach the barrier: the outcome and
+      !> the peak are then known. For maps and ensembles.
+      logical :: stop_when_safe = .false.
+   end type response_options
+
+   type :: response
+      integer(c_int) :: outcome = outcome_no_hinging
+      integer(c_int) :: half_cycles = 0         !! begun: one per uplift and per impact
+      integer(c_int) :: impacts = 0
+      real(wp) :: peak = 0.0_wp                 !! rotation of greatest size, positive to +x [rad]
+      real(wp) :: peak_ratio = 0.0_wp           !! greatest |rotation| over the critical one
+      real(wp) :: stop_time = 0.0_wp            !! collapse, or the time reached [s]
+      integer(c_int) :: steps = 0               !! accepted
+      integer(c_int) :: rejected = 0
+   end type response
+
+   !> What is recorded besides the outcome, in the caller's arrays
+   type :: response_history
+      integer :: points = 0                        !! output times filled so far
+      real(wp), pointer, contiguous :: time(:) => null()      !! asked for, ascending [s]
+      !> (8, points): rotation, rate, acceleration, ground horizontal and vertical,
+      !> kinetic and potential energy, energy put in minus energy lost at impacts
+      real(wp), pointer, contiguous :: state(:, :) => null()
+      integer :: events = 0                        !! found, also past the room for them
+      integer(c_int), pointer, contiguous :: event_kind(:) => null()
+      !> (2, room): time [s]; rotation at a peak or collapse [rad], rate before an impact [rad/s],
+      !> both positive to +x; side at an uplift
+      real(wp), pointer, contiguous :: event(:, :) => null()
+      real(wp) :: work = 0.0_wp                    !! energy put in by the ground [J]
+      real(wp) :: loss = 0.0_wp                    !! energy lost at impacts [J]
+   end type response_history
+
+   !> Equation of motion on one side during one segment of the ground motion
+   type, extends(oscillator) :: rocking_problem
+      class(rocker), pointer :: body => null()
+      type(signal) :: ground
+      integer :: segment = 0
+      integer :: side = 1
+   contains
+      procedure :: acceleration
+   end type rocking_problem
+
+   integer, parameter :: poll_every = 2000
+
+contains
+
+   function acceleration(self, t, q, v) result(a)
+      class(rocking_problem), intent(in) :: self
+      real(wp), intent(in) :: t
+      real(wp), intent(in) :: q
+      real(wp), intent(in) :: v
+      real(wp) :: a
+      real(wp) :: m, half_dm, dv, dh, horizontal, vertical
+      logical :: closed
+
+      call self%body%coefficients(self%side, q, m, half_dm, dv, dh, closed)
+      if (.not. closed) then
+         a = huge(a)  ! the error test refuses the step
+         return
+      end if
+      call self%ground%value_at(self%segment, t, horizontal, vertical)
+      a = -(half_dm * v * v + dv * (1.0_wp + vertical / gravity) + real(self%side, wp) * horizontal * dh) / m
+   end function acceleration
+
+   !> Rock a structure under a ground motion until collapse, the end time, or an error
+   subroutine respond(body, ground, options, answer, status, history)
+      class(rocker), intent(in), target :: body
+      type(signal), intent(in) :: ground
+      type(response_options), intent(in) :: options
+      type(response), intent(out) :: answer
+      integer(c_int), intent(out) :: status
+      type(response_history), intent(inout), optional :: history
+      type(rocking_problem) :: problem
+      type(dopri5_step) :: step
+      type(step_memory) :: memory
+      real(wp) :: t, t_next, q, v, a, h, h_next, remaining, factor, s, v_before, barrier
+      real(wp) :: atol_q, atol_v
+      integer :: attempts, found_side, i
+      logical :: resting, from_rest, quiet, renew
+
+      problem%body => body
+      problem%ground = ground
+      problem%side = options%start_side
+      i = side_index(problem%side)
+      atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
+      atol_v = 0.01_wp * options%tolerance * 1.0e3_wp * maxval(body%rest_rate)
+      t = 0.0_wp
+      q = options%start_q
+      v = options%start_v
+      resting = q <= 0.0_wp .and. v <= 0.0_wp
+      from_rest = .false.
+      if (.not. resting) call begin_half_cycle()
+      h_next = 1.0e-3_wp * sqrt(body%critical(i)) / max(body%rest_rate(i) * 1.0e3_wp, tiny(1.0_wp))
+      problem%segment = 0
+      do while (problem%segment <= ground%segments)
+         if (ground%break_time(problem%segment + 1) > t) exit
+         problem%segment = problem%segment + 1
+      end do
+      status = status_ok
+      attempts = 0
+      renew = .true.
+      a = 0.0_wp
+      call note_peak(q)
+
+      do while (t < options%end_time)
+         quiet = problem%segment > ground%segments
+         t_next = options%end_time
+         if (.not. quiet) t_next = min(t_next, ground%break_time(problem%segment + 1))
+
+         if (resting) then
+            attempts = attempts + 1
+            if (attempts > options%max_steps) then
+               status = status_too_many_steps
+               exit
+            end if
+            if (mod(attempts, poll_every) == 0) then
+               if (cancel_requested()) then
+                  status = status_cancelled
+                  exit
+               end if
+            end if
+            if (quiet) then
+               t = options%end_time
+               call record_rest(t)
+               exit
+            end if
+            call find_uplift(problem, t, t_next, s, found_side)
+            if (found_side == 0) then
+               t = t_next
+               call record_rest(t)
+               if (t < options%end_time) problem%segment = problem%segment + 1
+               cycle
+            end if
+            call record_rest(s)
+            t = s
+            resting = .false.
+            from_rest = .true.
+            problem%side = found_side
+            i = side_index(found_side)
+            q = 0.0_wp
+            v = 0.0_wp
+            renew = .true.
+            call begin_half_cycle()
+            call note_event(event_uplift, t, real(found_side, wp))
+         end if
+
+         if (renew) a = problem%acceleration(t, q, v)
+         renew = .false.
+         remaining = t_next - t
+         h = h_next
+         if (h >= remaining) then
+            h = remaining
+         else if (h > 0.5_wp * remaining) then
+            h = 0.5_wp * remaining
+         end if
+         attempts = attempts + 1
+         if (attempts > options%max_steps) then
+            status = status_too_many_steps
+            exit
+         end if
+         if (mod(attempts, poll_every) == 0) then
+            if (cancel_requested()) then
+               status = status_cancelled
+               exit
+            end if
+         end if
+         call dopri5_attempt(problem, t, h, q, v, a, atol_q, atol_v, options%tolerance, step)
+         call dopri5_factor(step%error, memory, factor)
+         if (.not. step%error <= 1.0_wp) then
+            answer%rejected = answer%rejected + 1
+            h_next = h * factor
+            if (h_next <= 8.0_wp * spacing(max(t, 1.0e-3_wp))) then
+               status = status_step_too_small
+               exit
+            end if
+            cycle
+         end if
+         answer%steps = answer%steps + 1
+         h_next = max(h * factor, merge(h_next, 0.0_wp, h >= remaining .and. factor >= 1.0_wp))
+
+         s = impact_fraction(step, q, v)
+         if (s > 0.0_wp) then
+            if (from_rest .and. q <= 0.0_wp .and. v <= 0.0_wp .and. step%q <= 0.0_wp .and. s >= 1.0_wp) then
+               ! The ground only touched the limit: nothing rose.
+               answer%half_cycles = answer%half_cycles - 1
+               if (present(history)) history%events = history%events - 1
+               resting = .true.
+               from_rest = .false.
+               t = t + step%h
+               call record_rest(t)
+               call advance_segment()
+               cycle
+            end if
+            call polish_impact(problem, q, v, a, atol_q, atol_v, options%tolerance, s, step)
+            call note_turning(step, v)
+            call account(step)
+            call record_moving(step)
+            from_rest = .false.
+            t = step%t + step%h
+            v_before = min(step%v, 0.0_wp)
+            call note_event(event_impact, t, real(problem%side, wp) * v_before)
+            answer%impacts = answer%impacts + 1
+            q = 0.0_wp
+            v = -v_before
+            call lose(v)
+            problem%side = -problem%side
+            i = side_index(problem%side)
+            v = body%restitution(i) * v
+            call gain(v)
+            if (v <= body%rest_rate(i)) then
+               call lose(v)
+               v = 0.0_wp
+               resting = .true.
+               call note_event(event_rest, t, 0.0_wp)
+               if (options%stop_when_safe .and. quiet) exit
+            else
+               call begin_half_cycle()
+            end if
+            renew = .true.
+            call advance_segment()
+            cycle
+         end if
+
+         if (step%q >= body%limit(i)) then
+            s = crossing_fraction(step, body%limit(i))
+            step%h = step%h * s
+            call record_moving(step, s)
+            t = step%t + step%h
+            answer%outcome = outcome_collapse
+            answer%stop_time = t
+            call note_peak(body%limit(i))
+            call note_event(event_collapse, t, real(problem%side, wp) * body%limit(i))
+            exit
+         end if
+
+         call note_turning(step, v)
+         call account(step)
+         call record_moving(step)
+         from_rest = .false.
+         t = step%t + step%h
+         if (h >= remaining) t = t_next
+         q = step%q
+         v = step%v
+         a = step%a
+         call note_peak(q)
+         call advance_segment()
+         if (options%stop_when_safe .and. quiet .and. v <= 0.0_wp) then
+            if (q < body%critical(i)) then
+               call body_energy(q, v, barrier)
+               if (barrier < minval_barrier()) exit
+            end if
+         end if
+      end do
+
+      if (answer%outcome /= outcome_collapse) then
+         answer%stop_time = t
+         if (answer%half_cycles > 0) answer%outcome = outcome_recovery
+      end if
+
+   contains
+
+      subroutine begin_half_cycle()
+         answer%half_cycles = answer%half_cycles + 1
+      end subroutine begin_half_cycle
+
+      !> Go to the next segment when its break is reached; the acceleration is renewed at a jump
+      subroutine advance_segment()
+         if (problem%segment > ground%segments) return
+         if (t < ground%break_time(problem%segment + 1)) return
+         if (.not. ground%smooth_to_next(problem%segment)) renew = .true.
+         problem%segment = problem%segment + 1
+      end subroutine advance_segment
+
+      subroutine note_peak(rotation)
+         real(wp), intent(in) :: rotation
+         if (rotation / body%critical(i) > answer%peak_ratio) then
+            answer%peak_ratio = rotation / body%critical(i)
+            answer%peak = real(problem%side, wp) * rotation
+         end if
+      end subroutine note_peak
+
+      !> A turning point inside the step is a peak of the rotation
+      subroutine note_turning(done, rate_before)
+         type(dopri5_step), intent(in) :: done
+         real(wp), intent(in) :: rate_before
+         real(wp) :: where_turned
+         if (.not. (rate_before > 0.0_wp .and. done%v <= 0.0_wp)) return
+         where_turned = turning_fraction(done)
+         call note_peak(done%coordinate(where_turned))
+         call note_event(event_peak, done%t + where_turned * done%h, &
+            real(problem%side, wp) * done%coordinate(where_turned))
+      end subroutine note_turning
+
+      subroutine note_event(kind, when, value)
+         integer(c_int), intent(in) :: kind
+         real(wp), intent(in) :: when
+         real(wp), intent(in) :: value
+         if (.not. present(history)) return
+         history%events = history%events + 1
+         if (history%events > size(history%event_kind)) return
+         history%event_kind(history%events) = kind
+         history%event(:, history%events) = [when, value]
+      end subroutine note_event
+
+      !> Kinetic plus potential energy
+      subroutine body_energy(rotation, rate, energy)
+         real(wp), intent(in) :: rotation
+         real(wp), intent(in) :: rate
+         real(wp), intent(out) :: energy
+         real(wp) :: m, half_dm, dv, dh
+         logical :: closed
+         call body%coefficients(problem%side, rotation, m, half_dm, dv, dh, closed)
+         energy = 0.5_wp * m * rate**2 + body%potential(problem%side, rotation)
+      end subroutine body_energy
+
+      function minval_barrier() result(energy)
+         real(wp) :: energy
+         energy = min(body%potential(1, body%critical(1)), body%potential(-1, body%critical(2)))
+      end function minval_barrier
+
+      subroutine lose(rate)
+         real(wp), intent(in) :: rate
+         real(wp) :: energy
+         if (.not. present(history)) return
+         call body_energy(0.0_wp, rate, energy)
+         history%loss = history%loss + energy
+      end subroutine lose
+
+      subroutine gain(rate)
+         real(wp), intent(in) :: rate
+         real(wp) :: energy
+         if (.not. present(history)) return
+         call body_energy(0.0_wp, rate, energy)
+         history%loss = history%loss - energy
+      end subroutine gain
+
+      !> Work of the ground over a step, by three Gauss points on the dense output (thesis Eq. 6.4)
+      subroutine account(done)
+         type(dopri5_step), intent(in) :: done
+         if (present(history)) history%work = history%work + work_of(done, 1.0_wp)
+      end subroutine account
+
+      function work_of(done, fraction) result(work)
+         type(dopri5_step), intent(in) :: done
+         real(wp), intent(in) :: fraction
+         real(wp) :: work
+         real(wp), parameter :: node(3) = [0.1127016653792583_wp, 0.5_wp, 0.8872983346207417_wp]
+         real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp] / 18.0_wp
+         real(wp) :: m, half_dm, dv, dh, horizontal, vertical, x
+         logical :: closed
+         integer :: j
+         work = 0.0_wp
+         do j = 1, 3
+            x = fraction * node(j)
+            call body%coefficients(problem%side, done%coordinate(x), m, half_dm, dv, dh, closed)
+            call ground%value_at(problem%segment, done%t + x * done%h, horizontal, vertical)
+            work = work - weight(j) * fraction * done%h * done%rate(x) &
+               * (real(problem%side, wp) * horizontal * dh + dv * vertical / gravity)
+         end do
+      end function work_of
+
+      !> Fill the output times that a step covers; `covered` is the fraction of the original step kept
+      subroutine record_moving(done, covered)
+         type(dopri5_step), intent(in) :: done
+         real(wp), intent(in), optional :: covered
+         real(wp) :: x, end_time, rotation, rate, horizontal, vertical, kinetic, sigma, shrink
+         if (.not. present(history)) return
+         shrink = 1.0_wp
+         if (present(covered)) shrink = covered
+         sigma = real(problem%side, wp)
+         end_time = done%t + done%h
+         do while (history%points < size(history%time))
+            if (history%time(history%points + 1) > end_time) exit
+            history%points = history%points + 1
+            x = shrink * max(0.0_wp, (history%time(history%points) - done%t) / done%h)
+            rotation = max(done%coordinate(x), 0.0_wp)
+            rate = done%rate(x)
+            call ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
+            call body_energy(rotation, rate, kinetic)
+            kinetic = kinetic - body%potential(problem%side, rotation)
+            history%state(:, history%points) = [sigma * rotation, sigma * rate, &
+               sigma * problem%acceleration(history%time(history%points), rotation, rate), horizontal, vertical, &
+               kinetic, body%potential(problem%side, rotation), history%work - history%loss]
+         end do
+      end subroutine record_moving
+
+      subroutine record_rest(until)
+         real(wp), intent(in) :: until
+         real(wp) :: horizontal, vertical
+         if (.not. present(history)) return
+         do while (history%points < size(history%time))
+            if (history%time(history%points + 1) > until) exit
+            history%points = history%points + 1
+            call ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
+            history%state(:, history%points) = 0.0_wp
+            history%state(4:5, history%points) = [horizontal, vertical]
+            history%state(8, history%points) = history%work - history%loss
+         end do
+      end subroutine record_rest
+
+   end subroutine respond
+
+   !> Fraction of the step at which q falls through zero, or 0 where it does not
+   pure function impact_fraction(step, q, v) result(s)
+      type(dopri5_step), intent(in) :: step
+      real(wp), intent(in) :: q  !! at the start
+      real(wp), intent(in) :: v  !! at the start
+      real(wp) :: s
+      real(wp) :: low, high, middle
+      integer :: k
+
+      s = 0.0_wp
+      high = 1.0_wp
+      if (step%q > 0.0_wp) then
+         if (.not. (v < 0.0_wp .and. step%v > 0.0_wp)) return
+         high = turning_fraction(step)  ! a dip that came back within the step
+         if (step%coordinate(high) > 0.0_wp) return
+      end if
+      low = 0.0_wp
+      if (q <= 0.0_wp) then
+         ! q/s is positive just after the start; find its last sign change
+         low = 1.0_wp
+         do k = 1, 40
+            low = 0.5_wp * low
+            if (step%coordinate(low * high) > 0.0_wp) exit
+         end do
+         low = low * high
+         if (step%coordinate(low) <= 0.0_wp) then
+            s = 1.0_wp
+            return
+         end if
+      end if
+      do k = 1, 60
+         middle = 0.5_wp * (low + high)
+         if (step%coordinate(middle) > 0.0_wp) then
+            low = middle
+         else
+            high = middle
+         end if
+      end do
+      s = high
+   end function impact_fraction
+
+   !> Fraction of the step at which the rate changes sign
+   pure function turning_fraction(step) result(s)
+      type(dopri5_step), intent(in) :: step
+      real(wp) :: s
+      real(wp) :: low, high, middle, first
+      integer :: k
+      low = 0.0_wp
+      high = 1.0_wp
+      first = step%rate(0.0_wp)
+      do k = 1, 50
+         middle = 0.5_wp * (low + high)
+         if (step%rate(middle) * first > 0.0_wp) then
+            low = middle
+         else
+            high = middle
+         end if
+      end do
+      s = 0.5_wp * (low + high)
+   end function turning_fraction
+
+   !> Fraction of the step at which q rises through a level
+   pure function crossing_fraction(step, level) result(s)
+      type(dopri5_step), intent(in) :: step
+      real(wp), intent(in) :: level
+      real(wp) :: s
+      real(wp) :: low, high, middle
+      integer :: k
+      low = 0.0_wp
+      high = 1.0_wp
+      do k = 1, 60
+         middle = 0.5_wp * (low + high)
+         if (step%coordinate(middle) < level) then
+            low = middle
+         else
+            high = middle
+         end if
+      end do
+      s = high
+   end function crossing_fraction
+
+   !> Repeat the step with its end on the impact: the time then has the order of the integrator
+   subroutine polish_impact(problem, q, v, a, atol_q, atol_v, rtol, fraction, step)
+      type(rocking_problem), intent(in) :: problem
+      real(wp), intent(in) :: q, v, a         !! state at the start of the step
+      real(wp), intent(in) :: atol_q, atol_v  !! absolute tolerances
+      real(wp), intent(in) :: rtol
+      real(wp), intent(in) :: fraction        !! first guess, of the step
+      type(dopri5_step), intent(inout) :: step
+      real(wp) :: h, full, change
+      integer :: k
+
+      full = step%h
+      h = fraction * full
+      do k = 1, 4
+         call dopri5_attempt(problem, step%t, h, q, v, a, atol_q, atol_v, rtol, step)
+         if (abs(step%v) <= tiny(1.0_wp)) exit
+         change = -step%q / step%v
+         if (abs(change) <= 4.0_wp * spacing(step%t + h)) exit
+         if (h + change <= 0.0_wp .or. h + change > 1.5_wp * full) exit
+         h = h + change
+      end do
+   end subroutine polish_impact
+
+   !> First time in [t, t_next] at which the ground lifts the resting structure, and the side it rocks to
+   subroutine find_uplift(problem, t, t_next, when, side)
+      type(rocking_problem), intent(in) :: problem
+      real(wp), intent(in) :: t
+      real(wp), intent(in) :: t_next
+      real(wp), intent(out) :: when
+      integer, intent(out) :: side              !! 0 where it stays at rest
+      real(wp) :: m(2), half_dm, dv(2), dh(2), t0, t1, f0(2), f1(2), best, root
+      logical :: closed
+      integer :: j, k, pieces
+
+      side = 0
+      when = t_next
+      do j = 1, 2
+         call problem%body%coefficients(3 - 2 * j, 0.0_wp, m(j), half_dm, dv(j), dh(j), closed)
+      end do
+      ! Straight lines are tested at their ends; curved segments on a fine grid.
+      pieces = merge(64, 1, problem%ground%has_harmonics())
+      t1 = t
+      f1 = drive(t1)
+      do k = 1, pieces
+         t0 = t1
+         f0 = f1
+         t1 = t + (t_next - t) * real(k, wp) / real(pieces, wp)
+         f1 = drive(t1)
+         best = huge(best)
+         do j = 1, 2
+            if (f0(j) > 0.0_wp) then
+               root = t0
+            else if (f1(j) > 0.0_wp) then
+               root = crossing(j, t0, t1)
+            else
+               cycle
+            end if
+            if (root < best) then
+               best = root
+               side = 3 - 2 * j
+            end if
+         end do
+         if (side /= 0) then
+            when = best
+            return
+         end if
+      end do
+
+   contains
+
+      !> Driving minus resisting moment of both sides at rest
+      function drive(time) result(f)
+         real(wp), intent(in) :: time
+         real(wp) :: f(2)
+         real(wp) :: horizontal, vertical
+         call problem%ground%value_at(problem%segment, time, horizontal, vertical)
+         f(1) = -horizontal * dh(1) - dv(1) * (1.0_wp + vertical / gravity)
+         f(2) = horizontal * dh(2) - dv(2) * (1.0_wp + vertical / gravity)
+      end function drive
+
+      !> The first time at which side j is driven up, between a quiet and a driven time
+      function crossing(j, quiet_time, driven_time) result(root)
+         integer, intent(in) :: j
+         real(wp), intent(in) :: quiet_time
+         real(wp), intent(in) :: driven_time
+         real(wp) :: root
+         real(wp) :: low, high, middle, f(2)
+         integer :: n
+         low = quiet_time
+         high = driven_time
+         do n = 1, 60
+            middle = 0.5_wp * (low + high)
+            f = drive(middle)
+            if (f(j) > 0.0_wp) then
+               high = middle
+            else
+               low = middle
+            end if
+         end do
+         root = high
+      end function crossing
+
+   end subroutine find_uplift
+
+end module rocking_response

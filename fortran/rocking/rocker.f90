@@ -1,0 +1,75 @@
+!> What every rocking structure tells the one integrator (rocking_response) about itself.
+!>
+!> The coordinate q >= 0 is the rotation away from rest in the direction `side` (+1 rocks to +x,
+!> -1 to -x). All structures obey
+!>
+!>    M(q) q'' + (1/2) M'(q) q'^2 + V'(q) (1 + a_v/g) + side a_h H(q) = 0,
+!>
+!> with a_h, a_v the ground accelerations to +x and up (thesis Eqs 5.1, 5.2, 6.1).
+module rocking_rocker
+   use common_kinds, only : wp
+   implicit none
+   private
+   public :: rocker, side_index
+
+   type, abstract :: rocker
+      !> The second index of all pairs: 1 for side = +1, 2 for side = -1
+      real(wp) :: restitution(2) = 1.0_wp  !! rate after over rate before an impact that starts this side
+      real(wp) :: critical(2) = 0.0_wp     !! q of unstable equilibrium [rad]
+      real(wp) :: limit(2) = 0.0_wp        !! q taken as collapse [rad]
+      real(wp) :: rest_rate(2) = 0.0_wp    !! rate after impact below which the structure rests [rad/s]
+   contains
+      procedure(coefficients), deferred :: coefficients
+      procedure(potential), deferred :: potential
+      procedure :: set_rest_rate
+   end type rocker
+
+   abstract interface
+      pure subroutine coefficients(self, side, q, m, half_dm, dv, dh, closed)
+         import :: rocker, wp
+         implicit none (type, external)
+         class(rocker), intent(in) :: self
+         integer, intent(in) :: side       !! +1 or -1
+         real(wp), intent(in) :: q         !! rotation [rad]
+         real(wp), intent(out) :: m        !! M [kg m^2]
+         real(wp), intent(out) :: half_dm  !! M'/2 [kg m^2]
+         real(wp), intent(out) :: dv       !! V' [N m]
+         real(wp), intent(out) :: dh       !! H [kg m]
+         logical, intent(out) :: closed    !! false where the structure cannot take this q
+      end subroutine coefficients
+
+      pure function potential(self, side, q) result(v)
+         import :: rocker, wp
+         implicit none (type, external)
+         class(rocker), intent(in) :: self
+         integer, intent(in) :: side
+         real(wp), intent(in) :: q
+         real(wp) :: v  !! potential energy of gravity above rest [J]
+      end function potential
+   end interface
+
+contains
+
+   !> 1 for side +1, 2 for side -1
+   pure function side_index(side) result(i)
+      integer, intent(in) :: side
+      integer :: i
+      i = merge(1, 2, side > 0)
+   end function side_index
+
+   !> Rest where the kinetic energy after an impact is below 1e-6 of the energy barrier.
+   !>
+   !> Free rocking makes infinitely many impacts in finite time; for the slender block the rule
+   !> is |theta'| < 1e-3 p alpha.
+   pure subroutine set_rest_rate(self)
+      class(rocker), intent(inout) :: self
+      real(wp) :: m, half_dm, dv, dh
+      logical :: closed
+      integer :: i
+      do i = 1, 2
+         call self%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, dv, dh, closed)
+         self%rest_rate(i) = 1.0e-3_wp * sqrt(2.0_wp * max(self%potential(3 - 2 * i, self%critical(i)), 0.0_wp) / m)
+      end do
+   end subroutine set_rest_rate
+
+end module rocking_rocker

@@ -1,0 +1,124 @@
+"""The four-hinge arch in the core (fortran/arch): impact, mechanism, deformed shape, dynamic thrust line."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados import _core
+from extrados.core.calls import integers, real
+from extrados.core.errors import check
+
+
+@dataclass(frozen=True)
+class FourHinge:
+    """The mechanism that rocks to +x; its mirror image rocks to -x.
+
+    hinge (4, 2): A, B, C, D from left to right [m]; joint (4): their joints, 0 = left springing;
+    mass [kg], centroid (3, 2) [m] and inertia [kg m^2] of the links AB, BC, CD.
+    """
+
+    hinge: np.ndarray
+    joint: np.ndarray
+    mass: np.ndarray
+    centroid: np.ndarray
+    inertia: np.ndarray
+
+    def links(self) -> tuple:
+        """The arguments by which the facades describe the mechanism."""
+        return (
+            real("hinge", self.hinge.T, (2, 4)),
+            real("link mass", self.mass, (3,)),
+            real("link centroid", self.centroid.T, (2, 3)),
+            real("link inertia", self.inertia, (3,)),
+        )
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Critical and locking rotation of link AB [rad]; generalised mass [kg m^2], V' [N m] and H [kg m] at rest."""
+
+    critical: float
+    lock: float
+    mass: float
+    gravity_moment: float
+    drive: float
+
+
+def restitution(mass, centroid, inertia, joint, hinge, opposite) -> tuple[float, float]:
+    """c_v of the impact: by the thesis (Eqs B.3a-e) and by the workless-impulse projection.
+
+    mass (n), centroid (n, 2), inertia (n) of the voussoirs; joint (4), hinge (4, 2) and the opposite
+    faces (4, 2) of A, B, C, D. The thesis' value may exceed 1 where A stands above the springing.
+    """
+    n = len(mass)
+    thesis, projection, status = _core.api_arch.impact(
+        real("mass", mass, (n,)),
+        real("centroid", np.transpose(centroid), (2, n)),
+        real("inertia", inertia, (n,)),
+        integers("joint", joint, 4),
+        real("hinge", np.transpose(hinge), (2, 4)),
+        real("opposite", np.transpose(opposite), (2, 4)),
+    )
+    check(status, "impact of the arch")
+    return thesis, projection
+
+
+def limits(mechanism: FourHinge) -> Limits:
+    """How far the mechanism can turn, and its coefficients at rest (thesis Eq. B.2)."""
+    *values, status = _core.api_arch.mechanism_limits(*mechanism.links())
+    check(status, "four-hinge mechanism")
+    return Limits(*values)
+
+
+def pose(mechanism: FourHinge, centroid, q) -> np.ndarray:
+    """Displaced centroid x, y [m] and rotation [rad] of every voussoir, shape (len(q), n, 3)."""
+    n = len(centroid)
+    placed, status = _core.api_arch.pose(
+        *mechanism.links(),
+        integers("joint", mechanism.joint, 4),
+        real("centroid", np.transpose(centroid), (2, n)),
+        real("q", np.atleast_1d(q), (None,)),
+    )
+    check(status, "deformed arch")
+    return placed.transpose(2, 1, 0)
+
+
+@dataclass(frozen=True)
+class ThrustLine:
+    """Forces across the joints at each state, arrays (states, n + 1).
+
+    normal, shear [N]; position 0 at the intrados, 1 at the extrados; point (states, n + 1, 2) [m];
+    miss (states): distance of the resultant from hinge D [m], zero up to the integration error.
+    """
+
+    normal: np.ndarray
+    shear: np.ndarray
+    position: np.ndarray
+    point: np.ndarray
+    miss: np.ndarray
+
+    @property
+    def friction(self) -> np.ndarray:
+        """Coefficient of friction needed at each joint; infinite where the joint is in tension."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.where(self.normal > 0.0, np.abs(self.shear) / self.normal, np.inf)
+
+
+def thrust_line(mechanism: FourHinge, arch, q, v, a, horizontal, vertical) -> ThrustLine:
+    """Dynamic thrust line (thesis 5.2.3) of the mechanism that rocks to +x.
+
+    `arch` gives mass, centroid, inertia of the voussoirs and the joint ends intrados, extrados (n + 1, 2).
+    """
+    n, nt = len(arch.mass), len(q)
+    normal, shear, position, point, miss, status = _core.api_arch.thrust_line(
+        *mechanism.links(),
+        real("mass", arch.mass, (n,)),
+        real("centroid", arch.centroid.T, (2, n)),
+        real("inertia", arch.inertia, (n,)),
+        integers("joint", mechanism.joint, 4),
+        real("intrados", arch.intrados.T, (2, n + 1)),
+        real("extrados", arch.extrados.T, (2, n + 1)),
+        *(real(name, x, (nt,)) for name, x in zip("qvahz", (q, v, a, horizontal, vertical), strict=True)),
+    )
+    check(status, "dynamic thrust line")
+    return ThrustLine(normal.T, shear.T, position.T, point.transpose(2, 1, 0), miss)

@@ -1,0 +1,1 @@
+"""Equilibrium and collapse mechanisms of block assemblies by linear programming (thesis chapter 3)."""

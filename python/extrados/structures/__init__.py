@@ -1,0 +1,1 @@
+"""A deck's structure made into blocks and joints, or into a mesh."""
