@@ -38,7 +38,8 @@ class FailureDomain(Analysis):
     durations: list[Time] | None = key(None, "t_p or T_p; default 40 values scaled to the arch", min_length=1, max_length=2000)
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * STANDARD_GRAVITY, "cap of the search", gt=0)
-    accuracy: float = key(1e-4, "accuracy of the curves, in g", gt=0, le=0.1)
+    accuracy: float = key(1e-4, "accuracy of the curves, in g (and of durations in s)", gt=0, le=0.1)
+    at_amplitudes: list[Acceleration] = key([], "also find the shortest failing durations at these amplitudes", max_length=200)
 
 
 class Assessment(Analysis):
