@@ -63,7 +63,16 @@ def load_cases() -> list[Case]:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
         rows = []
         for row in data["expect"]:
-            known = {"quantity", "value", "tolerance", "relative_tolerance", "kind", "source", "change", "note"}
+            known = {
+                "quantity",
+                "value",
+                "tolerance",
+                "relative_tolerance",
+                "kind",
+                "source",
+                "change",
+                "note",
+            }
             if set(row) - known or row["kind"] not in KINDS or not row["source"]:
                 raise ValueError(f"{path}: bad row {row}")
             relative = "relative_tolerance" in row

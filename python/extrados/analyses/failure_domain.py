@@ -86,7 +86,11 @@ def failure_curves(
     codes = mapper.codes(grid, np.tile(amplitudes, nd), tick).reshape(nd, na)
     curves = [
         _refine(
-            lambda i, a: mapper.codes(i, a, tick), codes, np.broadcast_to(amplitudes, codes.shape), wanted, accuracy
+            lambda i, a: mapper.codes(i, a, tick),
+            codes,
+            np.broadcast_to(amplitudes, codes.shape),
+            wanted,
+            accuracy,
         )
         for wanted in (MODE_I, MODE_II)
     ]
@@ -94,7 +98,13 @@ def failure_curves(
 
 
 def shortest_durations(
-    body: Body, pulse: str, amplitudes: np.ndarray, durations: np.ndarray, settle: float, accuracy: float, threads: int
+    body: Body,
+    pulse: str,
+    amplitudes: np.ndarray,
+    durations: np.ndarray,
+    settle: float,
+    accuracy: float,
+    threads: int,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Shortest failing duration [s] at each amplitude [m/s^2] in Mode I (or II) and in Mode II; NaN: none."""
 
@@ -176,12 +186,17 @@ def run(context: Context, options: FailureDomain) -> Result:
     result.results = {
         "pulse": options.pulse,
         **{
-            name: {"durations_s": durations, "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve]}
+            name: {
+                "durations_s": durations,
+                "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve],
+            }
             for name, curve in names.items()
         },
         "uplift_acceleration_g": gamma,
         "restitution": model.restitution,
-        "safe_pockets": int((((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()),
+        "safe_pockets": int(
+            (((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()
+        ),
     }
     if options.at_amplitudes:
         at = np.array(options.at_amplitudes)
@@ -203,7 +218,12 @@ def run(context: Context, options: FailureDomain) -> Result:
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in any half cycle"),
-        "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"),
+        "mode_II": Array(
+            curves.mode_ii / GRAVITY,
+            ("duration",),
+            "g",
+            "lowest amplitude of collapse in the first half cycle",
+        ),
     }
     governing = np.nanmin(curves.mode_i) / GRAVITY if np.isfinite(curves.mode_i).any() else None
     shape = "step pulses (a_p for t_p, then -a_p/2 for 2 t_p)" if options.pulse == "step" else "single sine pulses"
