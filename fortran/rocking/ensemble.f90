@@ -5,15 +5,16 @@ module rocking_ensemble
    use common_signal, only : signal, signal_sampled, signal_piecewise
    use common_status, only : status_ok, status_cancelled, status_invalid_argument
    use rocking_arch_rocker, only : arch_rocker, arch_rocker_new
+   use rocking_block_rocker, only : block_rocker, block_rocker_new
    use rocking_response, only : respond, response, response_options
    use rocking_rocker, only : rocker
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: motion_set, body_arch, make_body, make_motion, run_ensemble
+   public :: motion_set, body_arch, body_block, make_body, make_motion, run_ensemble
 
    !> Kinds of rocking structure, as the facades number them
-   integer(c_int), parameter :: body_arch = 1
+   integer(c_int), parameter :: body_arch = 1, body_block = 2
 
    !> Ground motions stored one behind the other in flat arrays
    type :: motion_set
@@ -55,12 +56,17 @@ contains
       class(rocker), allocatable, intent(out) :: body
       integer(c_int), intent(out) :: status
       type(arch_rocker), allocatable :: arch
+      type(block_rocker), allocatable :: stone
 
       select case (kind)
       case (body_arch)
          allocate (arch)
          call arch_rocker_new(parameters, arch, status)
          call move_alloc(arch, body)
+      case (body_block)
+         allocate (stone)
+         call block_rocker_new(parameters, stone, status)
+         call move_alloc(stone, body)
       case default
          status = status_invalid_argument
       end select
