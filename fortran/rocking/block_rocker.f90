@@ -19,6 +19,8 @@ module rocking_block_rocker
    integer, parameter :: block_parameters = 8
    !> Terms of the series of the rate; the rotation has one more
    integer, parameter :: order = 8
+   !> Terms below this share of the tolerance end the series
+   real(wp), parameter :: negligible = 1.0e-3_wp
    real(wp), parameter :: inverse(order + 1) = [1.0_wp, 1.0_wp / 2.0_wp, 1.0_wp / 3.0_wp, 1.0_wp / 4.0_wp, &
       1.0_wp / 5.0_wp, 1.0_wp / 6.0_wp, 1.0_wp / 7.0_wp, 1.0_wp / 8.0_wp, 1.0_wp / 9.0_wp]
 
@@ -113,8 +115,8 @@ contains
       real(wp), intent(in) :: tolerance(3)
       type(dense_step), intent(inout) :: step
       real(wp) :: s(0:order - 1), c(0:order - 1), u(0:order), x(0:order + 1)
-      real(wp) :: pull, push, pull_slope, push_slope, factor, rise, fall, q_end, u_end, error_q, error_u
-      integer :: i, j, k
+      real(wp) :: pull, push, pull_slope, push_slope, factor, rise, fall, q_end, u_end, tolerance_q, tolerance_u
+      integer :: i, j, k, last
 
       i = side_index(side)
       ! u is h v, so that q_k = u_(k-1)/k; the right-hand side is scaled by h^2
@@ -128,20 +130,21 @@ contains
       x(1) = u(0)
       if (self%linear) then
          s(0) = self%alpha(i) - q
-         u(1) = -(pull * s(0) + push)
-         x(2) = 0.5_wp * u(1)
-         u(2) = 0.5_wp * (pull * x(1) - pull_slope * s(0) - push_slope)
-         x(3) = inverse(3) * u(2)
-         do k = 2, order - 1
-            u(k + 1) = inverse(k + 1) * (pull * x(k) + pull_slope * x(k - 1))
-            x(k + 2) = inverse(k + 2) * u(k + 1)
-         end do
+         c(0) = 1.0_wp
       else
          s(0) = sin(self%alpha(i) - q)
          c(0) = cos(self%alpha(i) - q)
-         u(1) = -(pull * s(0) + push * c(0))
-         x(2) = 0.5_wp * u(1)
-         do k = 1, order - 1
+      end if
+      u(1) = -(pull * s(0) + push * c(0))
+      x(2) = 0.5_wp * u(1)
+      tolerance_q = tolerance(1) + tolerance(3) * abs(q)
+      tolerance_u = h * tolerance(2) + tolerance(3) * abs(u(0))
+      last = order
+      do k = 1, order - 1
+         if (self%linear) then
+            s(k) = -x(k)
+            c(k) = 0.0_wp
+         else
             rise = 0.0_wp
             fall = 0.0_wp
             do j = 0, k - 1
@@ -150,30 +153,32 @@ contains
             end do
             s(k) = -inverse(k) * fall
             c(k) = inverse(k) * rise
-            u(k + 1) = -inverse(k + 1) * (pull * s(k) + pull_slope * s(k - 1) + push * c(k) + push_slope * c(k - 1))
-            x(k + 2) = inverse(k + 2) * u(k + 1)
-         end do
-      end if
-      q_end = x(order + 1)
-      u_end = u(order)
-      do k = order - 1, 0, -1
-         q_end = q_end + x(k + 1)
+         end if
+         u(k + 1) = -inverse(k + 1) * (pull * s(k) + pull_slope * s(k - 1) + push * c(k) + push_slope * c(k - 1))
+         x(k + 2) = inverse(k + 2) * u(k + 1)
+         if (k < 3) cycle
+         ! The last two terms bound what is left out; a thousandth of the tolerance needs no more.
+         if (abs(u(k + 1)) + abs(u(k)) <= negligible * tolerance_u .and. &
+             abs(x(k + 2)) + abs(x(k + 1)) <= negligible * tolerance_q) then
+            last = k + 1
+            exit
+         end if
+      end do
+      q_end = x(last + 1)
+      u_end = 0.0_wp
+      do k = last, 0, -1
+         q_end = q_end + x(k)
          u_end = u_end + u(k)
       end do
-      q_end = q_end + x(0)
-      ! The last two terms bound what was left out.
-      error_q = abs(x(order + 1)) + abs(x(order))
-      error_u = abs(u(order)) + abs(u(order - 1))
       step%h = h
       step%q = q_end
       step%v = u_end / h
       step%a = 0.0_wp
-      step%error = max(error_q / (tolerance(1) + tolerance(3) * max(abs(q), abs(q_end))), &
-         error_u / (h * tolerance(2) + tolerance(3) * max(abs(u(0)), abs(u_end))))
-      step%degree = order + 1
-      step%cq = x
-      step%cv(0:order) = u / h
-      step%cv(order + 1) = 0.0_wp
+      step%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
+      step%degree = last + 1
+      step%cq(0:last + 1) = x(0:last + 1)
+      step%cv(0:last) = u(0:last) / h
+      step%cv(last + 1) = 0.0_wp
    end subroutine series_step
 
 end module rocking_block_rocker

@@ -68,6 +68,8 @@ module rocking_response
       integer :: segment = 0
       integer :: side = 1
       logical :: series = .false.  !! the structure solves its own steps
+      real(wp) :: rest_dv(2) = 0.0_wp  !! V' at rest, both sides
+      real(wp) :: rest_dh(2) = 0.0_wp  !! H at rest, both sides
    contains
       procedure :: acceleration
    end type rocking_problem
@@ -106,15 +108,18 @@ contains
       type(dense_step) :: step
       type(step_memory) :: memory
       real(wp) :: t, t_next, q, v, a, h, h_next, remaining, factor, s, v_before, barrier
-      real(wp) :: atol_q, atol_v
+      real(wp) :: atol_q, atol_v, m, half_dm
       integer :: attempts, found_side, i
-      logical :: resting, from_rest, quiet, renew
+      logical :: resting, from_rest, quiet, renew, closed
 
       problem%body => body
       problem%ground = ground
       problem%side = options%start_side
-      i = side_index(problem%side)
       problem%series = body%has_series .and. .not. ground%has_harmonics()
+      do i = 1, 2
+         call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, problem%rest_dv(i), problem%rest_dh(i), closed)
+      end do
+      i = side_index(problem%side)
       atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
       atol_v = 0.01_wp * options%tolerance * 1.0e3_wp * maxval(body%rest_rate)
       t = 0.0_wp
@@ -453,10 +458,10 @@ contains
       real(wp) :: factor
       if (.not. step%error <= huge(1.0_wp)) then
          factor = 0.1_wp
-      else if (step%error <= 1.0e-6_wp) then
-         factor = 4.0_wp  ! where a power would only say more
+      else if (step%error <= 1.0e-3_wp) then
+         factor = 2.0_wp  ! the series was cut short: a longer step is as cheap
       else
-         factor = min(4.0_wp, max(0.1_wp, 0.9_wp * step%error**(-1.0_wp / real(step%degree - 2, wp))))
+         factor = min(2.0_wp, max(0.1_wp, 0.9_wp * step%error**(-1.0_wp / real(step%degree - 2, wp))))
       end if
    end function series_factor
 
@@ -595,15 +600,11 @@ contains
       real(wp), intent(in) :: t_next
       real(wp), intent(out) :: when
       integer, intent(out) :: side              !! 0 where it stays at rest
-      real(wp) :: m(2), half_dm, dv(2), dh(2), t0, t1, f0(2), f1(2), best, root
-      logical :: closed
+      real(wp) :: t0, t1, f0(2), f1(2), best, root
       integer :: j, k, pieces
 
       side = 0
       when = t_next
-      do j = 1, 2
-         call problem%body%coefficients(3 - 2 * j, 0.0_wp, m(j), half_dm, dv(j), dh(j), closed)
-      end do
       ! Straight lines are tested at their ends; curved segments on a fine grid.
       pieces = merge(64, 1, problem%ground%has_harmonics())
       t1 = t
@@ -641,8 +642,7 @@ contains
          real(wp) :: f(2)
          real(wp) :: horizontal, vertical
          call problem%ground%value_at(problem%segment, time, horizontal, vertical)
-         f(1) = -horizontal * dh(1) - dv(1) * (1.0_wp + vertical / gravity)
-         f(2) = horizontal * dh(2) - dv(2) * (1.0_wp + vertical / gravity)
+         f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity)
       end function drive
 
       !> The first time at which side j is driven up, between a quiet and a driven time
