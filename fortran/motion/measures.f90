@@ -1,4 +1,6 @@
-!> Intensity measures of sampled accelerations joined by straight lines; the integrals are exact for that function.
+!> Intensity measures of sampled accelerations. Velocity, displacement and CAV are exact for samples joined by
+!> straight lines. The Arias intensity takes the trapezoid rule on the squares: by Parseval's theorem it keeps the
+!> energy of the lines, of which straight lines between samples would lose a tenth at 13 Hz and 0.01 s.
 module motion_measures
    use, intrinsic :: iso_c_binding, only : c_int
    use common_cancel, only : cancel_requested
@@ -88,7 +90,7 @@ contains
             v = v_new
             pgv = max(pgv, abs(v))
             pgd = max(pgd, abs(d))
-            square = square + step * (p**2 + p * q + q**2) / 3.0_wp
+            square = square + 0.5_wp * step * (p**2 + q**2)
          end associate
       end do
       value(1:6) = [abs(a(top)), real(top - 1, wp) * step, pgv, pgd, 0.5_wp * pi / gravity * square, cav]
@@ -96,7 +98,7 @@ contains
       below = 0.0_wp
       next = 1
       do i = 2, size(a)
-         part = step * (a(i - 1)**2 + a(i - 1) * a(i) + a(i)**2) / 3.0_wp
+         part = 0.5_wp * step * (a(i - 1)**2 + a(i)**2)
          do while (next <= 3)
             if (below + part < level(next) * square .or. .not. part > 0.0_wp) exit
             share = (level(next) * square - below) / part

@@ -1,0 +1,1 @@
+"""Ground motions: pulses, records, generated earthquakes, suites; what is done to them."""
