@@ -1,1 +1,1 @@
-"""Ground motions: pulses, records, generated earthquakes, suites; what is done to them."""
+"""Ground motions: pulses and records, ready for the core."""
