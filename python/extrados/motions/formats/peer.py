@@ -27,7 +27,12 @@ def read(text: Lines) -> list[Record]:
         raise text.error(0, "a PEER file without its line 'NPTS= 4000, DT= .0100 SEC'")
     header = " ".join(text[k] for k in range(at + 1)).upper()
     quantity = next((q for q in ("velocity", "displacement") if f"{q.upper()} TIME" in header), "acceleration")
-    rows = text.blanks(at + 1)
+    rows, have = [], 0
+    for line, row in text.blanks(at + 1):
+        if have >= count and not re.match(r"[+-]?\.?\d", row[0]):
+            break  # words after the data, such as '*** End Data ***'
+        rows.append((line, row))
+        have += len(row)
     values, notes = text.check_count(text.numbers(rows), count, at)
     if count < 3:
         raise text.error(at, f"NPTS is {count}; a record has at least three samples")
