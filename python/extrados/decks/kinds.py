@@ -1,6 +1,6 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, motions, structures
+from extrados.decks import analyses, motion_analyses, motions, structures
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
 STRUCTURES: tuple[type[Structure], ...] = (structures.Arch,)
@@ -9,13 +9,20 @@ MOTIONS: tuple[type[Motion], ...] = (
     motions.StepPulse,
     motions.SinePulse,
     motions.Harmonic,
+    motions.Pulse,
+    motions.VelocityPulse,
     motions.Record,
+    motions.Suite,
+    motions.Generated,
+    motions.Compatible,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Tilt,
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,
+    motion_analyses.MotionStudy,
+    motion_analyses.ShakeTable,
 )
 
 

@@ -19,7 +19,7 @@ LONGEST = 60
 _EXAMPLE = {
     "m": "20 cm", "s": "0.2 s", "m/s^2": "0.5 g", "m/s": "12 cm/s", "Hz": "2 Hz", "deg": "157.5 deg",
     "kg/m^3": "2000 kg/m^3", "Pa": "3 MPa", "N": "55.6 kN", "N/m": "60 N/m", "Pa/m": "10 GPa/m",
-    "rad/s": "3 rad/s",
+    "rad/s": "3 rad/s", "m^2": "0.4 in^2", "m^3/s": "0.75 gallon/min",
 }  # fmt: skip
 
 
@@ -82,3 +82,5 @@ LineForce = quantity("N/m")
 Stress = quantity("Pa")
 Energy = quantity("N/m")
 Stiffness = quantity("Pa/m")
+Area = quantity("m^2")
+FlowRate = quantity("m^3/s")
