@@ -14,6 +14,7 @@ from extrados.decks.reader import Deck
 from extrados.motions.from_deck import make_motion
 from extrados.motions.motion import Motion
 from extrados.motions.records import RecordError
+from extrados.results.checkpoint import Checkpoint
 from extrados.results.model import Result
 from extrados.structures.from_deck import make_structure
 
@@ -23,6 +24,11 @@ DRIVERS = {
     "rocking": "extrados.analyses.rocking",
     "failure-domain": "extrados.analyses.failure_domain",
     "assessment": "extrados.analyses.assessment",
+    "fragility": "extrados.analyses.fragility",
+    "resonance": "extrados.analyses.resonance",
+    "rocking-spectrum": "extrados.analyses.rocking_spectrum",
+    "harmonic-map": "extrados.analyses.harmonic_map",
+    "code-checks": "extrados.analyses.code_checks",
 }
 
 
@@ -33,19 +39,26 @@ class Refused(Exception):
 @dataclass
 class Context:
     """What every driver is given. `progress(done, total, text)` may be called often; `out` is the results
-    folder of the run, `resume` asks to go on from a checkpoint there."""
+    folder of the run, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
+    dask.distributed scheduler for sweeps."""
 
     deck: Deck
     threads: int = 1
     progress: Callable[[float, float, str], None] = lambda done, total, text: None
     out: Path | None = None
     resume: bool = False
+    scheduler: str = ""
     warnings: list[str] = field(default_factory=list)
 
     @cached_property
     def structure(self) -> Any:
         """The structure of the deck as blocks and joints, or as a mesh."""
         return make_structure(self.deck.structure, self.deck.folder)
+
+    @cached_property
+    def checkpoint(self) -> Checkpoint | None:
+        """Where sweeps keep finished batches; None without a results folder."""
+        return None if self.out is None else Checkpoint(self.out, self.deck.identity, self.resume)
 
     @cached_property
     def motion(self) -> Motion:

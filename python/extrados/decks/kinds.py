@@ -1,6 +1,6 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, motion_analyses, motions, structures
+from extrados.decks import analyses, block, motion_analyses, motions, statistics, structures
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
 STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block)
@@ -23,6 +23,11 @@ ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Assessment,
     motion_analyses.MotionStudy,
     motion_analyses.ShakeTable,
+    statistics.Fragility,
+    statistics.Resonance,
+    statistics.RockingSpectrum,
+    statistics.HarmonicMap,
+    statistics.CodeChecks,
 )
 
 
