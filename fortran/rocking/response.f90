@@ -185,7 +185,8 @@ contains
          if (renew .and. .not. problem%series) a = problem%acceleration(t, q, v)
          renew = .false.
          remaining = t_next - t
-         h = h_next
+         ! An error estimate can be blind to a whole cycle of the ground inside one step.
+         h = min(h_next, 0.125_wp * ground%shortest_period(problem%segment))
          if (h >= remaining) then
             h = remaining
          else if (h > 0.5_wp * remaining) then
@@ -600,19 +601,19 @@ contains
       real(wp), intent(in) :: t_next
       real(wp), intent(out) :: when
       integer, intent(out) :: side              !! 0 where it stays at rest
-      real(wp) :: t0, t1, f0(2), f1(2), best, root
-      integer :: j, k, pieces
+      real(wp) :: t0, t1, f0(2), f1(2), best, root, grid
+      integer :: j
 
       side = 0
       when = t_next
-      ! Straight lines are tested at their ends; curved segments on a fine grid.
-      pieces = merge(64, 1, problem%ground%has_harmonics())
+      ! Straight lines are tested at their ends; sines 32 times a cycle.
+      grid = problem%ground%shortest_period(problem%segment) / 32.0_wp
       t1 = t
       f1 = drive(t1)
-      do k = 1, pieces
+      do while (t1 < t_next)
          t0 = t1
          f0 = f1
-         t1 = t + (t_next - t) * real(k, wp) / real(pieces, wp)
+         t1 = min(t_next, t0 + grid)
          f1 = drive(t1)
          best = huge(best)
          do j = 1, 2

@@ -61,7 +61,9 @@ def run(context: Context, options: Rocking) -> Result:
     }
     if flying.any():
         first = response.time[flying.argmax()]
-        result.warnings.append(f"from {first:.3f} s on the block would leave the ground for a while: rocking without flight is assumed")
+        result.warnings.append(
+            f"from {first:.3f} s on the block would leave the ground for a while: rocking without flight is assumed"
+        )
     result.tables["rocking"] = TableData(
         {
             "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,
@@ -95,7 +97,9 @@ def run(context: Context, options: Rocking) -> Result:
         "potential": Array(response.potential, ("time",), "J"),
         "ledger": Array(response.ledger, ("time",), "J", "work of the ground less the energy lost at impacts"),
         "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
-        "required_friction": Array(friction[:, None], ("time", "joint"), "", "coefficient of friction needed at the toe"),
+        "required_friction": Array(
+            friction[:, None], ("time", "joint"), "", "coefficient of friction needed at the toe"
+        ),
         **_snapshots(model, response, tangential, normal, options),
     }
     result.answer = _answer(result.results, response, model)
@@ -129,7 +133,9 @@ def pose(model: BlockModel, rotation: np.ndarray) -> np.ndarray:
     return np.stack([toe - side * b.radius[i] * np.sin(rest), b.radius[i] * np.cos(rest), -rotation], axis=1)
 
 
-def _snapshots(model: BlockModel, response: core_rocking.Response, tangential, normal, options: Rocking) -> dict[str, Array]:
+def _snapshots(
+    model: BlockModel, response: core_rocking.Response, tangential, normal, options: Rocking
+) -> dict[str, Array]:
     """The block and the line of the ground's force at the times asked for, or at up to six telling ones."""
     if not len(response.time):
         return {}
@@ -145,10 +151,14 @@ def _snapshots(model: BlockModel, response: core_rocking.Response, tangential, n
     toe = np.where(rotation == 0.0, 0.0, toe)
     rise = b.centre_height
     lean = np.clip(tangential[index] / np.maximum(normal[index], 1e-300), -3.0, 3.0)
-    line = np.stack([np.stack([toe, 0.0 * toe], axis=1), np.stack([toe + lean * rise, 0.0 * toe + rise], axis=1)], axis=1)
+    line = np.stack(
+        [np.stack([toe, 0.0 * toe], axis=1), np.stack([toe + lean * rise, 0.0 * toe + rise], axis=1)], axis=1
+    )
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(pose(model, rotation)[:, None, :], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"),
+        "snapshot_pose": Array(
+            pose(model, rotation)[:, None, :], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"
+        ),
         "snapshot_thrust": Array(line, ("snapshot", "end", "axis"), "m", "line of the ground's force"),
     }
 
@@ -161,7 +171,11 @@ def _answer(r: dict, response: core_rocking.Response, model: BlockModel) -> str:
     sliding = f"It slides instead where friction is below {r['required_friction']:.2f}."
     if response.outcome == "collapse":
         times = r["impact_times_s"]
-        after = "without an impact" if not times else f"after {len(times)} impact{'s' if len(times) > 1 else ''}, the last at {times[-1]:.3f} s"
+        after = (
+            "without an impact"
+            if not times
+            else f"after {len(times)} impact{'s' if len(times) > 1 else ''}, the last at {times[-1]:.3f} s"
+        )
         return f"The block overturns to {'+x' if response.peak > 0 else '-x'} {after} ({about}). {sliding}"
     return (
         f"The block rocks and stays up: {r['impacts']} impacts, greatest rotation {1e3 * abs(response.peak):.4g} mrad to "

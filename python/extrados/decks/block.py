@@ -24,10 +24,14 @@ class Block(Structure):
     toe_right: Length | None = key(None, "horizontal distance of the right toe from the centre of mass", gt=0)
     toe_left: Length | None = key(None, "the same of the left toe; default as the right one", gt=0)
     restitution: Literal["housner"] | float = key(
-        "housner", "impact rule, or the ratio c_v of the rates after and before an impact (0 to 1)", source="thesis Eqs 6.2, 6.3"
+        "housner",
+        "impact rule, or the ratio c_v of the rates after and before an impact (0 to 1)",
+        source="thesis Eqs 6.2, 6.3",
     )
     energy_ratio: float | None = key(
-        None, "instead of restitution: c_E, the kinetic energy after over that before an impact", source="thesis Eq. 6.2"
+        None,
+        "instead of restitution: c_E, the kinetic energy after over that before an impact",
+        source="thesis Eq. 6.2",
     )
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963"
@@ -41,7 +45,9 @@ class Block(Structure):
         body = [name for name in _BODY if getattr(self, name) is not None]
         if self.width is not None or self.height is not None:
             if body:
-                raise ValueError(f"width and height describe a rectangle, {', '.join(body)} another body: give one of the two")
+                raise ValueError(
+                    f"width and height describe a rectangle, {', '.join(body)} another body: give one of the two"
+                )
             if self.width is None or self.height is None:
                 raise ValueError("a rectangle needs width and height")
         elif missing := [name for name in _BODY[:-1] if getattr(self, name) is None]:
@@ -52,7 +58,7 @@ class Block(Structure):
             if not 0.0 <= self.energy_ratio <= 1.0:
                 raise ValueError(f"energy_ratio is {self.energy_ratio:g}, expected 0 to 1")
         if not isinstance(self.restitution, str) and not 0.0 <= self.restitution <= 1.0:
-            raise ValueError(f"restitution is {self.restitution:g}, expected 0 to 1 or \"housner\"")
+            raise ValueError(f'restitution is {self.restitution:g}, expected 0 to 1 or "housner"')
         if not abs(self.initial_rotation_ratio) < 1.0:
             raise ValueError(
                 f"initial_rotation_ratio is {self.initial_rotation_ratio:g}: at 1 the block is past its balance and falls "

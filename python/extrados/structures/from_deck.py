@@ -9,7 +9,6 @@ from extrados.decks.table import Structure
 from extrados.structures.arch import make_arch
 from extrados.structures.block import make_block
 
-
 BLOCK_KEYS = {"width", "height", "depth", "density", "mass", "inertia", "centre_height", "toe_right", "toe_left"}
 
 

@@ -114,8 +114,12 @@ class Lines:
             row = [line[k : k + width] for k in range(0, min(len(line), width * columns), width)]
             row = row[: count - have]
             if len(row) < min(columns, count - have):
-                raise self.cut(have + len(row), count) if at >= len(self.lines) - 1 else self.error(
-                    at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters"
+                raise (
+                    self.cut(have + len(row), count)
+                    if at >= len(self.lines) - 1
+                    else self.error(
+                        at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters"
+                    )
                 )
             if len(row[-1]) < width and at == len(self.lines) - 1 and have + len(row) == count and len(line) % width:
                 raise self.error(at, "the last value is cut off")
@@ -132,7 +136,9 @@ class Lines:
             return values, []
         if len(values) - count > max(8, count // 100):
             raise self.error(at, f"the header says {count} values but {len(values)} follow")
-        return values[:count], [f"{self.path.name}: {len(values)} values where the header says {count}; the rest is left out"]
+        return values[:count], [
+            f"{self.path.name}: {len(values)} values where the header says {count}; the rest is left out"
+        ]
 
 
 def read_lines(path: Path) -> Lines:
