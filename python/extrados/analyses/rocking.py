@@ -8,12 +8,13 @@ from extrados.analyses.tilt import geometry_arrays
 from extrados.core import arch as core_arch
 from extrados.core import rocking as core_rocking
 from extrados.decks.analyses import Rocking
+from extrados.motions.motion import GRAVITY
 from extrados.results.model import Array, Result, TableData
 from extrados.structures.arch import Arch
 
 #: How far the thrust line may leave a joint, as a fraction of its length, before it is a warning.
 OUTSIDE = 0.01
-ORDINAL = ("zeroth", "first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
 
 
 def run(context: Context, options: Rocking) -> Result:
@@ -37,7 +38,7 @@ def rocking_result(
     arch = model.arch
     thrust = _thrust(model, response)
     friction = thrust.friction
-    needed = float(friction.max()) if friction.size else 0.0
+    needed = max(float(friction.max(initial=0.0)), _onset_friction(model, context, response))
     impacts = [(t, v) for kind, t, v in response.events if kind == "impact"]
     collapse = response.outcome == "collapse"
     energy = response.kinetic + response.potential
@@ -60,8 +61,9 @@ def rocking_result(
         "peak_rotation_ratio": response.peak_ratio,
         "critical_rotation_rad": model.limits.critical,
         "uplift_acceleration_g": gamma,
-        "peak_ground_acceleration_g": context.motion.peak / core_motion_gravity(),
+        "peak_ground_acceleration_g": context.motion.peak / GRAVITY,
         "required_friction": needed if np.isfinite(needed) else None,
+        "thrust_line_residual_m": float(thrust.miss.max(initial=0.0)),
         "energy_residual_ratio": residual,
         "steps": response.steps,
         "rejected_steps": response.rejected,
@@ -110,11 +112,12 @@ def rocking_result(
     return result
 
 
-def core_motion_gravity() -> float:
-    """Standard gravity [m/s^2]."""
-    from extrados.motions.motion import GRAVITY
-
-    return GRAVITY
+def ordinal(n: int) -> str:
+    """first, second, ..., tenth, 11th, 12th, 21st."""
+    if n <= len(ORDINALS):
+        return ORDINALS[n - 1]
+    ending = "th" if n % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(n % 10, "th")
+    return f"{n}{ending}"
 
 
 def _mirrored(values: np.ndarray, left: np.ndarray) -> np.ndarray:
@@ -125,13 +128,12 @@ def _mirrored(values: np.ndarray, left: np.ndarray) -> np.ndarray:
 
 
 def _thrust(model: ArchModel, response: core_rocking.Response) -> core_arch.ThrustLine:
-    """Dynamic thrust line at all output times; at rest it is not defined by the mechanism and left out (NaN)."""
+    """Dynamic thrust line at all output times; NaN at rest, where the mechanism does not define it."""
     side = np.sign(response.rotation)
     moving = side != 0.0
-    n = model.arch.voussoirs + 1
-    nt = len(side)
-    blank = [np.full((nt, n), np.nan) for _ in range(3)]
-    point, miss = np.full((nt, n, 2), np.nan), np.zeros(nt)
+    n, nt = model.arch.voussoirs + 1, len(side)
+    normal, shear, position, point = (np.full(s, np.nan) for s in ((nt, n), (nt, n), (nt, n), (nt, n, 2)))
+    miss = np.zeros(nt)
     if moving.any():
         s = side[moving]
         line = core_arch.thrust_line(
@@ -144,18 +146,26 @@ def _thrust(model: ArchModel, response: core_rocking.Response) -> core_arch.Thru
             response.vertical[moving],
         )
         left = s < 0.0
-        for target, values in zip(blank, (line.normal, line.shear, line.position), strict=True):
-            target[moving] = _mirrored(values, left)
-        blank[1][moving] *= np.where(left, -1.0, 1.0)[:, None]
-        points = line.point.copy()
-        points[left] = points[left, ::-1] * np.array([-1.0, 1.0])
-        point[moving] = points
+        normal[moving] = _mirrored(line.normal, left)
+        shear[moving] = _mirrored(line.shear, left) * np.where(left, -1.0, 1.0)[:, None]
+        position[moving] = _mirrored(line.position, left)
+        point[moving] = _mirrored(line.point, left) * np.where(left[:, None], [-1.0, 1.0], 1.0)[:, None, :]
         miss[moving] = line.miss
-    normal, shear, position = blank
-    # At rest the joints carry an upright thrust line; its friction is that of the tilt analysis, not of the motion.
-    return core_arch.ThrustLine(
-        np.where(np.isnan(normal), 1.0, normal), np.where(np.isnan(shear), 0.0, shear), position, point, miss
-    )
+    return core_arch.ThrustLine(normal, shear, position, point, miss)
+
+
+def _onset_friction(model: ArchModel, context: Context, response: core_rocking.Response) -> float:
+    """Greatest friction needed at the instants of uplift: the ground may jump there (thesis 5.2.3, t = 0+)."""
+    lifts = [(t, side) for kind, t, side in response.events if kind == "uplift"]
+    if not lifts:
+        return 0.0
+    time, side = np.array(lifts).T
+    ground = context.motion.sample(time)
+    limits = model.limits
+    acceleration = -(limits.gravity_moment + side * ground * limits.drive) / limits.mass
+    still = np.zeros(len(time))
+    line = core_arch.thrust_line(model.four_hinge, model.arch, still, still, acceleration, side * ground, still)
+    return float(line.friction.max())
 
 
 def _warnings(thrust: core_arch.ThrustLine, response: core_rocking.Response, needed: float) -> list[str]:
@@ -193,7 +203,9 @@ def _snapshots(
     placed[left] = placed[left, ::-1] * np.array([-1.0, 1.0, -1.0])
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(placed, ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the voussoirs"),
+        "snapshot_pose": Array(
+            placed, ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the voussoirs"
+        ),
         "snapshot_thrust": Array(thrust.point[index], ("snapshot", "joint", "axis"), "m", "dynamic thrust line"),
     }
 
@@ -207,8 +219,7 @@ def _answer(context: Context, r: dict, response: core_rocking.Response, gamma: f
         )
     times = r["impact_times_s"]
     if response.outcome == "collapse":
-        n = r["collapse_half_cycle"]
-        cycle = ORDINAL[n] if n < len(ORDINAL) else f"{n}th"
+        cycle = ordinal(r["collapse_half_cycle"])
         if not times:
             after = "without an impact"
         elif len(times) == 1:

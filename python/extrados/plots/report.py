@@ -8,7 +8,7 @@ from typing import Any
 
 import jinja2
 
-from extrados.results.store import Stored, StoreError, read
+from extrados.results.store import Stored, StoreError, read, reason
 
 #: Analysis kind -> "module:function" that draws its figures: (run, analysis name, folder) -> [(figure, caption)]
 DRAWERS = {
@@ -89,21 +89,28 @@ def write_report(folder: Path) -> Path:
         analyses = []
         for a in run.analyses:
             figures = [
-                {"caption": caption, "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode()}
+                {
+                    "caption": caption,
+                    "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode(),
+                }
                 for name, caption in drawn.get(a["name"], [])
             ]
             analyses.append({**a, "figures": figures, "rows": _rows(a["results"])})
         deck = run.summary["deck"]
-        page = jinja2.Environment(autoescape=True).from_string(TEMPLATE).render(
-            title=deck.get("title") or html.escape(deck["path"]) or "extrados run",
-            note=deck.get("note", ""),
-            analyses=analyses,
-            deck=deck,
-            resolved=_rows({k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}),
-            made=run.summary["extrados"],
+        page = (
+            jinja2.Environment(autoescape=True)
+            .from_string(TEMPLATE)
+            .render(
+                title=deck.get("title") or html.escape(deck["path"]) or "extrados run",
+                note=deck.get("note", ""),
+                analyses=analyses,
+                deck=deck,
+                resolved=_rows({k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}),
+                made=run.summary["extrados"],
+            )
         )
         target = folder / "report.html"
         target.write_text(page, encoding="utf-8")
     except OSError as error:
-        raise StoreError(f"{folder}: the report could not be written: {error.strerror or error}") from None
+        raise StoreError(f"{folder}: the report could not be written: {reason(error)}") from None
     return target
