@@ -139,7 +139,9 @@ def motion(
     out: Annotated[Path | None, typer.Option(help="results folder; default results/<file name>")] = None,
     time_step: Annotated[float | None, typer.Option(help="sampling step [s] where the file has none")] = None,
     unit: Annotated[str | None, typer.Option(help="unit where the file has none: g, m/s^2, cm/s^2 ...")] = None,
-    channel: Annotated[str | None, typer.Option(help="channel of a file with several: number or part of its name")] = None,
+    channel: Annotated[
+        str | None, typer.Option(help="channel of a file with several: number or part of its name")
+    ] = None,
     baseline: Annotated[str, typer.Option(help="none, mean, linear, quadratic or cubic")] = "none",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
@@ -149,7 +151,11 @@ def motion(
     from extrados.decks.reader import make_deck
     from extrados.session import run_deck
 
-    record = {"kind": "record", "file": file if file.startswith("extrados:") else str(Path(file).absolute()), "baseline": baseline}
+    record = {
+        "kind": "record",
+        "file": file if file.startswith("extrados:") else str(Path(file).absolute()),
+        "baseline": baseline,
+    }
     record |= {k: v for k, v in {"time_step": time_step, "unit": unit}.items() if v is not None}
     if channel is not None:
         record["channel"] = int(channel) if channel.isdigit() else channel

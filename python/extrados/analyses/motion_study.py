@@ -87,7 +87,9 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     frequency, amplitude = fourier_spectrum(a, step)
     result = Result("motion", results=_study(motion, options), warnings=list(motion.notes))
     r = result.results
-    if abs(velocity[-1]) > 0.1 * np.abs(velocity).max() or abs(displacement[-1]) > 0.5 * np.abs(displacement).max(initial=1e-300):
+    if abs(velocity[-1]) > 0.1 * np.abs(velocity).max() or abs(displacement[-1]) > 0.5 * np.abs(displacement).max(
+        initial=1e-300
+    ):
         result.warnings.append(
             f"the motion drifts: it ends with {velocity[-1]:.3g} m/s and {displacement[-1]:.3g} m; "
             'a baseline correction (baseline = "quadratic") or low_cut takes that out'
@@ -106,7 +108,9 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
         **_spectra_arrays(spectra),
     }
     if context.motion.ground.channels > 1:
-        result.arrays["vertical"] = Array(motion.sample(motion.ground.start + time, 1), ("time",), "m/s^2", "vertical acceleration")
+        result.arrays["vertical"] = Array(
+            motion.sample(motion.ground.start + time, 1), ("time",), "m/s^2", "vertical acceleration"
+        )
         r["vertical_pga_g"] = float(np.abs(result["vertical"]).max()) / GRAVITY
     result.tables = {
         "motion": TableData(
@@ -123,7 +127,9 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
         ),
     }  # fmt: skip
     writers = {"AT2": ("motion.AT2", export.at2), "columns": ("motion_columns.csv", export.columns)}
-    result.files = {name: write(motion.name, a, step) for name, write in (writers[e] for e in dict.fromkeys(options.export))}
+    result.files = {
+        name: write(motion.name, a, step) for name, write in (writers[e] for e in dict.fromkeys(options.export))
+    }
     result.answer = describe(motion.name, r)
     return result
 
@@ -141,7 +147,10 @@ def describe(name: str, r: dict) -> str:
         )
     pulse = r["wavelet_pulse"]
     kind = "pulse-like" if pulse["pulse_like"] else "not pulse-like"
-    return text + f"By Baker's classification it is {kind} (indicator {pulse['indicator']:.2f}, period {pulse['period_s']:.2f} s)."
+    return (
+        text
+        + f"By Baker's classification it is {kind} (indicator {pulse['indicator']:.2f}, period {pulse['period_s']:.2f} s)."
+    )
 
 
 def _spectra_arrays(spectra: core.Spectra) -> dict[str, Array]:
@@ -162,7 +171,9 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     damping = options.dampings[min(1, len(options.dampings) - 1)]
     if isinstance(model, models.Compatible):
         damping = model.damping
-    rows: dict[str, list] = {n: [] for n in ("name", "pga_g", "pgv_m_s", "pgd_m", "arias_m_s", "cav_m_s", "duration_5_95_s")}
+    rows: dict[str, list] = {
+        n: [] for n in ("name", "pga_g", "pgv_m_s", "pgd_m", "arias_m_s", "cav_m_s", "duration_5_95_s")
+    }
     psa, shown, impulses, squares, warnings = [], [], [], None, []
     periods = None
     try:
@@ -202,7 +213,9 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     result.tables["ensemble"] = TableData(dict(rows))
     result.arrays = {
         "period": Array(periods, ("period",), "s"),
-        "psa_percentile": Array(np.percentile(psa, PERCENTILES, axis=0), ("percentile", "period"), "m/s^2", "16, 50 and 84 %"),
+        "psa_percentile": Array(
+            np.percentile(psa, PERCENTILES, axis=0), ("percentile", "period"), "m/s^2", "16, 50 and 84 %"
+        ),
         "psa_mean": Array(psa.mean(axis=0), ("period",), "m/s^2", "mean pseudo-acceleration of the set"),
         "psa_shown": Array(psa[:SHOWN], ("shown", "period"), "m/s^2"),
         "impulse_amplitude": Array(impulses[:, 0], ("studied",), "g", "primary impulses"),
@@ -212,7 +225,9 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     }
     if squares is not None:
         result.arrays["frequency"] = Array(frequency, ("frequency",), "Hz")
-        result.arrays["fourier"] = Array(np.sqrt(squares / len(psa)), ("frequency",), "m/s", "root mean square Fourier amplitude")
+        result.arrays["fourier"] = Array(
+            np.sqrt(squares / len(psa)), ("frequency",), "m/s", "root mean square Fourier amplitude"
+        )
     if isinstance(model, models.Generated):
         _compare_with_intensity(result, model, context)
     elif isinstance(model, models.Compatible):
@@ -263,7 +278,7 @@ def _compare_with_intensity(result: Result, model: models.Generated, context: Co
     )
     if not 0.5 <= ratio <= 2.0:
         result.warnings.append(
-            f"the set's PGA is {ratio:.2f} times the median of intensity {model.mmi:g}: scaling = \"{model.scaling}\" with "
+            f'the set\'s PGA is {ratio:.2f} times the median of intensity {model.mmi:g}: scaling = "{model.scaling}" with '
             f"factor {model.factor:g} does not stand for that intensity (see the documentation of Eq. 6.6)"
         )
 

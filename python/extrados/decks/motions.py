@@ -75,7 +75,9 @@ class Treated(Motion):
     """What may be done to records, in this order: time_scale, filter, baseline, resampling, scaling, scale."""
 
     time_step: Time | None = key(None, "sampling step where the file has none", gt=0)
-    unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(None, "unit where the file has none")
+    unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(
+        None, "unit where the file has none"
+    )
     scale: float = key(1.0, "factor on the acceleration, last of all")
     time_scale: float = key(1.0, "factor on the time axis; accelerations keep their size", gt=0)
     low_cut: Frequency | None = key(None, "lower corner of a zero-phase Butterworth filter", gt=0)
@@ -106,8 +108,12 @@ class Record(Treated):
     """A recorded ground motion; the format is recognised by content. `extrados:el-centro-1940` is shipped."""
 
     kind: Literal["record"]
-    file: str = key(about="path inside the deck's folder, or `extrados:NAME` for a shipped record", min_length=1, max_length=1024)
-    channel: int | str | None = key(None, "which channel of a file with several: its number from 1, or a part of its name")
+    file: str = key(
+        about="path inside the deck's folder, or `extrados:NAME` for a shipped record", min_length=1, max_length=1024
+    )
+    channel: int | str | None = key(
+        None, "which channel of a file with several: its number from 1, or a part of its name"
+    )
     vertical: str | None = key(None, "file of the vertical component", min_length=1, max_length=1024)
     vertical_channel: int | str | None = key(None, "channel of the vertical component, in `vertical` or in `file`")
 
@@ -143,11 +149,15 @@ class Generated(Motion):
     lines: int | list[Frequency] = key(15, "number of sine lines over the spectrum's band, or their frequencies")
     spacing: Literal["log", "uniform"] = key("log", "lines in equal ratios or at equal distances")
     scaling: Literal["thesis", "fourier", "energy"] = key(
-        "energy", "amplitude of a line: factor |X| df, 2 |X| df, or 2 |X| sqrt(df / int P^2 dt)", source="thesis Eq. 6.6"
+        "energy",
+        "amplitude of a line: factor |X| df, 2 |X| df, or 2 |X| sqrt(df / int P^2 dt)",
+        source="thesis Eq. 6.6",
     )
     factor: float = key(1.0, "factor on the amplitudes; with scaling = thesis the unit of the frequency step", gt=0)
     envelope: Literal["arctangent", "trapezoid", "jennings", "saragoni-hart"] = key(
-        "arctangent", "how the strength grows and fades", source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974"
+        "arctangent",
+        "how the strength grows and fades",
+        source="thesis Eq. 6.7; Hou 1968; Jennings 1968; Saragoni and Hart 1974",
     )
     rise: Time | None = key(None, "arctangent: its width (0.1 s); else time to full strength (0.15 or 0.2 t_d)", gt=0)
     decay: Time | None = key(None, "trapezoid: at the end of t_d; jennings: after it, to 5 % (0.4 t_d)", gt=0)

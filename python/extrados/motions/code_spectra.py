@@ -50,7 +50,9 @@ def en1998(kind: int, ground: str, acceleration: float, damping: float = 0.05) -
     return _four_branches(2.5 * damping_factor(damping) * acceleration * soil, acceleration * soil, tb, tc, td)
 
 
-def ntc(ground: str, acceleration: float, f0: float, corner: float, topography: float = 1.0, damping: float = 0.05) -> Spectrum:
+def ntc(
+    ground: str, acceleration: float, f0: float, corner: float, topography: float = 1.0, damping: float = 0.05
+) -> Spectrum:
     """NTC 2018 Eqs 3.2.2 to 3.2.7; acceleration a_g [m/s^2], f0 F_0, corner T_C* [s], topography S_T."""
     a, b, low, high, c, e = _NTC[ground]
     soil = min(max(a - b * f0 * acceleration / GRAVITY, low), high) * topography

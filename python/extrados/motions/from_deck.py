@@ -109,7 +109,12 @@ def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
             return code_spectra.en1998(int(model.code[-1]), model.ground, model.acceleration, model.damping)
         case "NTC":
             return code_spectra.ntc(
-                model.ground, model.acceleration, model.amplification, model.corner_period, model.topography, model.damping
+                model.ground,
+                model.acceleration,
+                model.amplification,
+                model.corner_period,
+                model.topography,
+                model.damping,
             )
         case "ASCE7":
             return code_spectra.asce7(model.sds, model.sd1, model.long_period)

@@ -79,13 +79,17 @@ def _parse(text: str, name: str) -> LineSpectrum:
         try:
             intensity, frequency, amplitude = (float(word) for word in row)
         except ValueError:
-            raise SpectrumFileError(f"{name}:{reader.line_num}: expected three numbers, got {','.join(row)[:80]!r}") from None
+            raise SpectrumFileError(
+                f"{name}:{reader.line_num}: expected three numbers, got {','.join(row)[:80]!r}"
+            ) from None
         if not (0.0 < frequency < 1e4 and 0.0 < amplitude < 1e6 and 0.0 <= intensity <= 12.0):
             raise SpectrumFileError(
                 f"{name}:{reader.line_num}: expected intensity 0 to 12, frequency and amplitude above zero"
             )
         if frequency in rows.setdefault(intensity, {}):
-            raise SpectrumFileError(f"{name}:{reader.line_num}: intensity {intensity:g} at {frequency:g} Hz stands twice")
+            raise SpectrumFileError(
+                f"{name}:{reader.line_num}: intensity {intensity:g} at {frequency:g} Hz stands twice"
+            )
         rows[intensity][frequency] = amplitude
     grids = {tuple(sorted(row)) for row in rows.values()}
     if len(rows) < 2 or len(grids) != 1 or len(next(iter(grids))) < 2:

@@ -84,6 +84,7 @@ def velocity_pulse(velocity: float, period: float, cycles: float, phase: float) 
     w, nu = 2.0 * np.pi / period, np.radians(phase)
     half = 0.5 * cycles * period  # t runs from -half to half
     terms = [
-        [-0.5 * velocity * share * v, 0.0, v, nu - v * half] for share, v in ((1.0, w), (0.5, w + w / cycles), (0.5, w - w / cycles))
+        [-0.5 * velocity * share * v, 0.0, v, nu - v * half]
+        for share, v in ((1.0, w), (0.5, w + w / cycles), (0.5, w - w / cycles))
     ]
     return Motion("velocity pulse", _pieces([0.0, 2.0 * half], [[0.0, 0.0]], [terms]))

@@ -112,7 +112,9 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
         notes.append(f"{record.name}: differentiated from {record.quantity}")
     peak = np.abs(values).max()
     if peak > STRONGEST:
-        raise RecordError(f"{name}: the peak is {peak / GRAVITY:.3g} g in '{known}': above 5 g, the unit is probably wrong")
+        raise RecordError(
+            f"{name}: the peak is {peak / GRAVITY:.3g} g in '{known}': above 5 g, the unit is probably wrong"
+        )
     return values, step, notes
 
 
@@ -129,7 +131,9 @@ def record_motion(
     rows = values[None, :]
     if vertical is not None:
         # a unit in the deck stands in for both files, a unit in either file for that one
-        up, up_step, more = acceleration_of(vertical, replace(do, unit=None if vertical.unit else do.unit), vertical.name)
+        up, up_step, more = acceleration_of(
+            vertical, replace(do, unit=None if vertical.unit else do.unit), vertical.name
+        )
         if abs(up_step - step) > 1e-9 * step:
             raise RecordError(f"{name}: the components have steps of {step:g} and {up_step:g} s; expected the same")
         points = min(rows.shape[1], len(up))

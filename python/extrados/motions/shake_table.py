@@ -117,4 +117,10 @@ def fit(table: Table, drive: Drive, mass: float, keep: str = "amplitude") -> Fit
     if keep == "time":
         return Fit(stroke, flow, force, 1.0, 1.0 / max(1.0, stroke, flow, force))
     amplitude = 1.0 / max(1.0, force)
-    return Fit(stroke, flow, force, min(1.0, 1.0 / np.sqrt(max(stroke * amplitude, 1e-300)), 1.0 / max(flow * amplitude, 1e-300)), amplitude)
+    return Fit(
+        stroke,
+        flow,
+        force,
+        min(1.0, 1.0 / np.sqrt(max(stroke * amplitude, 1e-300)), 1.0 / max(flow * amplitude, 1e-300)),
+        amplitude,
+    )

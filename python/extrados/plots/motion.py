@@ -32,7 +32,13 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             acc.legend(loc="upper right")
         vel.plot(t, 100 * run.array(name, "velocity"), color=style.HINGE, linewidth=0.9)
         if r["wavelet_pulse"]["indicator"] > 0.5:
-            vel.plot(t, 100 * run.array(name, "pulse_velocity"), color=style.THRUST, linewidth=0.9, label="extracted velocity pulse")
+            vel.plot(
+                t,
+                100 * run.array(name, "pulse_velocity"),
+                color=style.THRUST,
+                linewidth=0.9,
+                label="extracted velocity pulse",
+            )
             vel.legend(loc="upper right")
         vel.set_ylabel("velocity\n[cm/s]")
         dis.plot(t, 100 * run.array(name, "displacement"), color=style.EDGE, linewidth=0.9)
@@ -43,7 +49,12 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         husid.set_ylabel("share of\nArias int.")
         husid.set_xlabel("time [s]")
         husid.set_xlim(0.0, t[-1])
-        found.append((style.save(fig, folder, f"{name}-history"), "Acceleration with its strongest single-sine impulses, velocity, displacement, and growth of the Arias intensity (dotted: 5 and 95 %)."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-history"),
+                "Acceleration with its strongest single-sine impulses, velocity, displacement, and growth of the Arias intensity (dotted: 5 and 95 %).",
+            )
+        )
     period, damping = run.array(name, "period"), run.array(name, "damping")
     with style.figure(9.0, 3.6, columns=3) as (fig, (psa, sd, fourier)):
         for k, d in enumerate(damping):
@@ -56,7 +67,9 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.set_xlabel("period [s]")
             ax.set_xlim(period[0], period[-1])
         _fourier_axes(fourier, run.array(name, "frequency"), run.array(name, "fourier"))
-        found.append((style.save(fig, folder, f"{name}-spectra"), "Response spectra and Fourier amplitude of the acceleration."))
+        found.append(
+            (style.save(fig, folder, f"{name}-spectra"), "Response spectra and Fourier amplitude of the acceleration.")
+        )
     return found
 
 
@@ -105,16 +118,44 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         if columns == 2:
             _fourier_axes(axes[1], run.array(name, "frequency"), run.array(name, "fourier"))
             if "line" in arrays:
-                axes[1].loglog(run.array(name, "line"), 100 * run.array(name, "line_spectrum"), "o-", color=style.THRUST, markersize=3, label="target")
+                axes[1].loglog(
+                    run.array(name, "line"),
+                    100 * run.array(name, "line_spectrum"),
+                    "o-",
+                    color=style.THRUST,
+                    markersize=3,
+                    label="target",
+                )
                 axes[1].legend(loc="lower left")
-        found.append((style.save(fig, folder, f"{name}-spectra"), "Response spectra of the set" + ("; root mean square Fourier amplitude (the sum of few lines has peaks at them)." if columns == 2 else ".")))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-spectra"),
+                "Response spectra of the set"
+                + (
+                    "; root mean square Fourier amplitude (the sum of few lines has peaks at them)."
+                    if columns == 2
+                    else "."
+                ),
+            )
+        )
     with style.figure(5.0, 3.6) as (fig, (ax,)):
-        ax.plot(run.array(name, "impulse_period"), run.array(name, "impulse_amplitude"), ".", color=style.THRUST, markersize=4)
+        ax.plot(
+            run.array(name, "impulse_period"),
+            run.array(name, "impulse_amplitude"),
+            ".",
+            color=style.THRUST,
+            markersize=4,
+        )
         ax.set_xlabel("period of the primary impulse [s]")
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.set_ylim(bottom=0.0)
-        found.append((style.save(fig, folder, f"{name}-impulses"), "Primary impulses: the single sine that fits each motion best."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-impulses"),
+                "Primary impulses: the single sine that fits each motion best.",
+            )
+        )
     return found
 
 
@@ -129,8 +170,21 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             ax.loglog(f, factor * run.array(name, "stroke_limit"), color=style.EDGE, label="stroke")
             ax.loglog(f, factor * run.array(name, "flow_limit"), color=style.HINGE, label="flow")
             for k, mass in enumerate(run.array(name, "mass")):
-                ax.loglog(f, factor * run.array(name, "force_limit")[k], "--" if k else "-", color=style.THRUST, label=f"force, {mass:.4g} kg")
-            ax.fill_between(f, factor * run.array(name, "capacity").min(axis=0), facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.5, label="can be played")
+                ax.loglog(
+                    f,
+                    factor * run.array(name, "force_limit")[k],
+                    "--" if k else "-",
+                    color=style.THRUST,
+                    label=f"force, {mass:.4g} kg",
+                )
+            ax.fill_between(
+                f,
+                factor * run.array(name, "capacity").min(axis=0),
+                facecolor=style.STONE,
+                edgecolor=style.EDGE,
+                linewidth=0.5,
+                label="can be played",
+            )
             ax.set_xlabel("frequency [Hz]")
             ax.set_xlim(f[0], f[-1])
         top = 300 * arrays["stroke_limit"].data[0]
@@ -139,18 +193,33 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         dis.set_ylabel("displacement amplitude [cm]")
         acc.set_ylabel("acceleration amplitude [g]")
         dis.legend(loc="lower left")
-        found.append((style.save(fig, folder, f"{name}-capacity"), "Capacity of the table for harmonic motion, as displacement and as acceleration."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-capacity"),
+                "Capacity of the table for harmonic motion, as displacement and as acceleration.",
+            )
+        )
     if "drive_time" in arrays:
         r = run[name]
         t = run.array(name, "drive_time")
         with style.figure(8.0, 5.0, rows=3, sharex=True) as (fig, (dis, vel, acc)):
             dis.plot(t, 100 * run.array(name, "drive_displacement"), color=style.HINGE)
             for sign in (1, -1):
-                dis.axhline(100 * sign * arrays["stroke_limit"].data[0], color=style.EDGE, linestyle="--", linewidth=0.8)
+                dis.axhline(
+                    100 * sign * arrays["stroke_limit"].data[0], color=style.EDGE, linestyle="--", linewidth=0.8
+                )
                 vel.axhline(100 * sign * r["max_velocity_m_s"], color=style.EDGE, linestyle="--", linewidth=0.8)
             vel.plot(t, 100 * run.array(name, "drive_velocity"), color=style.HINGE)
-            acc.plot(run.array(name, "motion_time"), run.array(name, "motion_acceleration") / GRAVITY, color=style.EDGE, linewidth=0.6, label="asked for")
-            acc.plot(t, run.array(name, "drive_acceleration") / GRAVITY, color=style.THRUST, linewidth=0.6, label="played")
+            acc.plot(
+                run.array(name, "motion_time"),
+                run.array(name, "motion_acceleration") / GRAVITY,
+                color=style.EDGE,
+                linewidth=0.6,
+                label="asked for",
+            )
+            acc.plot(
+                t, run.array(name, "drive_acceleration") / GRAVITY, color=style.THRUST, linewidth=0.6, label="played"
+            )
             acc.legend(loc="upper right", ncols=2)
             dis.set_ylabel("displacement\n[cm]")
             vel.set_ylabel("velocity\n[cm/s]")
@@ -158,5 +227,10 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             acc.set_xlabel("time [s]")
             moving = np.flatnonzero(np.abs(run.array(name, "drive_displacement")) > 2e-3 * r["played_displacement_m"])
             acc.set_xlim(t[moving[0]] - 0.5, t[moving[-1]] + 0.5)
-            found.append((style.save(fig, folder, f"{name}-drive"), f"Drive of the table, time scaled by {r['time_scale']:.3f} and acceleration by {r['amplitude_factor']:.3f}; dashed: its limits."))
+            found.append(
+                (
+                    style.save(fig, folder, f"{name}-drive"),
+                    f"Drive of the table, time scaled by {r['time_scale']:.3f} and acceleration by {r['amplitude_factor']:.3f}; dashed: its limits.",
+                )
+            )
     return found

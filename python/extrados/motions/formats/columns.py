@@ -23,7 +23,9 @@ def read(text: Lines) -> list[Record]:
     said = " \n".join(header)
     unit = unit_in(said)
     steps = re.search(
-        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d*\.?\d+)\s*s", said, re.I
+        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d*\.?\d+)\s*s",
+        said,
+        re.I,
     )
     if len(widths) == 1 and (width := widths.pop()) > 1:
         table = values.reshape(-1, width)
@@ -33,7 +35,13 @@ def read(text: Lines) -> list[Record]:
             step = _step(text, rows, time)
             names = _names(header, width)
             return [
-                Record(text.path.stem, table[:, k].copy(), step, unit_in(names[k]) or unit, component=names[k] if width > 2 else "")
+                Record(
+                    text.path.stem,
+                    table[:, k].copy(),
+                    step,
+                    unit_in(names[k]) or unit,
+                    component=names[k] if width > 2 else "",
+                )
                 for k in range(1, width)
             ]
     elif any(len(row) != len(rows[0][1]) for _, row in rows[:-1]):
@@ -62,7 +70,9 @@ def _split(text: Lines) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 def _wordy(tokens: list[str]) -> bool:
     """True for a header line that begins with a number, such as '1559 points at equal spacing'."""
-    return any(re.fullmatch(r"[A-Za-z]{3,}.*", token) and token.lower() not in ("nan", "inf", "infinity") for token in tokens)
+    return any(
+        re.fullmatch(r"[A-Za-z]{3,}.*", token) and token.lower() not in ("nan", "inf", "infinity") for token in tokens
+    )
 
 
 def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:

@@ -10,7 +10,8 @@ import re
 from extrados.motions.formats.record import Lines, Record, fortran_columns, unit_in
 
 _BLOCK = re.compile(
-    r"\s*(\d+)\s+points\s+of\s+(?:\w+[\s-]+)*?(accel|veloc|displ)\w*\s+data\s+equally\s+spaced\s+at\s+([\d.]+)\s*sec", re.I
+    r"\s*(\d+)\s+points\s+of\s+(?:\w+[\s-]+)*?(accel|veloc|displ)\w*\s+data\s+equally\s+spaced\s+at\s+([\d.]+)\s*sec",
+    re.I,
 )
 _TITLE = re.compile(r"(?:un)?corrected accelerogram", re.I)
 _QUANTITY = {"accel": "acceleration", "veloc": "velocity", "displ": "displacement"}
@@ -42,7 +43,8 @@ def read(text: Lines) -> list[Record]:
         at = end
     if not records:
         raise text.error(
-            len(text) - 1, "no line '... points of accel data equally spaced at ... sec': the file is cut off or of another kind"
+            len(text) - 1,
+            "no line '... points of accel data equally spaced at ... sec': the file is cut off or of another kind",
         )
     return records
 

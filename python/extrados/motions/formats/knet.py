@@ -19,7 +19,9 @@ def read(text: Lines) -> list[Record]:
 
     def value(key: str) -> tuple[int, str]:
         if key not in keys:
-            raise text.error(HEADER - 1, f"'{key}' is missing in the first {HEADER} lines: the file is cut off or of another kind")
+            raise text.error(
+                HEADER - 1, f"'{key}' is missing in the first {HEADER} lines: the file is cut off or of another kind"
+            )
         return keys[key]
 
     at, said = value("Sampling Freq(Hz)")

@@ -39,7 +39,9 @@ def read_record(path: Path, channel: str | int | None = None) -> Record:
             raise RecordError(f"{path}: {len(found)} channels are called '{channel}'; there are {_names(wanted)}")
         return found[0]
     if len(wanted) > 1:
-        raise RecordError(f"{path}: holds {len(wanted)} channels; name one with channel = 1 to {len(wanted)}: {_names(wanted)}")
+        raise RecordError(
+            f"{path}: holds {len(wanted)} channels; name one with channel = 1 to {len(wanted)}: {_names(wanted)}"
+        )
     return wanted[0]
 
 

@@ -114,8 +114,12 @@ class Lines:
             row = [line[k : k + width] for k in range(0, min(len(line), width * columns), width)]
             row = row[: count - have]
             if len(row) < min(columns, count - have):
-                raise self.cut(have + len(row), count) if at >= len(self.lines) - 1 else self.error(
-                    at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters"
+                raise (
+                    self.cut(have + len(row), count)
+                    if at >= len(self.lines) - 1
+                    else self.error(
+                        at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters"
+                    )
                 )
             if len(row[-1]) < width and at == len(self.lines) - 1 and have + len(row) == count and len(line) % width:
                 raise self.error(at, "the last value is cut off")
@@ -132,11 +136,15 @@ class Lines:
             return values, []
         if len(values) - count > max(8, count // 100):
             raise self.error(at, f"the header says {count} values but {len(values)} follow")
-        return values[:count], [f"{self.path.name}: {len(values)} values where the header says {count}; the rest is left out"]
+        return values[:count], [
+            f"{self.path.name}: {len(values)} values where the header says {count}; the rest is left out"
+        ]
 
 
 def read_lines(path: Path) -> Lines:
     """The lines of a record; refuses what is no plain text file of a sensible size, before reading it."""
+    if "\0" in str(path):
+        raise RecordError(f"{str(path)!r}: a file name cannot hold a zero byte")
     try:
         if not path.is_file():
             raise RecordError(f"{path}: " + ("is not a plain file" if path.exists() else "no such file"))
@@ -147,8 +155,6 @@ def read_lines(path: Path) -> Lines:
             raw = file.read(LARGEST + 1)
     except OSError as error:
         raise RecordError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except ValueError as error:
-        raise RecordError(f"{path!s}: is not a file name: {error}") from None
     if not raw.strip():
         raise RecordError(f"{path}: is empty; expected an accelerogram")
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
