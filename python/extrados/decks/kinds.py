@@ -1,9 +1,9 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, motion_analyses, motions, structures
+from extrados.decks import analyses, block, motion_analyses, motions, structures
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch,)
+STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
