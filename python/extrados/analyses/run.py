@@ -29,6 +29,8 @@ DRIVERS = {
     "rocking-spectrum": "extrados.analyses.rocking_spectrum",
     "harmonic-map": "extrados.analyses.harmonic_map",
     "code-checks": "extrados.analyses.code_checks",
+    "motion": "extrados.analyses.motion_study",
+    "shake-table": "extrados.analyses.shake_table",
 }
 
 
