@@ -83,10 +83,42 @@ def least_cap(model: BlockModel, ratio: np.ndarray | float) -> np.ndarray:
     return (1.0 - c_e) / (1.0 + c_e) * v / g / GRAVITY
 
 
+def half_cycles_to_collapse(model: BlockModel, ratio: float, cap: float, most: int = 1000) -> int:
+    """Half cycles (each with an impact) of the optimal motion until the block overturns, by energies alone; 0: never.
+
+    cap [g]; nonlinear form, equal toes.
+    """
+    b = model.block
+    alpha, c_e = float(b.alpha[0]), float(model.restitution[0]) ** 2
+    push = np.arctan(cap)
+    # V +- a G over m R sqrt(g^2 + a^2): cosines about the tilted vertical
+    barrier = 1.0 - np.cos(alpha - push)
+    q = ratio * alpha
+    for n in range(1, most + 1):
+        energy = c_e * (np.cos(alpha - q + push) - np.cos(alpha + push))
+        if energy >= barrier:
+            return n
+        new = alpha - push - np.arccos(energy + np.cos(alpha - push))
+        if new <= q:
+            return 0
+        q = new
+    return 0
+
+
+def cap_for_collapse_within(model: BlockModel, ratio: float, half_cycles: int) -> float:
+    """Least cap [g] that overturns the block within so many half cycles."""
+    low, high = 0.0, float(model.uplift[0]) * 1.5
+    while high - low > 1e-9:
+        middle = 0.5 * (low + high)
+        n = half_cycles_to_collapse(model, ratio, middle, half_cycles)
+        low, high = (low, middle) if n else (middle, high)
+    return high
+
+
 def run(context: Context, options: Resonance) -> Result:
     """Fig. 6-2 for a block or an arch; Figs 6-3 and 6-4 for a block."""
     model = rocking_model(context)
-    cap = options.cap or 0.6 * model.uplift * GRAVITY
+    cap = options.cap or _default_cap(context, options, model)
     optimum = optimal_motion(model, cap, options.initial_rotation_ratio, options.half_cycles)
     r = optimum.response
     result = Result("resonance")
@@ -117,19 +149,25 @@ def run(context: Context, options: Resonance) -> Result:
     result.tables["resonance"] = TableData(
         {"switch": optimum.switches, "peak_rotation": np.abs(optimum.peaks[1:])}, {"switch": "s", "peak_rotation": "rad"}
     )
-    growth = "spacing grows" if len(spacing) > 1 and spacing[-1] > spacing[0] else "spacing does not grow"
     fate = (
         f"overturned after {len(optimum.switches)} half cycles, {r.stop_time:.2f} s" if collapse
         else f"not overturned within {len(optimum.switches)} half cycles (greatest rotation {abs(optimum.peaks).max() / model.critical[0]:.2f} of the critical one)"
     )  # fmt: skip
     result.answer = (
         f"Pushed by +-{cap / GRAVITY:.3f} g ({cap / GRAVITY / model.uplift:.2f} of uplift) always against its motion, from "
-        f"{options.initial_rotation_ratio:g} of the critical rotation, the {model.what} is {fate}; the {growth}"
-        + (f" from {spacing[0]:.2f} to {spacing[-1]:.2f} s." if len(spacing) > 1 else ".")
+        f"{options.initial_rotation_ratio:g} of the critical rotation, the {model.what} is {fate}"
+        + (f"; between the changes of sign lie {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last." if len(spacing) > 1 else ".")
     )
     if isinstance(context.structure, Block):
         _block_figures(context, options, model, result)
     return result
+
+
+def _default_cap(context: Context, options: Resonance, model: RockingModel) -> float:
+    """A little above the least cap, so that the growth is seen; half of uplift where that is not known."""
+    if not isinstance(context.structure, Block):
+        return 0.5 * model.uplift * GRAVITY
+    return 1.1 * float(least_cap(block_model(context.structure, context.deck.structure), options.initial_rotation_ratio)) * GRAVITY
 
 
 def _block_figures(context: Context, options: Resonance, model: RockingModel, result: Result) -> None:
@@ -140,6 +178,10 @@ def _block_figures(context: Context, options: Resonance, model: RockingModel, re
         / (np.arctan(aspect) if linear else aspect) for aspect in ASPECTS
     ])  # fmt: skip
     least = float(least_cap(own, options.initial_rotation_ratio)) if own.block.toe_right == own.block.toe_left else None
+    if least is not None and not linear:
+        result.results["cap_ratio_for_collapse_within"] = {
+            str(n): cap_for_collapse_within(own, options.initial_rotation_ratio, n) / model.uplift for n in (1, 2, 3, 5, 10)
+        }
     result.results |= {
         "least_cap_g": least,
         "least_cap_ratio": None if least is None else least / model.uplift,
