@@ -13,7 +13,7 @@ from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
 from extrados.decks.statistics import CodeChecks
 from extrados.motions.motion import GRAVITY
-from extrados.results.model import Result, TableData
+from extrados.results.model import Array, Result, TableData
 
 
 @dataclass(frozen=True)
@@ -183,6 +183,10 @@ def run(context: Context, options: CodeChecks) -> Result:
         "unit": [x.unit for x in lines], "verdict": [x.verdict for x in lines], "source": [x.source for x in lines],
         "note": [x.note for x in lines],
     })  # fmt: skip
+    result.arrays = {
+        "capacity": Array(np.array([x.capacity for x in lines]), ("rule",), "", "each in its unit, see code_checks.csv"),
+        "demand": Array(np.array([np.nan if x.demand is None else x.demand for x in lines]), ("rule",)),
+    }
     said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]
     result.answer = "; ".join(said) + ". " if said else "Capacities without a demand, see the table. "
     if dynamic:
