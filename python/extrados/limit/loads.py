@@ -32,14 +32,20 @@ def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, flo
     return load
 
 
-def tilt_loads(assembly: Assembly, fill: np.ndarray | None = None, fill_sways: bool = True) -> Loads:
+def tilt_loads(assembly: Assembly, fill_sways: bool = True) -> Loads:
     """Weight at rest; the live load is weight turned to +x, so that gamma is an acceleration in g.
 
-    fill (nb) [kg] rests on the blocks at their centroids; where fill_sways it is accelerated with them.
+    The fill of the assembly rests on its blocks; where fill_sways it is accelerated with them.
     """
-    carried = assembly.mass if fill is None else assembly.mass + fill
-    swaying = carried if fill_sways else assembly.mass
     x, y = assembly.centroid.T
-    down, side = carried * GRAVITY, swaying * GRAVITY
-    nothing = np.zeros_like(down)
-    return Loads(np.column_stack([nothing, -down, -x * down]), np.column_stack([side, nothing, -y * side]))
+    weight = assembly.mass * GRAVITY
+    nothing = np.zeros_like(weight)
+    dead = np.column_stack([nothing, -weight, -x * weight])
+    live = np.column_stack([weight, nothing, -y * weight])
+    if assembly.fill is not None:
+        mass, x, y = assembly.fill.T
+        weight = mass * GRAVITY
+        dead = dead + np.column_stack([nothing, -weight, -x * weight])
+        if fill_sways:
+            live = live + np.column_stack([weight, nothing, -y * weight])
+    return Loads(dead, live)

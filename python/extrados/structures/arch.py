@@ -95,4 +95,5 @@ def make_arch(
         thickness=thickness,
         embrace=beta,
         inward=np.full(n + 1, -1),
+        chains={"arch": list(range(n + 1))},
     )

@@ -15,6 +15,11 @@ class Assembly:
     outlines: vertices of each block, counter-clockwise [m]; mass (nb) [kg]; centroid (nb, 2) [m];
     inertia (nb) about the centroids [kg m^2]. Joint j runs from p[j] to q[j] [m] (for arches p is the
     intrados end, q the extrados end) between blocks a[j] and b[j], GROUND for the ground.
+    What drivers and pictures know of its parts: `chains`, name -> joints of an arch from springing to
+    springing; `buttresses`, blocks that stand on the ground at the sides, from left to right, and may
+    crack when tilted; `fill` (nb, 3), mass [kg] that rests on each block and its place x, y [m];
+    `measures`, derived lengths worth telling, by names that end in their unit.
+
     `inward` (nj) is +1 where the left side of p -> q lies in block a, -1 where the right side does; None
     lets the centroids decide, which is right for every block that is convex near its joints.
     """
@@ -31,6 +36,10 @@ class Assembly:
     block_names: list[str]
     joint_names: list[str]
     inward: np.ndarray | None = field(default=None, kw_only=True)
+    chains: dict[str, list[int]] = field(default_factory=dict, kw_only=True)
+    buttresses: list[int] = field(default_factory=list, kw_only=True)
+    fill: np.ndarray | None = field(default=None, kw_only=True)
+    measures: dict[str, float] = field(default_factory=dict, kw_only=True)
 
     @cached_property
     def length(self) -> np.ndarray:

@@ -9,7 +9,7 @@ import numpy as np
 from extrados.structures.assembly import Assembly
 from extrados.structures.contacts import find_contacts
 from extrados.structures.polygons import crosses_itself, properties, signed_area
-from extrados.structures.section import BadGeometry, Section
+from extrados.structures.builder import BadGeometry
 
 LARGEST_FILE = 20_000_000  # bytes
 MOST_BLOCKS = 20_000
@@ -32,7 +32,7 @@ def make_blocks(
     density: float = 2000.0,
     depth: float = 1.0,
     tolerance: float = 1e-4,
-) -> Section:
+) -> Assembly:
     """Blocks whose shared edges are the joints. ground: segments (k, 4) [m], or None for the lowest level."""
     if not polygons:
         raise BadGeometry("there are no blocks")
@@ -68,7 +68,7 @@ def make_blocks(
         inward=np.ones(len(contacts.a), dtype=int),
     )
     _refuse_loose(assembly, contacts.near)
-    return Section(assembly)
+    return assembly
 
 
 def _outline(polygon: Polygon, tolerance: float) -> np.ndarray:

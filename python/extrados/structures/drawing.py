@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from extrados.structures.blocks import LARGEST_FILE, MOST_BLOCKS, UNITS, Polygon
-from extrados.structures.section import BadGeometry
+from extrados.structures.builder import BadGeometry
 
 GROUND_LAYER = "GROUND"
 # DXF $INSUNITS -> our unit

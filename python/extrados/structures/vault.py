@@ -1,11 +1,11 @@
 """Barrel vaults on buttresses and churches of three aisles (thesis 3.4 and 3.5)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from extrados.structures.assembly import GROUND
-from extrados.structures.section import BadGeometry, Builder, Section, fill_loads, springing_path
+from extrados.structures.assembly import GROUND, Assembly
+from extrados.structures.builder import BadGeometry, Builder, fill_loads, springing_path
 
 
 def make_vault(
@@ -20,7 +20,7 @@ def make_vault(
     height_to: str = "extrados",
     density: float = 2000.0,
     depth: float = 1.0,
-) -> Section:
+) -> Assembly:
     """Barrel vault between two monolithic buttresses that are mirror images; the vault's centre is the origin.
 
     face: x of the inner face; buttress_width is measured outward from the "face" or from the "extrados" of
@@ -50,10 +50,9 @@ def make_vault(
     right_block = builder.block("right buttress", right)
     builder.joint("left base", right[0] * mirror, right[1] * mirror, left_block, GROUND, -1)
     builder.joint("right base", right[0], right[1], right_block, GROUND, 1)
-    return Section(
-        builder.assembly(),
-        {"vault": joints},
-        [left_block, right_block],
+    return builder.assembly(
+        chains={"vault": joints},
+        buttresses=[left_block, right_block],
         measures={"clear_span_m": 2.0 * face, "base_width_m": back - face, "height_above_ground_m": top - base},
     )
 
@@ -104,7 +103,7 @@ def make_church(
     fill_density: float = 1600.0,
     density: float = 2000.0,
     depth: float = 1.0,
-) -> Section:
+) -> Assembly:
     """A nave on two piers, with side aisles where they are given; ground at y = 0, nave centre at x = 0.
 
     The inner face of a pier is tangent to the nave's intrados, as are the faces about an aisle to its own.
@@ -133,9 +132,14 @@ def make_church(
         outline = np.concatenate([[[face, 0.0], [back, 0.0]], outside, nave_path[::-1]])
         builder.fill_in(pier, outline)
         builder.joint(f"{word} pier base", outline[0], outline[1], pier, GROUND, side)
-    assembly = builder.assembly()
+    assembly = builder.assembly(chains=chains, buttresses=sorted(buttresses, key=builder.place_of))
+    ends = np.concatenate([assembly.p, assembly.q])[:, 0]
+    measures = {"overall_width_m": float(np.ptp(ends)), "nave_span_m": 2.0 * inner}
+    for word, aisle in (("left", left), ("right", right)):
+        if aisle is not None:
+            measures[f"{word}_aisle_span_m"] = aisle.span
     fill = None if fill_level is None else fill_loads(assembly, chains, fill_level, fill_density)
-    return Section(assembly, chains, buttresses, fill, {"overall_width_m": float(np.ptp(assembly.p[:, 0].tolist() + assembly.q[:, 0].tolist()))})
+    return replace(assembly, fill=fill, measures=measures)
 
 
 def _aisle(
@@ -181,7 +185,7 @@ def _flyer(
     sag = np.sqrt(flyer.radius**2 - 0.25 * length**2)
     down = np.array([chord[1], -chord[0]]) / length  # to the lower side of the chord
     centre = 0.5 * (head + foot) + sag * down
-    if centre[0] < -1e-9 * length or aisle.span - centre[0] > 0.97 * flyer.radius:
+    if centre[0] > 1e-9 * length or aisle.span - centre[0] > 0.97 * flyer.radius:
         raise BadGeometry(f"{word} flyer: with a radius of {flyer.radius:g} m its crown does not lie at or before the pier")
     outer = flyer.radius + flyer.thickness
 

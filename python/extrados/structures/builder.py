@@ -1,6 +1,6 @@
-"""A section of a building as blocks and joints, with what pictures and drivers need to know of its parts."""
+"""Put a section of a building together from blocks, joints, rings of voussoirs and piers."""
 
-from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -13,22 +13,6 @@ ARC = 12  # points that draw a quarter or less of a circle in the outline of a p
 
 class BadGeometry(ValueError):
     """The measures asked for cannot be built; the text names the part and the bound."""
-
-
-@dataclass(frozen=True)
-class Section:
-    """An assembly and its parts.
-
-    chains: name -> joints of an arch from springing to springing; buttresses: blocks that stand on the
-    ground at the sides, left to right, and may crack when tilted; fill: mass [kg] and its place (x, y) [m]
-    on each block (nb, 3), or None; measures: further derived lengths [m] worth telling.
-    """
-
-    assembly: Assembly
-    chains: dict[str, list[int]] = field(default_factory=dict)
-    buttresses: list[int] = field(default_factory=list)
-    fill: np.ndarray | None = None
-    measures: dict[str, float] = field(default_factory=dict)
 
 
 class Builder:
@@ -78,7 +62,12 @@ class Builder:
         outline = outline if signed_area(outline) > 0.0 else outline[::-1]
         self._blocks[index] = (self._blocks[index][0], outline, *properties(outline))
 
-    def assembly(self) -> Assembly:
+    def place_of(self, block: int) -> float:
+        """x of the middle of a block [m]."""
+        return float(self._blocks[block][1][:, 0].mean())
+
+    def assembly(self, **parts: Any) -> Assembly:
+        """All blocks and joints; `parts` are the descriptive fields of the assembly."""
         names, outlines, areas, centroids, polars = zip(*self._blocks, strict=True)
         joint_names, p, q, a, b, inward = zip(*self._joints, strict=True)
         mass = self.density * self.depth
@@ -95,6 +84,7 @@ class Builder:
             block_names=list(names),
             joint_names=list(joint_names),
             inward=np.array(inward),
+            **parts,
         )
 
 
