@@ -11,7 +11,13 @@ from typing import Any
 __all__ = ["load", "run"]
 
 
-def run(deck: str | Path | dict[str, Any], out: str | Path | None = None, *, threads: int | None = None, figures: bool = False):
+def run(
+    deck: str | Path | dict[str, Any],
+    out: str | Path | None = None,
+    *,
+    threads: int | None = None,
+    figures: bool = False,
+):
     """Run a deck (a file, or a dictionary of the same shape) and return its stored results.
 
     DeckError lists what is wrong with the deck. Without `out`, a deck file writes to results/<deck name> and a

@@ -1,5 +1,6 @@
 """The arch of a deck as limit analysis and rocking see it."""
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -46,7 +47,7 @@ def four_hinge(arch: Arch, mechanism: Mechanism) -> core_arch.FourHinge:
     joint = np.array([j for j, _ in hinges])
     points = np.array([(arch.intrados if face == "intrados" else arch.extrados)[j] for j, face in hinges])
     mass, centroid, inertia = [], [], []
-    for first, last in zip(joint[:-1], joint[1:], strict=True):
+    for first, last in itertools.pairwise(joint):
         part = slice(first, last)
         m = arch.mass[part]
         c = m @ arch.centroid[part] / m.sum()
@@ -102,7 +103,9 @@ class ArchModel:
         """c_v by the momentum balance of the thesis (uncapped) and by the workless-impulse projection."""
         a, m = self.arch, self.four_hinge
         opposite = np.where(
-            np.isclose(m.hinge, a.intrados[m.joint]).all(axis=1)[:, None], a.extrados[m.joint], a.intrados[m.joint]
+            np.isclose(m.hinge, a.intrados[m.joint]).all(axis=1)[:, None],
+            a.extrados[m.joint],
+            a.intrados[m.joint],
         )
         return core_arch.restitution(a.mass, a.centroid, a.inertia, m.joint, m.hinge, opposite)
 

@@ -78,7 +78,9 @@ def run(context: Context, options: Assessment) -> Result:
         "impulse_start": Array(np.array([i.start for i in impulses]), ("impulse",), "s"),
         "period": Array(periods, ("period",), "s"),
         "failing_amplitude": Array(fit.amplitude(periods, arch.radius), ("period",), "g", "Eq. 5.8"),
-        "failing_amplitude_own": Array(own.amplitude(periods, arch.radius), ("period",), "g", "Eq. 5.8 fitted to this arch"),
+        "failing_amplitude_own": Array(
+            own.amplitude(periods, arch.radius), ("period",), "g", "Eq. 5.8 fitted to this arch"
+        ),
         "computed_period": Array(own_periods * np.sqrt(arch.radius), ("computed",), "s"),
         "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of this arch, computed"),
     }
@@ -98,12 +100,21 @@ def _answer(r: dict, worst: dict | None) -> str:
         f"The primary impulse of the motion is {abs(first['amplitude_g']):.3f} g over {first['period_s']:.3f} s, "
         f"starting at {first['start_s']:.2f} s. "
     )
-    which = "it" if worst["rank"] == 1 else f"impulse {worst['rank']} ({abs(worst['amplitude_g']):.3f} g, {worst['period_s']:.3f} s)"
+    which = (
+        "it"
+        if worst["rank"] == 1
+        else f"impulse {worst['rank']} ({abs(worst['amplitude_g']):.3f} g, {worst['period_s']:.3f} s)"
+    )
     if worst["margin"] is None:
         text += "All impulses are too short to bring the arch down. "
     elif r["verdict"] == "fails":
-        text += f"The arch is predicted to fail: {which} reaches {1 / worst['margin']:.2f} times the failing amplitude. "
+        text += (
+            f"The arch is predicted to fail: {which} reaches {1 / worst['margin']:.2f} times the failing amplitude. "
+        )
     else:
         text += f"The arch is predicted to stand: {which} would have to be {worst['margin']:.2f} times stronger. "
     static = "also predicts failure" if r["static_verdict"] == "fails" else "predicts that it stands"
-    return text + f"A static check ({r['peak_ground_acceleration_g']:.3f} g against {r['uplift_acceleration_g']:.3f} g) {static}."
+    return (
+        text
+        + f"A static check ({r['peak_ground_acceleration_g']:.3f} g against {r['uplift_acceleration_g']:.3f} g) {static}."
+    )

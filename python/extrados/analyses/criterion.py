@@ -66,7 +66,13 @@ def fit(periods: np.ndarray, amplitudes: np.ndarray, gamma: float) -> Fit:
         answer = least_squares(misfit, start, bounds=([-np.inf, -5.0, 0.0], [np.inf, -0.05, t[0] * (1 - 1e-6)]))
         if best is None or answer.cost < best.cost:
             best = answer
-    return Fit(float(np.exp(best.x[0])), float(best.x[1]), float(best.x[2]), gamma, float(np.sqrt(2 * best.cost / len(t))))
+    return Fit(
+        float(np.exp(best.x[0])),
+        float(best.x[1]),
+        float(best.x[2]),
+        gamma,
+        float(np.sqrt(2 * best.cost / len(t))),
+    )
 
 
 def fit_arch(model: ArchModel, threads: int = 1, count: int = 80) -> tuple[Fit, np.ndarray, np.ndarray]:

@@ -12,7 +12,7 @@ import numpy as np
 from extrados.analyses.arch_model import ArchModel
 from extrados.analyses.run import Context
 from extrados.core import rocking as core_rocking
-from extrados.core.errors import Cancelled, status_code
+from extrados.core.errors import Cancelled, CoreError, status_code
 from extrados.core.rocking import Body
 from extrados.decks.analyses import FailureDomain
 from extrados.motions import pulses
@@ -66,7 +66,7 @@ class Mapper:
             if e.interrupted:
                 raise Cancelled(status_code("cancelled"), "failure domain interrupted")
             if e.failed:
-                raise core_rocking.CoreError(0, f"failure domain: {next(iter(e.failed.values()))}")
+                raise CoreError(0, f"failure domain: {next(iter(e.failed.values()))}")
             collapse = e.outcome == 2
             out[part] = np.where(collapse, np.where(e.half_cycles == 1, MODE_II, MODE_I), np.minimum(e.outcome, 1))
             tick(len(index[part]))
@@ -84,35 +84,70 @@ def failure_curves(
     nd, na = len(durations), len(amplitudes)
     grid = np.repeat(np.arange(nd), na)
     codes = mapper.codes(grid, np.tile(amplitudes, nd), tick).reshape(nd, na)
-    curves = []
-    for failing in (codes >= MODE_I, codes == MODE_II):
-        first = np.where(failing.any(axis=1), failing.argmax(axis=1), -1)
-        wanted = MODE_I if not curves else MODE_II
-        curves.append(_refine(mapper, amplitudes, first, wanted, accuracy, tick))
+    curves = [
+        _refine(
+            lambda i, a: mapper.codes(i, a, tick),
+            codes,
+            np.broadcast_to(amplitudes, codes.shape),
+            wanted,
+            accuracy,
+        )
+        for wanted in (MODE_I, MODE_II)
+    ]
     return Curves(durations, amplitudes, codes, *curves)
 
 
+def shortest_durations(
+    body: Body,
+    pulse: str,
+    amplitudes: np.ndarray,
+    durations: np.ndarray,
+    settle: float,
+    accuracy: float,
+    threads: int,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Shortest failing duration [s] at each amplitude [m/s^2] in Mode I (or II) and in Mode II; NaN: none."""
+
+    def codes(index: np.ndarray, length: np.ndarray) -> np.ndarray:
+        mapper = Mapper(body, pulse, length.tolist(), settle, threads)
+        return mapper.codes(np.arange(len(length)), amplitudes[index], lambda n: None)
+
+    na, nd = len(amplitudes), len(durations)
+    grid = np.broadcast_to(durations, (na, nd))
+    scanned = codes(np.repeat(np.arange(na), nd), grid.ravel()).reshape(na, nd)
+    return tuple(_refine(codes, scanned, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II))
+
+
 def _refine(
-    mapper: Mapper, amplitudes: np.ndarray, first: np.ndarray, wanted: int, accuracy: float, tick: Callable
+    codes_at: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    codes: np.ndarray,
+    values: np.ndarray,
+    wanted: int,
+    accuracy: float,
 ) -> np.ndarray:
-    """Lowest failing amplitude in the first failing cell of each duration: rescanned in 8 parts until accurate."""
+    """Lowest failing value of each row of a scan (codes, values ascending): its first failing cell is scanned
+    again in 8 parts until it is smaller than `accuracy`. `codes_at(rows, values)` runs more pulses."""
+
+    def fails(c: np.ndarray) -> np.ndarray:
+        return c >= MODE_I if wanted == MODE_I else c == MODE_II
+
+    failing = fails(codes)
+    first = np.where(failing.any(axis=1), failing.argmax(axis=1), -1)
     index = np.flatnonzero(first >= 0)
-    high = amplitudes[first[index]]
-    low = np.where(first[index] > 0, amplitudes[np.maximum(first[index] - 1, 0)], 0.0)
+    high = values[index, first[index]]
+    low = np.where(first[index] > 0, values[index, np.maximum(first[index] - 1, 0)], 0.0)
     parts = 8
     while len(index) and float((high - low).max()) > accuracy:
         steps = np.arange(1, parts) / parts
         trial = low[:, None] + (high - low)[:, None] * steps
-        codes = mapper.codes(np.repeat(index, parts - 1), trial.ravel(), tick).reshape(trial.shape)
-        failing = codes >= MODE_I if wanted == MODE_I else codes == MODE_II
-        hit = failing.any(axis=1)
-        k = failing.argmax(axis=1)
+        again = fails(codes_at(np.repeat(index, parts - 1), trial.ravel()).reshape(trial.shape))
+        hit = again.any(axis=1)
+        k = again.argmax(axis=1)
         rows = np.arange(len(index))
-        new_high = np.where(hit, trial[rows, k], high)
+        high = np.where(hit, trial[rows, k], high)
         before = np.where(k > 0, trial[rows, np.maximum(k - 1, 0)], low)
         low = np.where(hit, before, trial[:, -1])
-        high = new_high
-    out = np.full(len(first), np.nan)
+    out = np.full(len(codes), np.nan)
     out[index] = high
     return out
 
@@ -151,13 +186,29 @@ def run(context: Context, options: FailureDomain) -> Result:
     result.results = {
         "pulse": options.pulse,
         **{
-            name: {"durations_s": durations, "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve]}
+            name: {
+                "durations_s": durations,
+                "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve],
+            }
             for name, curve in names.items()
         },
         "uplift_acceleration_g": gamma,
         "restitution": model.restitution,
-        "safe_pockets": int((((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()),
+        "safe_pockets": int(
+            (((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()
+        ),
     }
+    if options.at_amplitudes:
+        at = np.array(options.at_amplitudes)
+        found = shortest_durations(
+            model.body, options.pulse, at, np.linspace(durations.min(), durations.max(), 200), settling_time(model),
+            options.accuracy, context.threads,
+        )  # fmt: skip
+        result.results["at_amplitudes"] = {
+            "amplitudes_g": at / GRAVITY,
+            "mode_I_durations_s": [None if np.isnan(t) else t for t in found[0]],
+            "mode_II_durations_s": [None if np.isnan(t) else t for t in found[1]],
+        }
     result.tables["failure_domain"] = TableData(
         {"duration": durations, **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()}},
         {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g"},
@@ -167,7 +218,12 @@ def run(context: Context, options: FailureDomain) -> Result:
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in any half cycle"),
-        "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"),
+        "mode_II": Array(
+            curves.mode_ii / GRAVITY,
+            ("duration",),
+            "g",
+            "lowest amplitude of collapse in the first half cycle",
+        ),
     }
     governing = np.nanmin(curves.mode_i) / GRAVITY if np.isfinite(curves.mode_i).any() else None
     shape = "step pulses (a_p for t_p, then -a_p/2 for 2 t_p)" if options.pulse == "step" else "single sine pulses"

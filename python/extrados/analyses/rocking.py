@@ -203,7 +203,9 @@ def _snapshots(
     placed[left] = placed[left, ::-1] * np.array([-1.0, 1.0, -1.0])
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
-        "snapshot_pose": Array(placed, ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the voussoirs"),
+        "snapshot_pose": Array(
+            placed, ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation of the voussoirs"
+        ),
         "snapshot_thrust": Array(thrust.point[index], ("snapshot", "joint", "axis"), "m", "dynamic thrust line"),
     }
 

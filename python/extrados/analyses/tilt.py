@@ -16,9 +16,14 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
     return {
         "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first ends of the joints (intrados)"),
         "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second ends of the joints (extrados)"),
-        "outline": Array(np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"),
+        "outline": Array(
+            np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"
+        ),
         "outline_start": Array(
-            np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"
+            np.cumsum([0, *map(len, outlines)]),
+            ("block_edge",),
+            "",
+            "first vertex of each block, and the end",
         ),
         "centroid": Array(assembly.centroid, ("block", "axis"), "m", "centroids of the blocks"),
     }

@@ -2,7 +2,6 @@
 
 from typing import ClassVar, Literal
 
-
 from extrados.decks.quantities import Acceleration, Time
 from extrados.decks.table import Analysis, key
 
@@ -14,7 +13,9 @@ class Tilt(Analysis):
 
     kind: Literal["tilt"]
     structures: ClassVar = ("arch",)
-    friction: float | None = key(None, "coefficient of friction of the joints; without it sliding is excluded", gt=0, le=10)
+    friction: float | None = key(
+        None, "coefficient of friction of the joints; without it sliding is excluded", gt=0, le=10
+    )
 
 
 class Rocking(Analysis):
@@ -34,11 +35,18 @@ class FailureDomain(Analysis):
 
     kind: Literal["failure-domain"]
     structures: ClassVar = ("arch",)
-    pulse: Literal["step", "sine"] = key("step", "step pulse of duration t_p, or one sine of period T_p", source="thesis 5.2.3")
-    durations: list[Time] | None = key(None, "t_p or T_p; default 40 values scaled to the arch", min_length=1, max_length=2000)
+    pulse: Literal["step", "sine"] = key(
+        "step", "step pulse of duration t_p, or one sine of period T_p", source="thesis 5.2.3"
+    )
+    durations: list[Time] | None = key(
+        None, "t_p or T_p; default 40 values scaled to the arch", min_length=1, max_length=2000
+    )
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * STANDARD_GRAVITY, "cap of the search", gt=0)
-    accuracy: float = key(1e-4, "accuracy of the curves, in g", gt=0, le=0.1)
+    accuracy: float = key(1e-4, "accuracy of the curves, in g (and of durations in s)", gt=0, le=0.1)
+    at_amplitudes: list[Acceleration] = key(
+        [], "also find the shortest failing durations at these amplitudes", max_length=200
+    )
 
 
 class Assessment(Analysis):

@@ -44,8 +44,13 @@ def _allow_units(schema: Any) -> None:
         for value in schema.values():
             _allow_units(value)
         if "unit" in schema and schema.get("type") == "number":
-            number = {k: schema.pop(k) for k in list(schema) if k not in ("unit", "description", "title", "default", "source")}
-            schema["anyOf"] = [number, {"type": "string", "pattern": r"^[+-]?[0-9.]+([eE][+-]?[0-9]+)? +\S.*$"}]
+            number = {
+                k: schema.pop(k) for k in list(schema) if k not in ("unit", "description", "title", "default", "source")
+            }
+            schema["anyOf"] = [
+                number,
+                {"type": "string", "pattern": r"^[+-]?[0-9.]+([eE][+-]?[0-9]+)? +\S.*$"},
+            ]
     elif isinstance(schema, list):
         for value in schema:
             _allow_units(value)
@@ -65,7 +70,12 @@ def _facts(about: dict[str, Any]) -> str:
     for branch in branches:
         if "enum" in branch:
             facts.append(" | ".join(f'"{c}"' for c in branch["enum"]))
-        for word, sign in (("exclusiveMinimum", ">"), ("minimum", ">="), ("exclusiveMaximum", "<"), ("maximum", "<=")):
+        for word, sign in (
+            ("exclusiveMinimum", ">"),
+            ("minimum", ">="),
+            ("exclusiveMaximum", "<"),
+            ("maximum", "<="),
+        ):
             if word in branch:
                 facts.append(f"{sign} {branch[word]:g}")
     if "default" in about and about["default"] is not None:
@@ -119,9 +129,7 @@ def starter(kind: str) -> str:
         motion = "step-pulse" if analysis.needs_motion else None
     elif kind in SECTIONS["structure"]:
         structure, motion = kind, None
-        analysis = next(
-            a for a in SECTIONS["analysis"].values() if a.structures is None or kind in a.structures
-        )
+        analysis = next(a for a in SECTIONS["analysis"].values() if a.structures is None or kind in a.structures)
     else:
         close = difflib.get_close_matches(kind, [*SECTIONS["analysis"], *SECTIONS["structure"]], n=1, cutoff=0.4)
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
@@ -170,11 +178,23 @@ def _toml(value: Any) -> str:
 
 def manual() -> str:
     """The reference manual of all deck keys, in Markdown."""
-    lines = ["# Deck reference", "", "Generated from the deck models (`extrados explain --manual`); do not edit.", ""]
+    lines = [
+        "# Deck reference",
+        "",
+        "Generated from the deck models (`extrados explain --manual`); do not edit.",
+        "",
+    ]
     for section, kinds in SECTIONS.items():
         lines += [f"## [{section}]", ""]
         for kind, model in kinds.items():
-            lines += [f'### kind = "{kind}"', "", _summary(model), "", "| key | meaning | type and default |", "|---|---|---|"]
+            lines += [
+                f'### kind = "{kind}"',
+                "",
+                _summary(model),
+                "",
+                "| key | meaning | type and default |",
+                "|---|---|---|",
+            ]
             for name, about in _properties(model).items():
                 if name == "kind":
                     continue

@@ -54,7 +54,11 @@ class Record(Motion):
     """A recorded ground motion: AT2 or plain columns; `extrados:el-centro-1940` is shipped."""
 
     kind: Literal["record"]
-    file: str = key(about="path inside the deck's folder, or `extrados:NAME` for a shipped record", min_length=1, max_length=1024)
+    file: str = key(
+        about="path inside the deck's folder, or `extrados:NAME` for a shipped record",
+        min_length=1,
+        max_length=1024,
+    )
     time_step: Time | None = key(None, "sampling step where the file has none", gt=0)
     unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal"] | None = key(None, "unit where the file has none")
     scale: float = key(1.0, "factor on the acceleration")

@@ -145,7 +145,15 @@ class _Checker:
                 found = [*found[:MOST_COMPLAINTS], f"{self.name}: and {more} more"]
             raise DeckError(found)
         return Deck(
-            data.get("title", ""), data.get("note", ""), structure, motion, analyses, self.name, folder, sha256, data
+            data.get("title", ""),
+            data.get("note", ""),
+            structure,
+            motion,
+            analyses,
+            self.name,
+            folder,
+            sha256,
+            data,
         )
 
     def section(self, section: str, table: Any, path: tuple) -> Any:
@@ -160,7 +168,10 @@ class _Checker:
             if kind is None:
                 self.complain(path, f"kind is missing: expected one of {_words(kinds)}")
             else:
-                self.complain((*path, "kind"), f"unknown kind {kind!r}{_nearest(str(kind), kinds)}; expected one of {_words(kinds)}")
+                self.complain(
+                    (*path, "kind"),
+                    f"unknown kind {kind!r}{_nearest(str(kind), kinds)}; expected one of {_words(kinds)}",
+                )
             return None
         model = kinds[kind]
         try:
@@ -194,7 +205,10 @@ class _Checker:
             self.complain(path, f"{kind} needs a [structure]{'' if wanted is None else ' of kind ' + _words(wanted)}")
         elif wanted and isinstance(structure, dict) and structure.get("kind") in SECTIONS["structure"] \
                 and structure["kind"] not in wanted:  # fmt: skip
-            self.complain(path, f"{kind} does not take a structure of kind '{structure['kind']}'; expected {_words(wanted)}")
+            self.complain(
+                path,
+                f"{kind} does not take a structure of kind '{structure['kind']}'; expected {_words(wanted)}",
+            )
         if analysis.needs_motion and data.get("motion") is None:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(SECTIONS['motion'])}")
 

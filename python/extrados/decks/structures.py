@@ -22,7 +22,9 @@ class Arch(Structure):
     density: Density = key(2000.0, "density of the masonry", gt=0, le=30000)
     depth: Length = key(1.0, "depth out of plane", gt=0)
     restitution: Literal["thesis", "energy-safe"] | float = key(
-        "thesis", "impact rule, or the ratio c_v of the rates after and before an impact (0 to 1)", source="thesis Eqs 5.3, B.3"
+        "thesis",
+        "impact rule, or the ratio c_v of the rates after and before an impact (0 to 1)",
+        source="thesis Eqs 5.3, B.3",
     )
 
     @model_validator(mode="after")
@@ -30,5 +32,5 @@ class Arch(Structure):
         if self.thickness >= self.radius:
             raise ValueError(f"thickness {self.thickness:g} m is not below the radius {self.radius:g} m")
         if not isinstance(self.restitution, str) and not 0.0 <= self.restitution <= 1.0:
-            raise ValueError(f"restitution is {self.restitution:g}, expected 0 to 1, \"thesis\" or \"energy-safe\"")
+            raise ValueError(f'restitution is {self.restitution:g}, expected 0 to 1, "thesis" or "energy-safe"')
         return self

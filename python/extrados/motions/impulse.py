@@ -21,7 +21,11 @@ class Impulse:
 
 
 def primary_impulses(
-    time: np.ndarray, acceleration: np.ndarray, count: int = 3, min_period: float | None = None, max_period: float = 4.0
+    time: np.ndarray,
+    acceleration: np.ndarray,
+    count: int = 3,
+    min_period: float | None = None,
+    max_period: float = 4.0,
 ) -> list[Impulse]:
     """The strongest impulses, first the primary one; later ones do not overlap earlier ones.
 
@@ -51,7 +55,13 @@ def primary_impulses(
         here = acceleration[inside]
         misfit = here - amplitude * np.sin(2.0 * np.pi * (np.flatnonzero(inside) * step - start) / period)
         found.append(
-            Impulse(amplitude, period, float(time[0]) + start, gain / total, 1.0 - float(misfit @ misfit) / float(here @ here))
+            Impulse(
+                amplitude,
+                period,
+                float(time[0]) + start,
+                gain / total,
+                1.0 - float(misfit @ misfit) / float(here @ here),
+            )
         )
         free &= ~inside
         rest[inside] = 0.0
@@ -105,6 +115,11 @@ def _polish(
 
     simplex = np.array([[period, start], [1.03 * period, start], [period, start + step]])
     answer = minimize(
-        loss, [period, start], method="Nelder-Mead", options={"initial_simplex": simplex, "xatol": 1e-5, "fatol": 0.0}
+        loss,
+        [period, start],
+        method="Nelder-Mead",
+        options={"initial_simplex": simplex, "xatol": 1e-5, "fatol": 0.0},
     )
-    return (float(answer.x[0]), float(answer.x[1])) if answer.fun <= loss(np.array([period, start])) else (period, start)
+    return (
+        (float(answer.x[0]), float(answer.x[1])) if answer.fun <= loss(np.array([period, start])) else (period, start)
+    )

@@ -22,9 +22,7 @@ def constant(amplitude: float, duration: float) -> Motion:
 
 def step_pulse(amplitude: float, duration: float) -> Motion:
     """a_p for t_p, then -a_p/2 for 2 t_p (thesis 5.2.3, after Oppenheim 1992)."""
-    return Motion(
-        "step pulse", _pieces([0.0, duration, 3.0 * duration], [[amplitude, 0.0], [-0.5 * amplitude, 0.0]])
-    )
+    return Motion("step pulse", _pieces([0.0, duration, 3.0 * duration], [[amplitude, 0.0], [-0.5 * amplitude, 0.0]]))
 
 
 def sine_pulse(amplitude: float, period: float) -> Motion:

@@ -99,7 +99,9 @@ def _read_at2(path: Path, lines: list[str]) -> Record:
         bare = re.match(r"\s*(\d+)\s+([\d.eE+-]+)\s+NPTS", line, re.I)
         found = named or bare
         if not found:
-            raise RecordError(f"{path}:{at + 1}: no number of points and step here; expected 'NPTS= 4000, DT= .0100 SEC'")
+            raise RecordError(
+                f"{path}:{at + 1}: no number of points and step here; expected 'NPTS= 4000, DT= .0100 SEC'"
+            )
         count, step = int(found[1]), _number(found[2].rstrip(","), path, at + 1)
         break
     else:
@@ -192,7 +194,9 @@ def record_motion(
     """A record as a motion in SI; RecordError where step or unit are unknown or contradict the file."""
     name = source or record.name
     if record.step is not None and time_step is not None and abs(record.step - time_step) > 1e-6 * record.step:
-        raise RecordError(f"{name}: the file says a step of {record.step:g} s, the deck {time_step:g} s; drop time_step")
+        raise RecordError(
+            f"{name}: the file says a step of {record.step:g} s, the deck {time_step:g} s; drop time_step"
+        )
     step = record.step if record.step is not None else time_step
     if step is None:
         raise RecordError(f"{name}: the file has no time step; give time_step in [motion]")

@@ -1,5 +1,6 @@
 """Figures of the arch: tilt, rocking, failure domain, assessment."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ GRAVITY = 9.80665
 def outlines(run: Stored, name: str) -> list[np.ndarray]:
     """Outlines of the blocks of an analysis."""
     vertices, start = run.array(name, "outline"), run.array(name, "outline_start")
-    return [vertices[a:b] for a, b in zip(start[:-1], start[1:], strict=True)]
+    return [vertices[a:b] for a, b in itertools.pairwise(start)]
 
 
 def moved(outline: np.ndarray, centroid: np.ndarray, pose: np.ndarray) -> np.ndarray:
@@ -56,8 +57,16 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         tilt = style.save(fig, folder, f"{name}-collapse")
     with style.figure(6.0, 4.0) as (fig, (ax,)):
         style.draw_blocks(ax, blocks)
-        ax.plot(*run.array(name, "least_point").T, color=style.THRUST, label=f"least thrust {r['thrust_min_N'] / 1e3:.4g} kN")
-        ax.plot(*run.array(name, "most_point").T, color=style.HINGE, label=f"greatest thrust {r['thrust_max_N'] / 1e3:.4g} kN")
+        ax.plot(
+            *run.array(name, "least_point").T,
+            color=style.THRUST,
+            label=f"least thrust {r['thrust_min_N'] / 1e3:.4g} kN",
+        )
+        ax.plot(
+            *run.array(name, "most_point").T,
+            color=style.HINGE,
+            label=f"greatest thrust {r['thrust_max_N'] / 1e3:.4g} kN",
+        )
         ax.legend(loc="lower center")
         ax.set_title("Thrust lines upright")
         style.section_axes(ax)
@@ -84,7 +93,13 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             rotation.axhline(1e3 * sign * r["critical_rotation_rad"], color=style.EDGE, linestyle=":", linewidth=0.8)
         limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=1e-9)
         rotation.set_ylim(-limit, limit)
-        rotation.plot(run.array(name, "impact_time"), np.zeros(len(run.array(name, "impact_time"))), "k|", markersize=8, label="impacts")
+        rotation.plot(
+            run.array(name, "impact_time"),
+            np.zeros(len(run.array(name, "impact_time"))),
+            "k|",
+            markersize=8,
+            label="impacts",
+        )
         rotation.set_ylabel("rotation [mrad]\n+ to +x")
         rotation.legend(loc="upper right")
         energy.plot(t, run.array(name, "kinetic") / 1e3, label="kinetic")
@@ -100,7 +115,12 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         if len(moving):
             pad = 0.5 + 0.05 * (t[moving[-1]] - t[moving[0]])
             friction.set_xlim(max(0.0, t[moving[0]] - pad), min(t[-1], t[moving[-1]] + pad))
-        found.append((style.save(fig, folder, f"{name}-history"), "Ground motion, rotation of link AB with impacts, energies, friction needed. Dashed: acceleration at which hinges open; dotted: critical rotation."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-history"),
+                "Ground motion, rotation of link AB with impacts, energies, friction needed. Dashed: acceleration at which hinges open; dotted: critical rotation.",
+            )
+        )
     times = run.arrays[name].get("snapshot_time")
     if times is not None and len(times.data):
         blocks, centroid = outlines(run, name), run.array(name, "centroid")
@@ -120,7 +140,12 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 ax.set_ylim(high[0] - 0.05 * span, high[1] + 0.15 * span)
                 ax.set_title(f"{when:.3f} s")
                 style.section_axes(ax)
-            found.append((style.save(fig, folder, f"{name}-shapes"), "Deformed arch (true scale) and dynamic thrust line at the greatest rotations."))
+            found.append(
+                (
+                    style.save(fig, folder, f"{name}-shapes"),
+                    "Deformed arch (true scale) and dynamic thrust line at the greatest rotations.",
+                )
+            )
     return found
 
 
@@ -131,11 +156,22 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
     r = run[name]
     d, a, codes = run.array(name, "duration"), run.array(name, "amplitude"), run.array(name, "outcome")
     with style.figure(7.0, 4.6) as (fig, (ax,)):
-        ax.pcolormesh(d, a, codes.T, cmap=ListedColormap(style.MODES), vmin=0, vmax=3, shading="nearest", rasterized=True)
+        ax.pcolormesh(
+            d,
+            a,
+            codes.T,
+            cmap=ListedColormap(style.MODES),
+            vmin=0,
+            vmax=3,
+            shading="nearest",
+            rasterized=True,
+        )
         ax.plot(d, run.array(name, "mode_I"), "k-", label="Mode I (governs)")
         ax.plot(d, run.array(name, "mode_II"), "k--", label="Mode II")
         ax.axhline(r["uplift_acceleration_g"], color=style.EDGE, linewidth=0.8, linestyle=":")
-        for code, text in enumerate(("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")):
+        for code, text in enumerate(
+            ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
+        ):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
         ax.set_xlabel("duration t_p of the first part [s]" if r["pulse"] == "step" else "period T_p [s]")
         ax.set_ylabel("amplitude [g]")
@@ -155,13 +191,37 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
     with style.figure(8.5, 4.0, columns=2, width_ratios=[1.1, 1]) as (fig, (curve, record)):
         period = run.array(name, "period")
         curve.plot(period, run.array(name, "failing_amplitude"), "k-", label=f"Eq. 5.8, {r['coefficients_source']}")
-        curve.plot(period, run.array(name, "failing_amplitude_own"), "--", color=style.EDGE, label="Eq. 5.8, fitted to this arch")
-        curve.plot(run.array(name, "computed_period"), run.array(name, "computed_amplitude"), ".", color=style.EDGE, markersize=3, label="computed Mode I points")
+        curve.plot(
+            period,
+            run.array(name, "failing_amplitude_own"),
+            "--",
+            color=style.EDGE,
+            label="Eq. 5.8, fitted to this arch",
+        )
+        curve.plot(
+            run.array(name, "computed_period"),
+            run.array(name, "computed_amplitude"),
+            ".",
+            color=style.EDGE,
+            markersize=3,
+            label="computed Mode I points",
+        )
         curve.axhline(gamma, linestyle=":", color=style.EDGE, linewidth=0.8)
         for k, i in enumerate(r["impulses"]):
             color = style.THRUST if i["verdict"] == "fails" else style.SAFE
-            curve.plot(i["period_s"], abs(i["amplitude_g"]), "o" if k == 0 else "s", color=color, markersize=7 if k == 0 else 5)
-            curve.annotate(str(i["rank"]), (i["period_s"], abs(i["amplitude_g"])), textcoords="offset points", xytext=(6, 4))
+            curve.plot(
+                i["period_s"],
+                abs(i["amplitude_g"]),
+                "o" if k == 0 else "s",
+                color=color,
+                markersize=7 if k == 0 else 5,
+            )
+            curve.annotate(
+                str(i["rank"]),
+                (i["period_s"], abs(i["amplitude_g"])),
+                textcoords="offset points",
+                xytext=(6, 4),
+            )
         top = max([3.0 * gamma, *(1.3 * abs(i["amplitude_g"]) for i in r["impulses"])])
         curve.set_ylim(0.0, top)
         curve.set_xlim(0.0, period[-1])
@@ -172,10 +232,20 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         t = run.array(name, "time")
         record.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.6)
         for k, (amplitude, length, start) in enumerate(
-            zip(run.array(name, "impulse_amplitude"), run.array(name, "impulse_period"), run.array(name, "impulse_start"), strict=True)
+            zip(
+                run.array(name, "impulse_amplitude"),
+                run.array(name, "impulse_period"),
+                run.array(name, "impulse_start"),
+                strict=True,
+            )
         ):
             s = np.linspace(0.0, length, 100)
-            record.plot(start + s, amplitude / GRAVITY * np.sin(2 * np.pi * s / length), color=style.THRUST, linewidth=1.6 if k == 0 else 1.0)
+            record.plot(
+                start + s,
+                amplitude / GRAVITY * np.sin(2 * np.pi * s / length),
+                color=style.THRUST,
+                linewidth=1.6 if k == 0 else 1.0,
+            )
             record.annotate(str(k + 1), (start + 0.25 * length, amplitude / GRAVITY), fontsize=8)
         if len(r["impulses"]):
             ends = [(i["start_s"], i["start_s"] + i["period_s"]) for i in r["impulses"]]
@@ -183,4 +253,9 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         record.set_xlabel("time [s]")
         record.set_ylabel("ground acceleration [g]")
         record.set_title("Impulses of the motion")
-        return [(style.save(fig, folder, name), "Impulses against the failure curve, and where they lie in the motion.")]
+        return [
+            (
+                style.save(fig, folder, name),
+                "Impulses against the failure curve, and where they lie in the motion.",
+            )
+        ]

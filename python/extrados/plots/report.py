@@ -87,18 +87,25 @@ def write_report(folder: Path) -> Path:
         analyses = []
         for a in run.analyses:
             figures = [
-                {"caption": caption, "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode()}
+                {
+                    "caption": caption,
+                    "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode(),
+                }
                 for name, caption in drawn.get(a["name"], [])
             ]
             analyses.append({**a, "figures": figures, "rows": _rows(a["results"])})
         deck = run.summary["deck"]
-        page = jinja2.Environment(autoescape=True).from_string(TEMPLATE).render(
-            title=deck.get("title") or html.escape(deck["path"]) or "extrados run",
-            note=deck.get("note", ""),
-            analyses=analyses,
-            deck=deck,
-            resolved=_rows({k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}),
-            made=run.summary["extrados"],
+        page = (
+            jinja2.Environment(autoescape=True)
+            .from_string(TEMPLATE)
+            .render(
+                title=deck.get("title") or html.escape(deck["path"]) or "extrados run",
+                note=deck.get("note", ""),
+                analyses=analyses,
+                deck=deck,
+                resolved=_rows({k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}),
+                made=run.summary["extrados"],
+            )
         )
         target = folder / "report.html"
         target.write_text(page, encoding="utf-8")

@@ -25,7 +25,9 @@ RC = {
 
 
 @contextmanager
-def figure(width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options) -> Iterator[tuple[Figure, np.ndarray]]:
+def figure(
+    width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options
+) -> Iterator[tuple[Figure, np.ndarray]]:
     """A figure in the common style; its axes come as a flat array."""
     with plt.rc_context(RC):
         fig, axes = plt.subplots(rows, columns, figsize=(width, height), squeeze=False, **options)

@@ -254,9 +254,7 @@ def read(folder: str | Path) -> Stored:
                     if "unit" not in store.attrs:
                         continue
                     data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
-                    dims = tuple(
-                        title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims
-                    )
+                    dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
                     arrays[name][title] = Array(data, dims, store.attrs["unit"], store.attrs["about"])
         return Stored(folder, summary, arrays)
     except FileNotFoundError as error:
