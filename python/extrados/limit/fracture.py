@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from extrados.limit.loads import GRAVITY, Loads, tilt_loads
+from extrados.limit.graphic import section_force
+from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.structures.assembly import GROUND, Assembly
 from extrados.structures.polygons import crossings, cut, properties
@@ -66,28 +67,9 @@ def crack(assembly: Assembly, block: int, height: float, direction: int) -> Asse
 def section_distance(
     assembly: Assembly, block: int, level: float, direction: int, state: State, loads: Loads, sway: float = 1.0
 ) -> tuple[float, float]:
-    """Distance of the resultant at a horizontal section from the outer face [m], and the width there [m].
-
-    Of the forces on the part above `level`: all joints but the base, the loads of the block, less the
-    weight of what lies below the section. sway: the part of gamma that accelerates the weight.
-    """
-    outline = assembly.outlines[block]
-    total = loads.dead[block] + state.gamma * loads.live[block]
-    base = _base(assembly, block)
-    force = state.force(assembly)
-    points = state.points(assembly)
-    for j in assembly.joints_of(block):
-        if j != base:
-            f = force[j] if assembly.a[j] == block else -force[j]
-            total = total + np.array([f[0], f[1], points[j, 0] * f[1] - points[j, 1] * f[0]])
-    below = cut(outline, np.array([0.0, level]), np.array([0.0, -1.0]))
-    if len(below) >= 3:
-        area, (x, y), _ = properties(below)
-        weight = area / properties(outline)[0] * assembly.mass[block] * GRAVITY
-        side = sway * state.gamma * weight
-        total = total - np.array([side, -weight, -x * weight - y * side])
-    at = (total[2] + level * total[0]) / total[1]
-    faces = crossings(outline, level)
+    """Distance of the resultant at a horizontal section from the outer face [m], and the width there [m]."""
+    _, at = section_force(assembly, block, level, state, loads, sway)
+    faces = crossings(assembly.outlines[block], level)
     outer, inner = (faces[-1], faces[0]) if direction > 0 else (faces[0], faces[-1])
     return direction * (outer - at), direction * (outer - inner)
 

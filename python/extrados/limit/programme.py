@@ -181,39 +181,64 @@ class LimitAnalysis:
         """Horizontal force across a joint in a state [N]."""
         return abs(float(state.force(self.assembly)[joint, 0]))
 
-    def central(self, gamma: float = 0.0, moving: list[int] | None = None) -> tuple[State, float]:
+    def central(self, gamma: float = 0.0, start: list[State] | None = None) -> tuple[State, float]:
         """The most central state at a given gamma, and the least part of the joints' length that holds it.
 
         The part is measured about the middle of each joint; its inverse is the geometric safety factor, and
-        above one it says by how much the joints would have to grow. `moving`: joints left out (hinges of a
-        mechanism, whose line is fixed). Dinkelbach's iteration on max |n_q - n_p| / N.
+        above one it says by how much the joints would have to grow. Dinkelbach's iteration on
+        max |n_q - n_p| / N, from the mean of admissible states where some are given. Without crushing.
         """
         m = len(self.assembly.a)
-        counted = np.setdiff1d(self._joints, moving) if moving else self._joints
-        k = len(counted)
         cost = np.zeros(self.system.unknowns + 1)
         cost[-1] = -1.0
         fixed = self._rows(self._joints, (1.0, 1.0, 0.0))
         if self._cone is not None:
             fixed = fixed + self._cone
-        if moving:
-            ends = np.array(moving)
-            fixed = fixed + self._rows(ends, (1.0, 0.0, 0.0)) + self._rows(ends, (0.0, 1.0, 0.0))
-        part, share = 1.0, np.ones(k)
+        part, share = 1.0, np.ones(m)
+        if start:
+            share = np.maximum(sum(s.normal for s in start) / len(start) / self.loads.scale, 1e-12)
+            lean = sum(s.normal * (2.0 * s.position - 1.0) for s in start) / len(start) / self.loads.scale
+            part = float((np.abs(lean) / share).max())
         for _ in range(50):
             rows = (
-                self._rows(counted, (part + 1.0, part - 1.0, 0.0))
-                + self._rows(counted, (part - 1.0, part + 1.0, 0.0))
+                self._rows(self._joints, (part + 1.0, part - 1.0, 0.0))
+                + self._rows(self._joints, (part - 1.0, part + 1.0, 0.0))
                 + fixed
             )
             slack = np.concatenate([share, share, np.zeros(len(fixed.lower))])
             solution = Programme(self.system, rows, slack).minimise(cost, (gamma, gamma))
             corners = self.system.corners(solution.x[:-1])
-            normal = np.maximum(corners[counted, 0] + corners[counted, 1], 1e-12)
-            new = float((np.abs(corners[counted, 1] - corners[counted, 0]) / normal).max())
+            normal = np.maximum(corners[:, 0] + corners[:, 1], 1e-12)
+            new = float((np.abs(corners[:, 1] - corners[:, 0]) / normal).max())
             if abs(part - new) < 1e-10:
-                break
+                return self._unclipped(solution, corners), new
             part, share = new, normal
-        else:
-            raise NoAnswer("the most central thrust line did not settle")
-        return self._state(solution, corners), new
+        raise NoAnswer("the most central thrust line did not settle")
+
+    def _unclipped(self, solution: Solution, corners: np.ndarray) -> State:
+        """State whose line may leave the joints: positions below 0 or above 1."""
+        normal = (corners[:, 0] + corners[:, 1]) * self.loads.scale
+        position = corners[:, 1] * self.loads.scale / np.maximum(normal, 1e-300)
+        return State(float(solution.x[self.system.unknowns - 1]), normal, corners[:, 2] * self.loads.scale, position)
+
+    def recentred(self, state: State, moving: list[int]) -> State:
+        """A collapse state with the joints that do not move as far from their ends as may be.
+
+        With one loop, or where stone crushes or slides without dilatancy, the state is left as it is.
+        """
+        loops = len(self.assembly.a) - len(self.assembly.mass)
+        if loops < 2 or self._crush is not None or not self.associated or not moving:
+            return state
+        m = len(self.assembly.a)
+        rows = self._whole()
+        slack = np.zeros(len(rows.lower))
+        still = np.setdiff1d(self._joints, moving)
+        share = np.maximum(state.normal[still] / self.loads.scale, 1e-9)
+        slack[still] = slack[m + still] = share
+        cost = np.zeros(self.system.unknowns + 1)
+        cost[-1] = -1.0
+        # The capacity was found to rounding: the line must be allowed as much.
+        room = 1e-10 * max(1.0, abs(state.gamma))
+        solution = Programme(self.system, rows, slack).minimise(cost, (state.gamma - room, state.gamma + room))
+        found = self._state(solution, self.system.corners(solution.x[:-1]))
+        return State(state.gamma, found.normal, found.shear, found.position)

@@ -207,7 +207,7 @@ def _flyer(
         np.array([aisle.span, at(outer, aisle.span)]),
     ]
     if np.any(np.diff([point[0] for point in q]) <= 0.0):
-        raise BadGeometry(f"{word} flyer: {flyer.voussoirs} voussoirs do not fit between its vertical end joints")
+        raise BadGeometry(f"{word} flyer: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer")
 
     def place(points: np.ndarray) -> np.ndarray:
         return np.column_stack([back + side * points[:, 0], points[:, 1]])
