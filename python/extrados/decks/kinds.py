@@ -1,9 +1,16 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, motions, structures
+from extrados.decks import analyses, limit, motions, structures, vaults
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch,)
+STRUCTURES: tuple[type[Structure], ...] = (
+    structures.Arch,
+    vaults.Vault,
+    vaults.AisledVault,
+    vaults.PointedArch,
+    vaults.EllipticalArch,
+    vaults.Blocks,
+)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
@@ -12,7 +19,12 @@ MOTIONS: tuple[type[Motion], ...] = (
     motions.Record,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
-    analyses.Tilt,
+    limit.Tilt,
+    limit.Thrust,
+    limit.Sweep,
+    limit.Survey,
+    limit.Supports,
+    limit.MovingLoad,
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,

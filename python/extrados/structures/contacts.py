@@ -4,12 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.structures.builder import BadGeometry
 from extrados.structures.polygons import inside
 
 NEAR = 50.0  # times the tolerance: gaps up to this are reported as near misses
 
 
-class Overlap(ValueError):
+class Overlap(BadGeometry):
     """Two blocks lie in the same place; the text names them."""
 
 

@@ -4,8 +4,11 @@ from pathlib import Path
 from typing import Any
 
 from extrados.decks import structures as models
+from extrados.decks import vaults
 from extrados.decks.table import Structure
+from extrados.structures import from_vaults
 from extrados.structures.arch import make_arch
+from extrados.structures.arches import make_elliptical_arch, make_pointed_arch
 
 
 def make_structure(model: Structure | None, folder: Path) -> Any:
@@ -21,5 +24,19 @@ def make_structure(model: Structure | None, folder: Path) -> Any:
                 model.voussoirs,
                 model.density,
                 model.depth,
+            )
+        case vaults.Vault():
+            return from_vaults.vault(model)
+        case vaults.AisledVault():
+            return from_vaults.church(model)
+        case vaults.Blocks():
+            return from_vaults.blocks(model, folder)
+        case vaults.PointedArch():
+            return make_pointed_arch(
+                model.span, model.radius, model.thickness, model.voussoirs, model.density, model.depth
+            )
+        case vaults.EllipticalArch():
+            return make_elliptical_arch(
+                model.span, model.rise, model.thickness, model.voussoirs, model.density, model.depth
             )
     raise TypeError(f"no structure for {type(model).__name__}")
