@@ -75,7 +75,7 @@ class LimitAnalysis:
             whole = whole if part is None else whole + part
         return whole
 
-    def _optimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[Solution, Constraints, np.ndarray]:
+    def optimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[Solution, Constraints, np.ndarray]:
         """Minimise under all laws of the joints: solution, the rows it obeys, and the scaled corner forces."""
         if self.associated:
             if self._programme is None:
@@ -146,7 +146,7 @@ class LimitAnalysis:
 
         gamma is negative where the structure cannot stand upright and needs support from that side.
         """
-        solution, rows, corners = self._optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
+        solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
         if abs(solution.value) > 0.99 * BOUND:
             raise NoEquilibrium("no such load brings it down: the joints hold it from all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
@@ -162,7 +162,7 @@ class LimitAnalysis:
     def stands(self, gamma: float = 0.0) -> bool:
         """True where an admissible thrust line exists, upright or at a given gamma."""
         try:
-            self._optimise(np.zeros(self.system.unknowns), (gamma, gamma))
+            self.optimise(np.zeros(self.system.unknowns), (gamma, gamma))
         except NoEquilibrium:
             return False
         return True
@@ -173,7 +173,7 @@ class LimitAnalysis:
         corner_cost = np.zeros((len(a.a), 3))
         corner_cost[joint] = a.normal[joint, 0], a.normal[joint, 0], a.tangent[joint, 0]
         cost = self.system.cost(corner_cost * (1.0 if a.normal[joint, 0] >= 0.0 else -1.0))
-        found = [self._optimise(sign * cost, (gamma, gamma)) for sign in (1.0, -1.0)]
+        found = [self.optimise(sign * cost, (gamma, gamma)) for sign in (1.0, -1.0)]
         least, greatest = (self._state(solution, corners) for solution, _, corners in found)
         return least, greatest
 
