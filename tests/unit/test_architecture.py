@@ -73,7 +73,15 @@ def test_fortran_rooms(path: Path) -> None:
     else:
         assert used <= MAY_USE[room] | {room}
     code = re.sub(r"!.*", "", text).lower()
-    for word in (r"\bstop\b", r"\bprint\b", r"\bwrite\s*\(", r"\bread\s*\(", r"\bopen\s*\(", r"\bsave\b", r"\bcommon\s*/"):
+    for word in (
+        r"\bstop\b",
+        r"\bprint\b",
+        r"\bwrite\s*\(",
+        r"\bread\s*\(",
+        r"\bopen\s*\(",
+        r"\bsave\b",
+        r"\bcommon\s*/",
+    ):
         assert not re.search(word, code), f"{path.name} must not {word}"
 
 
@@ -88,7 +96,9 @@ def test_no_silent_float() -> None:
 
 def test_core_never_stops_the_process() -> None:
     """No stop, no Fortran I/O and no unchecked allocation that would end the interpreter."""
-    symbols = subprocess.run(["nm", "-D", "--undefined-only", _core.__file__], capture_output=True, text=True, check=True)
+    symbols = subprocess.run(
+        ["nm", "-D", "--undefined-only", _core.__file__], capture_output=True, text=True, check=True
+    )
     bad = re.findall(
         r"\b(_gfortran_(?:stop|error_stop|st_write|st_read|st_open|exit)\w*|exit|abort|printf|system)\b", symbols.stdout
     )

@@ -72,7 +72,10 @@ def test_small_commands(tmp_path) -> None:
     assert extrados("version").stdout.startswith("extrados 0")
     good = deck(tmp_path, ARCH + '[analysis]\nkind = "tilt"\n')
     assert extrados("check", good).stdout.strip() == "ok"
-    assert json.loads(extrados("run", good, "--json", "--out", str(tmp_path / "o")).stdout)["analyses"][0]["status"] == "ok"
+    assert (
+        json.loads(extrados("run", good, "--json", "--out", str(tmp_path / "o")).stdout)["analyses"][0]["status"]
+        == "ok"
+    )
     assert extrados("report", str(tmp_path / "o")).returncode == 0
     assert extrados("report", str(tmp_path)).returncode == 3
 

@@ -82,7 +82,9 @@ def test_all_complaints_at_once() -> None:
 
 
 def test_missing_motion_and_structure() -> None:
-    assert any("needs a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"'))
+    assert any(
+        "needs a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"')
+    )
     assert any("needs a [structure]" in c for c in complaints('[analysis]\nkind = "tilt"'))
     assert any("no [analysis]" in c for c in complaints('title = "x"'))
 
@@ -154,7 +156,7 @@ def test_explain_schema_and_starters() -> None:
         explain.explain("raduis")
     for kind in SECTIONS["analysis"]:
         assert tomllib.loads(explain.starter(kind))["analysis"][0]["kind"] == kind
-    assert '`radius`' in explain.manual()
+    assert "`radius`" in explain.manual()
 
 
 def test_starter_decks_are_valid() -> None:

@@ -1,10 +1,11 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, limit, motions, structures, vaults
+from extrados.decks import analyses, block, limit, motion_analyses, motions, structures, vaults
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
 STRUCTURES: tuple[type[Structure], ...] = (
     structures.Arch,
+    block.Block,
     vaults.Vault,
     vaults.AisledVault,
     vaults.PointedArch,
@@ -16,7 +17,12 @@ MOTIONS: tuple[type[Motion], ...] = (
     motions.StepPulse,
     motions.SinePulse,
     motions.Harmonic,
+    motions.Pulse,
+    motions.VelocityPulse,
     motions.Record,
+    motions.Suite,
+    motions.Generated,
+    motions.Compatible,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
     limit.Tilt,
@@ -28,6 +34,8 @@ ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,
+    motion_analyses.MotionStudy,
+    motion_analyses.ShakeTable,
 )
 
 
