@@ -208,7 +208,7 @@ def _words(options: Sweep, results: dict[str, Any], numbers: dict[Signature, int
     moves = [f"{c['from']} to {c['to']} at {c['value']:.4g}" for c in results["changes"] if c["from"] and c["to"]]
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if results["stable_limits"]:
-        text += f" It stands no longer beyond {', '.join(f'{v:.4g}' for v in results['stable_limits'])}."
+        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in results['stable_limits'])}."
     elif results["gaps"]:
         text += f" {len(results['gaps'])} of {len(results['values'])} values give no structure that stands."
     return text

@@ -7,6 +7,7 @@ from extrados.structures.assembly import GROUND, Assembly
 
 STEPS = 12
 SHOWN = 0.06  # of the size of the assembly: the greatest displacement of the drawn mechanism
+TURN = 0.2  # rad: and the greatest rotation
 
 
 def rigid_parts(assembly: Assembly, mechanism: Mechanism) -> np.ndarray:
@@ -35,7 +36,8 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
     """Poses (nb, 3) of the blocks, x, y of the centroids [m] and rotation [rad], as the mechanism moves on.
 
     amount: greatest displacement of a centroid on the straight path [m]. The hinges stay closed: Newton's
-    method on their coincidence, the rotation of the fastest part being prescribed.
+    method on their coincidence, the rotation of the fastest part being prescribed. A mechanism that locks
+    before is carried as far as it goes.
     """
     part = rigid_parts(assembly, mechanism)
     parts = int(part.max()) + 1
@@ -46,7 +48,9 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
     for k in range(1, parts):
         velocity[k] = at_origin[part == k].mean(axis=0)
     fastest = np.hypot(v[:, 0], v[:, 1]).max()
-    total = (SHOWN * assembly.size if amount is None else amount) / fastest
+    total = amount / fastest if amount is not None else SHOWN * assembly.size / fastest
+    if amount is None:
+        total = min(total, TURN / max(float(np.abs(v[:, 2]).max()), 1e-300))
     number = np.append(part, 0)  # GROUND = -1
     a, b = number[assembly.a], number[assembly.b]
     pivot = mechanism.pivot
@@ -56,6 +60,7 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
     turns = abs(velocity[driver, 2]) * assembly.size > 1e-9 * fastest
     pose = np.zeros((parts, 3))
     for step in range(1, STEPS + 1):
+        start = pose
         pose = pose + velocity * total / STEPS
         target = velocity * total * step / STEPS
         for _ in range(20):
@@ -63,6 +68,9 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
             pose = pose + change
             if np.abs(change).max() < 1e-12 * assembly.size:
                 break
+        else:
+            pose = start
+            break
     c, s = np.cos(pose[part, 2]), np.sin(pose[part, 2])
     return np.column_stack([pose[part, 0] + c * x - s * y, pose[part, 1] + s * x + c * y, pose[part, 2]])
 

@@ -82,10 +82,10 @@ def thrust_lines(ax: Axes, lines: dict[str, np.ndarray], colour: str | None = No
         ax.plot(*line.T, color=colour or style.THRUST, label=label if i == 0 else "_", zorder=3, **options)
 
 
-def polygon(ax: Axes, polygons: dict[str, np.ndarray]) -> None:
-    """Force polygons, one colour a chain: rays from the common pole and load lines."""
+def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] = CHAIN_COLOURS) -> None:
+    """Force polygons, one colour each: rays from the common pole and load lines."""
     for i, (name, rays) in enumerate(polygons.items()):
-        colour = CHAIN_COLOURS[i % len(CHAIN_COLOURS)]
+        colour = colours[i % len(colours)]
         tips = rays / 1e3
         for tip in tips[:: max(1, len(tips) // 40)]:
             ax.plot([0.0, tip[0]], [0.0, tip[1]], color=colour, linewidth=0.4, alpha=0.7)
@@ -149,7 +149,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             polygon(forces, {
                 f"least, {first}": paths(run, name, "least_polygon")[first],
                 f"greatest, {first}": paths(run, name, "most_polygon")[first],
-            })  # fmt: skip
+            }, (style.THRUST, style.HINGE))  # fmt: skip
             forces.set_title("Force polygons upright")
             found.append(
                 (style.save(fig, folder, f"{name}-upright"), "Thrust lines of least and greatest horizontal thrust under self-weight, and their force polygons.")
@@ -200,10 +200,10 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for which, colour in colours.items():
             thrust_lines(ax, paths(run, name, f"{which}_line"), colour, f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m")
         overall_dimensions(ax, blocks)
-        ax.legend(loc="lower center")
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
         ax.set_title(f"Thrust lines at {r['gamma_g']:g} g, safety factor {r['geometric_safety_factor']:.2f}")
         style.section_axes(ax)
-        polygon(forces, {which: paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours})
+        polygon(forces, {which: paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours}, tuple(colours.values()))
         forces.set_title(f"Force polygons of the {r['chain']}")
         found = [(style.save(fig, folder, f"{name}-lines"), "Thrust lines of least, greatest and most central thrust, and their force polygons.")]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
@@ -282,8 +282,10 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     r = run[name]
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
     movement, pose, points = (run.array(name, f"shown_{what}") for what in ("movement", "pose", "point"))
-    with style.figure(3.3 * len(movement), 3.0, columns=len(movement)) as (fig, axes):
-        for ax, u, at, line in zip(axes, movement, pose, points, strict=True):
+    with style.figure(11.0, 5.6, rows=2, columns=3) as (fig, axes):
+        for ax in axes[len(movement) :]:
+            ax.set_axis_off()
+        for ax, u, at, line in zip(axes, movement, pose, points, strict=False):
             stone(ax, carried(blocks, centroid, at))
             ax.plot(*line.T, color=style.THRUST, zorder=3)
             ax.set_title(f"{u:.3f} m")
@@ -311,7 +313,8 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         stone(ax, blocks, ghost=True)
         stone(ax, carried(blocks, centroid, run.array(name, "mechanism_pose")))
         for x in run.array(name, "axle"):
-            ax.annotate("", (x, top), (x, top + 0.12 * np.ptp(place)), arrowprops={"arrowstyle": "-|>", "color": style.THRUST})
+            ax.annotate("", (x, top), (x, top + 0.1 * np.ptp(place)), arrowprops={"arrowstyle": "-|>", "color": style.THRUST})
+        ax.set_ylim(top=top + 0.13 * np.ptp(place))
         ax.set_title("Mechanism under the load at its worst place")
         style.section_axes(ax)
         curve.plot(place, capacity / 1e3, color=style.THRUST, marker=".", markersize=3)
