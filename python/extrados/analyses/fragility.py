@@ -10,7 +10,7 @@ from extrados.analyses.motion_source import GeneratedSource, ListSource, Source,
 from extrados.analyses.rocking_model import RockingModel, make_model, rocking_model
 from extrados.analyses.run import Context, Refused
 from extrados.analyses.statistics import Lognormal, NoFit, bootstrap, fit_lognormal, wilson
-from extrados.analyses.sweep import Swept, sweep
+from extrados.analyses.batches import Swept, sweep
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import Body, Ground

@@ -1,9 +1,17 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, motion_analyses, motions, statistics, structures
+from extrados.decks import analyses, block, limit, motion_analyses, motions, statistics, structures, vaults
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block)
+STRUCTURES: tuple[type[Structure], ...] = (
+    structures.Arch,
+    block.Block,
+    vaults.Vault,
+    vaults.AisledVault,
+    vaults.PointedArch,
+    vaults.EllipticalArch,
+    vaults.Blocks,
+)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
@@ -17,7 +25,12 @@ MOTIONS: tuple[type[Motion], ...] = (
     motions.Compatible,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
-    analyses.Tilt,
+    limit.Tilt,
+    limit.Thrust,
+    limit.Sweep,
+    limit.Survey,
+    limit.Supports,
+    limit.MovingLoad,
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,

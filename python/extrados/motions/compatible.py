@@ -20,7 +20,7 @@ from extrados.motions.generated import envelope_parameters
 
 _COARSE_ROUNDS, _FINE_ROUNDS = 12, 40
 _DRAWS = 5  # sets of phases tried for one motion
-_PER_DECADE = 60  # periods at which the spectrum is matched; checked between them too
+_PER_DAMPING = 3.0  # matched periods per decade are this over the damping: resonance peaks are that narrow
 
 
 class NotMatched(ArithmeticError):
@@ -51,11 +51,15 @@ class CompatibleSet:
     def _periods(self, per_decade: int) -> np.ndarray:
         return np.geomspace(self.shortest, self.longest, int(per_decade * np.log10(self.longest / self.shortest)) + 2)
 
+    @property
+    def _per_decade(self) -> int:
+        return round(_PER_DAMPING / min(self.damping, 0.05))
+
     def _wide_periods(self) -> np.ndarray:
         """The band and as much again beyond its long end, so that no strong long waves are left there."""
-        step = 10.0 ** (1.0 / _PER_DECADE)
-        beyond = [t for t in self.longest * step ** np.arange(1.0, 0.4 * _PER_DECADE) if t <= self.known_to]
-        return np.concatenate([self._periods(_PER_DECADE), beyond])
+        step = 10.0 ** (1.0 / self._per_decade)
+        beyond = [t for t in self.longest * step ** np.arange(1.0, 0.4 * self._per_decade) if t <= self.known_to]
+        return np.concatenate([self._periods(self._per_decade), beyond])
 
     def motion(self, k: int) -> np.ndarray:
         """Motion k (points) [m/s^2]; NotMatched where no draw of phases comes within the tolerance."""
@@ -71,7 +75,7 @@ class CompatibleSet:
         )
 
     def _matched(self, k: int, draw: int) -> np.ndarray:
-        periods, between = self._wide_periods(), self._periods(4 * _PER_DECADE)
+        periods, between = self._wide_periods(), self._periods(8 * self._per_decade)
         wanted = self.target(periods)
         motion = best = self._level(self._first(k, draw))
         least = np.inf
@@ -81,12 +85,17 @@ class CompatibleSet:
             if off < least:
                 best, least = motion, off
             motion = self._level(self._filtered(motion, periods, wanted / psa))
-        motion = best
+        motion, trail = best, []
         for _ in range(_FINE_ROUNDS):
-            if self.misfit(motion, between) <= 0.97 * self.tolerance:
+            off = self.misfit(motion, between)
+            trail.append(off)
+            if off <= min(trail):
+                best = motion
+            # done, or no better than eight rounds ago: another draw is cheaper
+            if off <= 0.95 * self.tolerance or (len(trail) > 8 and min(trail[-8:]) > 0.95 * min(trail[:-8])):
                 break
             motion = self._level(self._with_wavelets(motion, periods, wanted))
-        return motion
+        return best
 
     def motions(self, count: int, first: int = 0) -> Iterator[np.ndarray]:
         """Motions first .. first + count - 1, one at a time."""
@@ -99,7 +108,7 @@ class CompatibleSet:
 
     def misfit(self, motion: np.ndarray, periods: np.ndarray | None = None) -> float:
         """Largest relative deviation of the spectrum from the target over the band."""
-        periods = self._periods(4 * _PER_DECADE) if periods is None else periods
+        periods = self._periods(8 * self._per_decade) if periods is None else periods
         psa = core.response_spectra(motion, self.step, periods, [self.damping]).psa[0]
         return float(np.max(np.abs(psa / self.target(periods) - 1.0)))
 
@@ -150,16 +159,15 @@ class CompatibleSet:
         return core.fourier_inverse(core.fourier(motion, length) * factor, length)[: self.points]
 
     def _level(self, motion: np.ndarray) -> np.ndarray:
-        """Ends faded over 2 % of the motion, waves far longer than the band taken out, at rest at the end."""
-        ends = max(2, self.points // 50)
-        ramp = 0.5 - 0.5 * np.cos(np.pi * np.arange(ends) / ends)
-        out = motion.copy()
-        out[:ends] *= ramp
-        out[-ends:] *= ramp[::-1]
+        """Waves far longer than the band taken out, ends faded over 2 % of the motion, at rest at the end."""
         long = self._length()
         frequency = np.arange(long // 2 + 1) / (long * self.step) * self.longest
         kept = 0.5 - 0.5 * np.cos(np.pi * np.clip((frequency - 0.15) / 0.2, 0.0, 1.0))
-        out = core.fourier_inverse(core.fourier(out, long) * kept, long)[: self.points]
+        out = core.fourier_inverse(core.fourier(motion, long) * kept, long)[: self.points]
+        ends = max(2, self.points // 50)
+        ramp = 0.5 - 0.5 * np.cos(np.pi * np.arange(ends) / ends)
+        out[:ends] *= ramp
+        out[-ends:] *= ramp[::-1]
         return processing.at_rest(out, self.step)
 
     def _with_wavelets(self, motion: np.ndarray, periods: np.ndarray, wanted: np.ndarray) -> np.ndarray:
