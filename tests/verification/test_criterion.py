@@ -19,15 +19,13 @@ PRINTED = {
 
 @pytest.mark.parametrize("cell", PRINTED, ids=str)
 def test_table_5_3(cell) -> None:
-    """Refitted and printed curves agree within 4 % between 1.1 and 2 gamma."""
+    """Refitted and printed curves agree within 5 % in period, measured where they are neither flat nor vertical."""
     ours = criterion.table()[cell[0], float(cell[1])]
     theirs = criterion.Fit(*PRINTED[cell])
-    periods = np.geomspace(0.15, 2.5, 400)
-    a = ours.amplitude(periods)
-    inside = (a > 1.1 * ours.gamma) & (a < 2.0 * ours.gamma)
-    assert inside.sum() > 20
-    ratio = a[inside] / theirs.amplitude(periods[inside])
-    assert np.abs(ratio - 1).max() < 0.04
+    above = np.linspace(0.2, 1.0, 30) * ours.gamma  # gamma is printed with two digits: leave it out
+    periods = [f.t_min + (above / f.c1) ** (1.0 / f.c2) for f in (ours, theirs)]
+    assert np.abs(periods[0] / periods[1] - 1).max() < 0.05
+    assert abs(ours.gamma - theirs.gamma) < 0.0051
 
 
 def test_shipped_table_is_what_the_tool_fits() -> None:

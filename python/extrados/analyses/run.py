@@ -30,6 +30,8 @@ DRIVERS = {
     "rocking": "extrados.analyses.rocking",
     "failure-domain": "extrados.analyses.failure_domain",
     "assessment": "extrados.analyses.assessment",
+    "motion": "extrados.analyses.motion_study",
+    "shake-table": "extrados.analyses.shake_table",
 }
 
 

@@ -21,6 +21,8 @@ DRAWERS = {
     "rocking": "extrados.plots.arch:draw_rocking",
     "failure-domain": "extrados.plots.arch:draw_failure_domain",
     "assessment": "extrados.plots.arch:draw_assessment",
+    "motion": "extrados.plots.motion:draw_motion",
+    "shake-table": "extrados.plots.motion:draw_shake_table",
 }
 
 TEMPLATE = """<!doctype html>
