@@ -50,8 +50,11 @@ class Answer:
 
     @property
     def safety(self) -> float:
-        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line."""
-        return 1.0 / self.part
+        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line.
+
+        Infinite where the line can run through the middles of all joints.
+        """
+        return 1.0 / self.part if self.part > 1e-9 else np.inf
 
     @property
     def touching(self) -> list[int]:
