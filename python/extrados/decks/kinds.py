@@ -1,6 +1,6 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, limit, motion_analyses, motions, structures, vaults
+from extrados.decks import analyses, block, limit, motion_analyses, motions, statistics, structures, vaults
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
 STRUCTURES: tuple[type[Structure], ...] = (
@@ -36,6 +36,11 @@ ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Assessment,
     motion_analyses.MotionStudy,
     motion_analyses.ShakeTable,
+    statistics.Fragility,
+    statistics.Resonance,
+    statistics.RockingSpectrum,
+    statistics.HarmonicMap,
+    statistics.CodeChecks,
 )
 
 
