@@ -29,7 +29,7 @@ module sla_events
    type :: stop_rules
       real(wp) :: lambda = unbounded               !! stage ends where it carries this multiplier
       real(wp) :: displacement = unbounded         !! of monitor 1, absolute [m]
-      real(wp) :: fraction = -1.0_wp               !! of the peak multiplier, after it
+      real(wp) :: fraction = -1.0_wp               !! of the peak multiplier, after it; negative: never
       real(wp) :: compliance = 1.0e6_wp            !! fb.ub over its first value: a mechanism
       logical :: refuse_overload = .false.         !! the first state must carry the constant loads
    end type stop_rules
@@ -80,7 +80,8 @@ contains
             return
          end if
          if (.not. found%bounded) reason = stop_unbounded
-         if (equilibrium .and. found%hi%value >= rules%lambda .and. found%lo%value <= rules%lambda) then
+         if (equilibrium .and. rules%lambda < unbounded .and. found%hi%value >= rules%lambda .and. &
+             found%lo%value <= rules%lambda) then
             reason = stop_load
          else if (found%empty%point /= 0) then
             found%empty%value = made%lambda
@@ -106,7 +107,7 @@ contains
          if (equilibrium) then
             made%peak = max(made%peak, made%lambda)
             if (abs(log%monitors(1, log%count)) >= rules%displacement) reason = stop_displacement
-            if (made%lambda < rules%fraction * made%peak) reason = stop_fraction
+            if (rules%fraction >= 0.0_wp .and. made%lambda < rules%fraction * made%peak) reason = stop_fraction
          end if
          if (made%work(3) > rules%compliance * made%first_compliance) reason = stop_mechanism
          if (reason /= stop_none) return

@@ -265,7 +265,10 @@ contains
          end if
          if (found) then
             trial = root(low, trial, .true.)
-         else
+            ! The linear law ends at zero: what a ray near its foot would leave is a crumb, so it takes all.
+            found = law%kind /= law_linear .or. law%stress(trial) > p * law%ft
+         end if
+         if (.not. found) then
             ! One last ray carries what is left.
             low = x
             trial = 2.0_wp * max(x, law%peak)
