@@ -2,7 +2,7 @@
 !> acceleration. Between breaks each is smooth, so an integrator that stops at every break
 !> keeps its order. Before the first and after the last break both are zero.
 module common_signal
-   use common_kinds, only : wp
+   use common_kinds, only : wp, pi
    implicit none
    private
    public :: signal, signal_sampled, signal_piecewise
@@ -24,7 +24,7 @@ module common_signal
       procedure :: break_time
       procedure :: value_at
       procedure :: smooth_to_next
-      procedure :: has_harmonics
+      procedure :: shortest_period
    end type signal
 
 contains
@@ -113,12 +113,17 @@ contains
       answer = associated(self%samples) .and. k >= 1 .and. k < self%segments
    end function smooth_to_next
 
-   !> True where a segment may curve, so that a threshold is crossed more than once in it
-   pure function has_harmonics(self) result(answer)
+   !> Shortest period of the sines in segment k [s]; huge where it is straight
+   pure function shortest_period(self, k) result(period)
       class(signal), intent(in) :: self
-      logical :: answer
-      answer = .false.
-      if (associated(self%harmonic)) answer = size(self%harmonic, 2) > 0
-   end function has_harmonics
+      integer, intent(in) :: k
+      real(wp) :: period
+      real(wp) :: fastest
+      period = huge(period)
+      if (.not. associated(self%harmonic) .or. k < 1 .or. k > self%segments) return
+      if (size(self%harmonic, 2) == 0) return
+      fastest = maxval(abs(self%harmonic(3, :, :, k)))
+      if (fastest > 0.0_wp) period = 2.0_wp * pi / fastest
+   end function shortest_period
 
 end module common_signal

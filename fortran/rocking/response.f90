@@ -177,7 +177,8 @@ contains
          if (renew) a = problem%acceleration(t, q, v)
          renew = .false.
          remaining = t_next - t
-         h = h_next
+         ! An error estimate can be blind to a whole cycle of the ground inside one step.
+         h = min(h_next, 0.125_wp * ground%shortest_period(problem%segment))
          if (h >= remaining) then
             h = remaining
          else if (h > 0.5_wp * remaining) then
@@ -533,23 +534,23 @@ contains
       real(wp), intent(in) :: t_next
       real(wp), intent(out) :: when
       integer, intent(out) :: side              !! 0 where it stays at rest
-      real(wp) :: m(2), half_dm, dv(2), dh(2), t0, t1, f0(2), f1(2), best, root
+      real(wp) :: m(2), half_dm, dv(2), dh(2), t0, t1, f0(2), f1(2), best, root, grid
       logical :: closed
-      integer :: j, k, pieces
+      integer :: j
 
       side = 0
       when = t_next
       do j = 1, 2
          call problem%body%coefficients(3 - 2 * j, 0.0_wp, m(j), half_dm, dv(j), dh(j), closed)
       end do
-      ! Straight lines are tested at their ends; curved segments on a fine grid.
-      pieces = merge(64, 1, problem%ground%has_harmonics())
+      ! Straight lines are tested at their ends; sines 32 times a cycle.
+      grid = problem%ground%shortest_period(problem%segment) / 32.0_wp
       t1 = t
       f1 = drive(t1)
-      do k = 1, pieces
+      do while (t1 < t_next)
          t0 = t1
          f0 = f1
-         t1 = t + (t_next - t) * real(k, wp) / real(pieces, wp)
+         t1 = min(t_next, t0 + grid)
          f1 = drive(t1)
          best = huge(best)
          do j = 1, 2
