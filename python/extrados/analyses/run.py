@@ -23,6 +23,7 @@ DRIVERS = {
     "rocking": "extrados.analyses.rocking",
     "failure-domain": "extrados.analyses.failure_domain",
     "assessment": "extrados.analyses.assessment",
+    "sla": "extrados.analyses.sla",
 }
 
 

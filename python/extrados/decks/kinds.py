@@ -1,9 +1,9 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, motions, structures
+from extrados.decks import analyses, motions, sla, structures, walls
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch,)
+STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, walls.Panel, walls.Mesh)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
@@ -16,6 +16,7 @@ ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,
+    sla.Sla,
 )
 
 

@@ -16,6 +16,7 @@ DRAWERS = {
     "rocking": "extrados.plots.arch:draw_rocking",
     "failure-domain": "extrados.plots.arch:draw_failure_domain",
     "assessment": "extrados.plots.arch:draw_assessment",
+    "sla": "extrados.plots.sla:draw_sla",
 }
 
 TEMPLATE = """<!doctype html>

@@ -4,8 +4,10 @@ from pathlib import Path
 from typing import Any
 
 from extrados.decks import structures as models
+from extrados.decks import walls
 from extrados.decks.table import Structure
 from extrados.structures.arch import make_arch
+from extrados.structures.panel import make_panel
 
 
 def make_structure(model: Structure | None, folder: Path) -> Any:
@@ -22,4 +24,10 @@ def make_structure(model: Structure | None, folder: Path) -> Any:
                 model.density,
                 model.depth,
             )
+        case walls.Panel():
+            return make_panel(model, folder)
+        case walls.Mesh():
+            from extrados.structures.mesh_file import read_mesh
+
+            return read_mesh(model, folder)
     raise TypeError(f"no structure for {type(model).__name__}")
