@@ -21,24 +21,28 @@ class Bilinear:
 
 
 def envelope(displacement: np.ndarray, load: np.ndarray, bins: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Monotone envelope of equilibrium points: the greatest load in each of `bins` steps of displacement.
-
-    Displacements count positive in the sense they have at the peak.
+    """Monotone envelope of the polyline through the origin and the equilibrium points: at each of `bins`
+    displacements the greatest load on it. Displacements count positive in the sense they have at the peak.
     """
     if not len(load):
         return np.zeros(1), np.zeros(1)
-    displacement = np.copysign(1.0, displacement[load.argmax()]) * displacement
-    span = displacement.max()
-    if not span > 0.0:
+    d = np.append(0.0, np.copysign(1.0, displacement[load.argmax()]) * displacement)
+    p = np.append(0.0, load)
+    if not d.max() > 0.0:
         return np.zeros(1), np.zeros(1)
-    forward = displacement > 0.0
-    d, p = displacement[forward], load[forward]
-    number = np.minimum((d / span * bins).astype(int), bins - 1)
-    order = np.lexsort((-p, number))
-    _, first = np.unique(number[order], return_index=True)
-    best = np.sort(order[first])
-    best = best[np.argsort(d[best], kind="stable")]
-    return np.append(0.0, d[best]), np.append(0.0, p[best])
+    # The peak and the end must be on the envelope, whatever the bins
+    grid = np.union1d(np.linspace(0.0, d.max(), bins + 1), np.maximum(d[p.argmax()], 0.0))
+    best = np.full(len(grid), -np.inf)
+    low, high = np.minimum(d[:-1], d[1:]), np.maximum(d[:-1], d[1:])
+    first, last = np.searchsorted(grid, low, "left"), np.searchsorted(grid, high, "right")
+    count = last - first
+    segment = np.repeat(np.arange(len(low)), count)
+    at = np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + np.repeat(first, count)
+    span = d[segment + 1] - d[segment]
+    share = np.where(span != 0.0, (grid[at] - d[segment]) / np.where(span != 0.0, span, 1.0), 0.0)
+    np.maximum.at(best, at, p[segment] + share * (p[segment + 1] - p[segment]))
+    kept = np.isfinite(best)
+    return grid[kept], best[kept]
 
 
 def bilinear(d: np.ndarray, p: np.ndarray) -> Bilinear | None:

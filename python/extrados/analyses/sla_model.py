@@ -12,6 +12,7 @@ from extrados.decks.walls import Material, Placed
 from extrados.structures.wall import BadWall, Block, WallMesh, corner_count, element_areas
 
 AXES = {"x": 0, "y": 1}
+POINTS_PER_THREAD = 20_000
 
 
 @dataclass
@@ -30,8 +31,10 @@ class SlaModel:
     bands: list[np.ndarray]  # crack band of the elements of each plane group [m]
     point_xy: np.ndarray  # (points, 2) of the plane groups [m]
 
-    def open(self, options: Sla, threads: int, sign: int = 1) -> core.Model:
+    def open(self, options: Sla, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
+        # Below this many points a thread costs more than it saves; results are the same for any number
+        threads = max(1, min(threads, len(self.point_xy) // POINTS_PER_THREAD))
         try:
             return core.Model(
                 self.wall.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads

@@ -76,9 +76,14 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                     np.array([0, idea["yield_load_N"], idea["yield_load_N"]]) / 1e3,
                     color=ENVELOPE, linestyle="--", linewidth=0.9, label="bilinear of equal area" if not prefix else None,
                 )  # fmt: skip
-        # Events far beyond the curve (a wall about to come apart) must not shrink it to nothing
-        far = np.concatenate([get(f"{p}envelope_displacement") for p in ("", "minus_") if f"{p}envelope_load" in run.arrays[name]])
+        # Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve
+        there = [p for p in ("", "minus_") if f"{p}envelope_load" in run.arrays[name]]
+        far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
+        loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
         ax.set_xlim(0.0, 1.05e3 * max(far.max(), 1e-12))
+        if len(loads):
+            low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
+            ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
         ax.axhline(0.0, color="#999", linewidth=0.5)
         ax.set_xlabel("control displacement [mm]")
         ax.set_ylabel("load [kN]")
@@ -177,7 +182,10 @@ def _section(run: Stored, name: str, folder: Path, i: int) -> tuple[str, str]:
     y, about = run.array(name, f"section_{i}_y"), run.arrays[name][f"section_{i}_y"].about
     lo, hi = (run.array(name, f"section_{i}_{end}") / 1e3 for end in ("lo", "hi"))
     events = run.array(name, "state_event")
-    count = len(events)
+    # A section that is cracked through admits everything: nothing to show
+    shown = np.flatnonzero((np.isfinite(lo) | np.isfinite(hi)).any(axis=1))[:6]
+    lo, hi, events = lo[shown], hi[shown], events[shown]
+    count = max(len(events), 1)
     with style.figure(2.4 * count + 1.0, 4.0, columns=count, sharey=True) as (fig, axes):
         for ax, low, high, event in zip(axes, lo, hi, events, strict=True):
             ends = np.concatenate([low[np.isfinite(low)], high[np.isfinite(high)]])
@@ -205,12 +213,15 @@ def _section(run: Stored, name: str, folder: Path, i: int) -> tuple[str, str]:
 def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     get = lambda n: run.array(name, f"event_{n}")  # noqa: E731
     with style.figure(7.0, 3.4) as (fig, (ax,)):
-        number = np.arange(1, len(get("load")) + 1)
+        fine = np.flatnonzero(get("equilibrium") > 0)
+        upto = slice(0, fine[-1] + 1 if len(fine) else None)  # what follows has no equilibrium, and no energy either
+        number = np.arange(1, len(get("load")) + 1)[upto]
         ax.stackplot(
-            number, get("stored"), get("dissipated"), colors=["#cfe3d6", "#f2c28b"], labels=["stored", "dissipated"]
-        )
-        ax.plot(number, get("external"), color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads")
-        ax.plot(number, get("crack"), color=style.THRUST, linewidth=0.9, label="area of the teeth")
+            number, get("stored")[upto], get("dissipated")[upto], colors=["#cfe3d6", "#f2c28b"],
+            labels=["stored", "dissipated"],
+        )  # fmt: skip
+        ax.plot(number, get("external")[upto], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads")
+        ax.plot(number, get("crack")[upto], color=style.THRUST, linewidth=0.9, label="area of the teeth")
         ax.set_xlabel("event")
         ax.set_ylabel("energy [J]")
         ax.legend(loc="upper left")
