@@ -2,7 +2,7 @@
 !>
 !> With m the mean stress and r the radius of Mohr's circle every criterion here reads r <= alpha - beta m:
 !> tension alpha = ft, beta = 1; compression alpha = fc, beta = -1; tension reduced by lateral compression,
-!> s1/ft - s2/fc <= 1, alpha = 2 ft fc / (ft + fc), beta = (fc - ft) / (fc + ft). That is a convex cone in
+!> s1/ft - s2/fc <= 1, alpha = ft fc / (ft + fc), beta = (fc - ft) / (fc + ft). That is a convex cone in
 !> (m, (sx - sy)/2, txy), so a line of stresses sA + lambda sB stays inside on one interval at most. It may
 !> be empty, which the thesis does not treat: then no multiplier can relieve the point.
 module sla_interval

@@ -325,7 +325,7 @@ contains
          if (f < unbounded) then
             call cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
             fc = self%lateral(e)
-            if (fc > 0.0_wp) call cone(2.0_wp * f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda, noise, p, &
+            if (fc > 0.0_wp) call cone(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda, noise, p, &
                code_tension, found)
          end if
          f = self%limit(3, p)
