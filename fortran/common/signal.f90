@@ -23,8 +23,10 @@ module common_signal
    contains
       procedure :: break_time
       procedure :: value_at
+      procedure :: line_at
       procedure :: smooth_to_next
       procedure :: shortest_period
+      procedure :: has_harmonics
    end type signal
 
 contains
@@ -105,6 +107,34 @@ contains
       vertical = self%scale * value(2)
    end subroutine value_at
 
+   !> Value at time t and slope of the straight lines of segment k, sines left out
+   pure subroutine line_at(self, k, t, value, slope)
+      class(signal), intent(in) :: self
+      integer, intent(in) :: k           !! segment
+      real(wp), intent(in) :: t          !! time [s]
+      real(wp), intent(out) :: value(2)  !! horizontal and vertical
+      real(wp), intent(out) :: slope(2)  !! their change per second
+      real(wp) :: tau
+      integer :: c
+
+      value = 0.0_wp
+      slope = 0.0_wp
+      if (k < 1 .or. k > self%segments) return
+      if (associated(self%samples)) then
+         tau = t - (self%start + real(k - 1, wp) * self%step)
+         do c = 1, size(self%samples, 1)
+            slope(c) = self%scale * (self%samples(c, k + 1) - self%samples(c, k)) / self%step
+            value(c) = self%scale * self%samples(c, k) + tau * slope(c)
+         end do
+      else
+         tau = t - self%breaks(k)
+         do c = 1, size(self%linear, 2)
+            slope(c) = self%scale * self%linear(2, c, k)
+            value(c) = self%scale * self%linear(1, c, k) + tau * slope(c)
+         end do
+      end if
+   end subroutine line_at
+
    !> True where the signal is continuous from segment k into k + 1: samples joined by lines are
    pure function smooth_to_next(self, k) result(answer)
       class(signal), intent(in) :: self
@@ -125,5 +155,13 @@ contains
       fastest = maxval(abs(self%harmonic(3, :, :, k)))
       if (fastest > 0.0_wp) period = 2.0_wp * pi / fastest
    end function shortest_period
+
+   !> True where some segment may curve
+   pure function has_harmonics(self) result(answer)
+      class(signal), intent(in) :: self
+      logical :: answer
+      answer = .false.
+      if (associated(self%harmonic)) answer = size(self%harmonic, 2) > 0
+   end function has_harmonics
 
 end module common_signal

@@ -2,8 +2,20 @@
 
 import numpy as np
 import pytest
+
 from extrados.core.sla import (
-    Bars, BadElement, Behaviour, Freedoms, Mechanism, Model, Monitor, Plane, Softening, Springs, Stop, body_force,
+    BadElement,
+    Bars,
+    Behaviour,
+    Freedoms,
+    Mechanism,
+    Model,
+    Monitor,
+    Plane,
+    Softening,
+    Springs,
+    Stop,
+    body_force,
 )  # fmt: skip
 from extrados.structures.wall import add_middles
 
@@ -72,7 +84,9 @@ def test_patch(kind, points, selective) -> None:
     xy, connect, base = mesh(kind, 4, 3, 1.9, 1.1, jitter)
     force = thickness * edge_forces(xy, connect, base, lambda place, normal: normal @ stress)
     corner = [int(np.hypot(*(xy - at).T).argmin()) for at in ([0, -0.55], [0, 0.55])]
-    _, report = solve(kind, xy, connect, force, [(corner[0], 0), (corner[0], 1), (corner[1], 0)], thickness, points, selective)
+    _, report = solve(
+        kind, xy, connect, force, [(corner[0], 0), (corner[0], 1), (corner[1], 0)], thickness, points, selective
+    )
     found = np.stack([report["stress_n"], report["stress_s"], report["stress_ns"]], axis=1)
     assert np.abs(found - [1.3e6, -0.77e6, 0.41e6]).max() < 1e-12 * 1.3e6 * 100
 
@@ -89,7 +103,9 @@ def cantilever_exact(xy, length, depth, force, inertia):
     return np.column_stack([u, v])
 
 
-@pytest.mark.parametrize(("kind", "order_u", "order_energy"), [("T3", 1.9, 1.85), ("Q4", 1.95, 1.9), ("T6", 2.85, 3.7), ("Q8", 2.85, 3.7)])
+@pytest.mark.parametrize(
+    ("kind", "order_u", "order_energy"), [("T3", 1.9, 1.85), ("Q4", 1.95, 1.9), ("T6", 2.85, 3.7), ("Q8", 2.85, 3.7)]
+)
 def test_orders_of_convergence(kind, order_u, order_energy) -> None:
     """Timoshenko's cantilever: displacements in the mean square and the energy on two meshes."""
     length, depth, load = 1.4, 0.6, 9.1e4
@@ -151,7 +167,9 @@ def chain(lengths, softening, band, area=0.013, floor=1e-13, tension=True):
     """Bars in series along x, the first one softening; unit force at the end."""
     x = np.concatenate([[0.0], np.cumsum(lengths)])
     xy = np.column_stack([x, np.zeros(len(x))])
-    groups = [Bars(np.array([[0, 1]]), area, YOUNG, band, softening if tension else None, None if tension else softening)]
+    groups = [
+        Bars(np.array([[0, 1]]), area, YOUNG, band, softening if tension else None, None if tension else softening)
+    ]
     if len(lengths) > 1:
         groups.append(Bars(np.array([[i, i + 1] for i in range(1, len(lengths))]), area, YOUNG))
     held = [(0, 0)] + [(i, 1) for i in range(len(x))]

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
 from extrados.analyses.run import Context, Refused, run_analyses
 from extrados.analyses.sla_curve import bilinear, envelope
 from extrados.analyses.sla_model import build
@@ -149,7 +150,7 @@ def test_constant_loads_with_damage() -> None:
     """A lintel too heavy for the strength: A cracks it on the way from 0 to 1, B starts from there."""
     data = wall(events=900)
     data["structure"]["material"]["density"] = 26000.0
-    model, (curve,) = curves(data)
+    _, (curve,) = curves(data)
     stage = curve.stage_a
     assert stage.reason == "target load"
     assert len(stage) > 3
@@ -162,7 +163,10 @@ def test_constant_loads_with_damage() -> None:
 
 def test_constant_loads_beyond_strength_are_refused() -> None:
     data = wall(constant_damage=False)
-    data["analysis"][0]["constant"] = [{"kind": "line", "edge": "left", "py": "5 MN/m"}, {"kind": "line", "edge": "right", "py": "-5 MN/m"}]
+    data["analysis"][0]["constant"] = [
+        {"kind": "line", "edge": "left", "py": "5 MN/m"},
+        {"kind": "line", "edge": "right", "py": "-5 MN/m"},
+    ]
     result = run_deck(data)
     assert (result.status, "constant loads alone exceed the strength" in result.reason) == ("refused", True)
     data = wall()
@@ -175,7 +179,11 @@ def test_prescribed_displacement_with_ratios() -> None:
     """Roof and floor moved together, the floor by 0.8: the load that comes out is their common reaction."""
     data = wall(events=5, constant=[])
     data["analysis"][0]["reference"] = [
-        {"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}, {"edge": "left", "y": [1.5, 1.5], "ratio": 0.8}]}
+        {
+            "kind": "displacement",
+            "direction": "x",
+            "parts": [{"edge": "top"}, {"edge": "left", "y": [1.5, 1.5], "ratio": 0.8}],
+        }
     ]
     result = run_deck(data)
     u = result["state_displacement"][-1]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from extrados.core.errors import CoreError
 from extrados.core.sla import Softening, intervals, largest_band, teeth
 
@@ -77,7 +78,9 @@ def test_overshoot_is_optional() -> None:
     )
     assert over[0] == pytest.approx(STRENGTH, rel=1e-12)
     assert without[0] == pytest.approx(STRENGTH, rel=1e-12)
-    assert teeth(Softening(STRENGTH, ENERGY, exact=False), YOUNG, 0.02)[1][0] == pytest.approx(1.0953 * STRENGTH, rel=1e-4)
+    assert teeth(Softening(STRENGTH, ENERGY, exact=False), YOUNG, 0.02)[1][0] == pytest.approx(
+        1.0953 * STRENGTH, rel=1e-4
+    )
 
 
 @pytest.mark.parametrize("law", ["linear", "exponential", "hordijk"])

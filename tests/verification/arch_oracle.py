@@ -27,7 +27,7 @@ class Oracle:
                 return np.array([np.cos(t) * v[0] - np.sin(t) * v[1], np.sin(t) * v[0] + np.cos(t) * v[1]])
 
             at_b = a + rot(b - a, sense * q)
-            guess = fsolve(lambda t, at_b=at_b: at_b + rot(c - b, t[0]) - d - rot(c - d, t[1]), guess, xtol=1e-14)
+            guess = fsolve(lambda t, at_b=at_b: at_b + rot(c - b, t[0]) - d - rot(c - d, t[1]), guess, xtol=1e-12)
             angles = [0.0, sense * q, guess[0], guess[1], 0.0]
             pivots = [(a, a), (a, a), (b, at_b), (d, d), (d, d)]
             for i in range(arch.voussoirs):

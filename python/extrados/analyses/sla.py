@@ -185,7 +185,9 @@ def _curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) ->
     result.arrays[f"{prefix}event_equilibrium"] = Array(e.equilibrium.astype(np.int8), dim, "", "1 in equilibrium")
     if not prefix:
         for name in ("damage_start", "damage_end"):
-            result.arrays[name] = Array(getattr(curve, name).T, ("all_points", "damage_row"), "", "damage, to go on from")
+            result.arrays[name] = Array(
+                getattr(curve, name).T, ("all_points", "damage_row"), "", "damage, to go on from"
+            )
     d, p = envelope(e.monitors[e.equilibrium, 0], e.load[e.equilibrium] * unit)
     result.arrays[f"{prefix}envelope_displacement"] = Array(d, (f"{prefix}envelope",), "m", "monotone envelope")
     result.arrays[f"{prefix}envelope_load"] = Array(p, (f"{prefix}envelope",), "N", "monotone envelope")
@@ -206,7 +208,9 @@ def _curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) ->
         states = curve.states
         dims = (f"{prefix}states",)
         n = len(model.point_xy)
-        result.arrays[f"{prefix}state_event"] = Array(np.array([s.event + 1 for s in states]), dims, "", "event, from 1")
+        result.arrays[f"{prefix}state_event"] = Array(
+            np.array([s.event + 1 for s in states]), dims, "", "event, from 1"
+        )
         result.arrays[f"{prefix}state_load"] = Array(np.array([s.load for s in states]) * unit, dims, "N", "load")
         result.arrays[f"{prefix}state_displacement"] = Array(
             np.stack([s.displacement for s in states]), (*dims, "nodes", "axis"), "m", "displacements of the nodes"
@@ -255,9 +259,7 @@ def _bounded(limits: np.ndarray) -> np.ndarray:
 
 
 def _split(model: SlaModel, n: int) -> list[np.ndarray]:
-    counts = [
-        len(b.connect) * {"T3": 1, "T6": 3}.get(b.kind, b.gauss[0] * b.gauss[1]) for b in model.wall.blocks
-    ]
+    counts = [len(b.connect) * {"T3": 1, "T6": 3}.get(b.kind, b.gauss[0] * b.gauss[1]) for b in model.wall.blocks]
     return np.split(np.arange(n), np.cumsum(counts)[:-1])
 
 
@@ -267,11 +269,16 @@ def _sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> No
         away = np.abs(model.point_xy[:, 0] - x)
         near = np.flatnonzero(away <= away.min() + 1e-6 * model.wall.size)
         near = near[np.argsort(model.point_xy[near, 1], kind="stable")]
-        result.arrays[f"section_{i}_y"] = Array(model.point_xy[near, 1], (f"section_{i}",), "m", f"points at x = {x:g} m")
+        result.arrays[f"section_{i}_y"] = Array(
+            model.point_xy[near, 1], (f"section_{i}",), "m", f"points at x = {x:g} m"
+        )
         for end in ("lo", "hi"):
             rows = np.stack([s.report[f"lambda_{end}"][near] for s in curve.states])
             result.arrays[f"section_{i}_{end}"] = Array(
-                _bounded(rows) * model.unit, ("states", f"section_{i}"), "N", "least admitted load" if end == "lo" else "greatest admitted load"
+                _bounded(rows) * model.unit,
+                ("states", f"section_{i}"),
+                "N",
+                "least admitted load" if end == "lo" else "greatest admitted load",
             )
 
 

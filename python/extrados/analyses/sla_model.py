@@ -109,7 +109,9 @@ def _build(wall: WallMesh, options: Sla, strength: np.ndarray | None) -> SlaMode
         node, direction, stiffness = (np.array(column) for column in zip(*springs, strict=True))
         ground = np.full(len(node), -1)
         groups.append(
-            core.Springs(np.column_stack([node, ground]), np.column_stack([direction, direction]), stiffness.astype(float))
+            core.Springs(
+                np.column_stack([node, ground]), np.column_stack([direction, direction]), stiffness.astype(float)
+            )
         )
     constant = nodal_forces(wall, options.constant, "constant")
     reference = nodal_forces(wall, options.reference, "reference")
@@ -275,9 +277,7 @@ def strength_factors(wall: WallMesh, options: Sla, seed: int) -> np.ndarray | No
     """Lognormal factors of ft with mean 1 by element, correlated over strength_length; None without scatter."""
     if options.strength_variation == 0.0:
         return None
-    centres = np.concatenate(
-        [wall.xy[b.connect[:, : corner_count(b.kind)]].mean(axis=1) for b in wall.blocks]
-    )
+    centres = np.concatenate([wall.xy[b.connect[:, : corner_count(b.kind)]].mean(axis=1) for b in wall.blocks])
     rng = np.random.default_rng(seed)
     sigma = np.sqrt(np.log1p(options.strength_variation**2))
     length = options.strength_length

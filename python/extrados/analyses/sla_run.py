@@ -74,7 +74,9 @@ def run_curves(
             core_model.loads(
                 model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger
             )
-            curve = _reference_stage(core_model, model, options, sign, progress, bool(stage_a is None and damage is None))
+            curve = _reference_stage(
+                core_model, model, options, sign, progress, bool(stage_a is None and damage is None)
+            )
             curve.seconds = time.perf_counter() - begin
             curve.stage_a = stage_a
             curve.damage_start = start
@@ -167,7 +169,7 @@ def _reference_stage(
             break
         batch = int(np.clip(batch * BATCH_SECONDS / max(spent, 1e-3), 10, 100_000)) if room == batch else batch
     events = core.Events.join(parts)
-    events.monitors *= sign   # positive in the sense of the load
+    events.monitors *= sign  # positive in the sense of the load
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
     if len(events):

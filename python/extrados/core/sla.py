@@ -201,8 +201,8 @@ class Plane:
     young: float | np.ndarray
     nu: float | np.ndarray
     band: float | np.ndarray = 0.0
-    tension: Softening | None | Sequence[Softening | None] = None
-    compression: Softening | None | Sequence[Softening | None] = None
+    tension: Softening | Sequence[Softening | None] | None = None
+    compression: Softening | Sequence[Softening | None] | None = None
     lateral: float | np.ndarray = 0.0
     axis: float | np.ndarray = np.nan
     points: tuple[int, int] = (2, 2)
@@ -217,8 +217,8 @@ class Bars:
     area: float | np.ndarray
     young: float | np.ndarray
     band: float | np.ndarray = 0.0
-    tension: Softening | None | Sequence[Softening | None] = None
-    compression: Softening | None | Sequence[Softening | None] = None
+    tension: Softening | Sequence[Softening | None] | None = None
+    compression: Softening | Sequence[Softening | None] | None = None
 
 
 @dataclass(frozen=True)
@@ -467,4 +467,3 @@ class Model:
         """Go on from a stored damage: the factor is made anew."""
         _core.api_sla.damage(self._handle, 0, real("damage", damage, (11, self.points)))
         self.factorise()
-

@@ -1,15 +1,20 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, motions, sla, structures, walls
+from extrados.decks import analyses, block, motion_analyses, motions, sla, structures, walls
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, walls.Panel, walls.Mesh)
+STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block, walls.Panel, walls.Mesh)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
     motions.SinePulse,
     motions.Harmonic,
+    motions.Pulse,
+    motions.VelocityPulse,
     motions.Record,
+    motions.Suite,
+    motions.Generated,
+    motions.Compatible,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Tilt,
@@ -17,6 +22,8 @@ ANALYSES: tuple[type[Analysis], ...] = (
     analyses.FailureDomain,
     analyses.Assessment,
     sla.Sla,
+    motion_analyses.MotionStudy,
+    motion_analyses.ShakeTable,
 )
 
 

@@ -75,7 +75,9 @@ class Sla(Analysis):
     constant_damage: bool = key(
         True, "bring A from 0 to 1 with damage before B; without it B acts on the undamaged wall", source="thesis 4.3.1"
     )
-    directions: list[Literal["+", "-"]] = key(["+"], "senses of B, each from the same start", min_length=1, max_length=2)
+    directions: list[Literal["+", "-"]] = key(
+        ["+"], "senses of B, each from the same start", min_length=1, max_length=2
+    )
     control: list[Watch] = key(
         [], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50
     )

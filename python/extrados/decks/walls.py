@@ -108,9 +108,7 @@ class Support(Placed):
     """Nodes that are held."""
 
     fix: Literal["x", "y", "xy"] = key("xy", "directions that are held")
-    stiffness: Annotated[float, Field(gt=0)] | None = key(
-        None, "spring in N/m at each node instead of a rigid support"
-    )
+    stiffness: Annotated[float, Field(gt=0)] | None = key(None, "spring in N/m at each node instead of a rigid support")
 
 
 class Tie(Placed):

@@ -118,9 +118,12 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found.append(
             (
                 style.save(fig, folder, f"{name}-history"),
-                "Ground motion, rotation of link AB with impacts, energies, friction needed. Dashed: acceleration at which hinges open; dotted: critical rotation.",
+                f"Ground motion, rotation of {r.get('rotation_of', 'link AB')} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
             )
         )
+    moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
+    if moving.any():
+        found.append(_draw_friction(run, name, folder, t, moving))
     times = run.arrays[name].get("snapshot_time")
     if times is not None and len(times.data):
         blocks, centroid = outlines(run, name), run.array(name, "centroid")
@@ -143,10 +146,33 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),
-                    "Deformed arch (true scale) and dynamic thrust line at the greatest rotations.",
+                    "The structure (true scale) and its dynamic thrust line at the greatest rotations.",
                 )
             )
     return found
+
+
+def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: np.ndarray) -> tuple[str, str]:
+    """Friction needed along the arch over time, and its greatest value at each joint."""
+    friction = run.array(name, "required_friction")
+    first, last = np.flatnonzero(moving)[[0, -1]]
+    part = slice(max(first - 1, 0), last + 2)
+    shown = np.where(moving[part, None], np.minimum(friction[part], 1.0), np.nan)
+    with style.figure(8.0, 3.6, columns=2, width_ratios=[2.4, 1]) as (fig, (over_time, along)):
+        joints = np.arange(friction.shape[1])
+        mesh = over_time.pcolormesh(
+            t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True
+        )
+        fig.colorbar(mesh, ax=over_time, label="coefficient of friction needed (1 and above)")
+        over_time.set_xlabel("time [s]")
+        over_time.set_ylabel("joint, 0 at the left springing")
+        over_time.grid(False)
+        along.plot(np.minimum(friction[moving].max(axis=0), 2.0), joints, "o-", color=style.HINGE, markersize=3)
+        along.set_xlabel("greatest friction needed")
+        along.set_ylabel("joint")
+        return style.save(
+            fig, folder, f"{name}-friction"
+        ), "Friction needed along the arch while it rocks (white: at rest)."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

@@ -220,7 +220,9 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             number, get("stored")[upto], get("dissipated")[upto], colors=["#cfe3d6", "#f2c28b"],
             labels=["stored", "dissipated"],
         )  # fmt: skip
-        ax.plot(number, get("external")[upto], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads")
+        ax.plot(
+            number, get("external")[upto], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads"
+        )
         ax.plot(number, get("crack")[upto], color=style.THRUST, linewidth=0.9, label="area of the teeth")
         ax.set_xlabel("event")
         ax.set_ylabel("energy [J]")

@@ -3,11 +3,15 @@
 from pathlib import Path
 from typing import Any
 
+from extrados.decks import block as block_models
 from extrados.decks import structures as models
 from extrados.decks import walls
 from extrados.decks.table import Structure
 from extrados.structures.arch import make_arch
+from extrados.structures.block import make_block
 from extrados.structures.panel import make_panel
+
+BLOCK_KEYS = {"width", "height", "depth", "density", "mass", "inertia", "centre_height", "toe_right", "toe_left"}
 
 
 def make_structure(model: Structure | None, folder: Path) -> Any:
@@ -30,4 +34,6 @@ def make_structure(model: Structure | None, folder: Path) -> Any:
             from extrados.structures.mesh_file import read_mesh
 
             return read_mesh(model, folder)
+        case block_models.Block():
+            return make_block(**model.model_dump(include=BLOCK_KEYS))
     raise TypeError(f"no structure for {type(model).__name__}")

@@ -1,5 +1,7 @@
 """The built-in mesher: rectangles with rectangular openings and notches."""
 
+import itertools
+
 import numpy as np
 
 from extrados.decks.walls import Panel
@@ -41,7 +43,7 @@ def grid_lines(model: Panel, axis: int) -> np.ndarray:
             kept.append(value)
     kept[-1] = length
     lines = [np.zeros(1)]
-    for a, b in zip(kept[:-1], kept[1:], strict=True):
+    for a, b in itertools.pairwise(kept):
         size = model.size
         for part in model.refine:
             ends = getattr(part, word)
@@ -76,9 +78,7 @@ def grid(columns: np.ndarray, rows: np.ndarray, model: Panel) -> tuple[np.ndarra
     return xy, np.concatenate([a[:, [0, 1, 2]], a[:, [0, 2, 3]], b[:, [0, 1, 3]], b[:, [1, 2, 3]]])
 
 
-def random_triangles(
-    columns: np.ndarray, rows: np.ndarray, model: Panel, seed: int
-) -> tuple[np.ndarray, np.ndarray]:
+def random_triangles(columns: np.ndarray, rows: np.ndarray, model: Panel, seed: int) -> tuple[np.ndarray, np.ndarray]:
     """Delaunay triangles on the grid's points, those inside moved at random."""
     from scipy.spatial import Delaunay
 

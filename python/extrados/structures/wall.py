@@ -69,7 +69,9 @@ class WallMesh:
                 inside &= (self.xy[:, axis] >= ends[0] - tolerance) & (self.xy[:, axis] <= ends[1] + tolerance)
         found = np.flatnonzero(inside)
         if not len(found):
-            raise BadWall(f"{what}: no node lies on edge {place.edge}, x {place.x}, y {place.y}; a mesh line is missing")
+            raise BadWall(
+                f"{what}: no node lies on edge {place.edge}, x {place.x}, y {place.y}; a mesh line is missing"
+            )
         return found
 
     def boundary(self) -> tuple[np.ndarray, np.ndarray]:
