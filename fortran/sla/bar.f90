@@ -2,7 +2,8 @@
 module sla_bar
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
-   use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, linear_bound, &
+   use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, &
+      linear_bound, &
       code_tension, code_compression
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
@@ -92,7 +93,8 @@ contains
       integer :: i
       k = 0.0_wp
       do i = 1, 4
-         k(1:4, i) = self%volume(element) * self%modulus(element) * self%gradient(:, element) * self%gradient(i, element)
+         k(1:4, i) = self%volume(element) * self%modulus(element) * self%gradient(:, element) &
+            * self%gradient(i, element)
       end do
    end subroutine bar_matrix
 
@@ -140,10 +142,12 @@ contains
          sa = self%modulus(e) * dot_product(self%gradient(:, e), la)
          sb = self%modulus(e) * dot_product(self%gradient(:, e), lb)
          limit = bar_limits(self, e)
-         if (limit(1) < unbounded) &
-            call linear_bound(sa, sb, limit(1), limit(1), lambda, noise, e, code_tension, found)
-         if (limit(2) < unbounded) &
-            call linear_bound(-sa, -sb, limit(2), limit(2), lambda, noise, e, code_compression, found)
+         if (limit(1) < unbounded) then
+           call linear_bound(sa, sb, limit(1), limit(1), lambda, noise, e, code_tension, found)
+         end if
+         if (limit(2) < unbounded) then
+           call linear_bound(-sa, -sb, limit(2), limit(2), lambda, noise, e, code_compression, found)
+         end if
       end do
    end subroutine bar_scan
 

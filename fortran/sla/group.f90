@@ -224,8 +224,9 @@ contains
       integer, intent(in) :: point
       integer, intent(in) :: code
       found%bounded = .true.
-      if (found%empty%point == 0 .or. value > found%empty%value) &
-         found%empty = bound(value, 0, point, code)
+      if (found%empty%point == 0 .or. value > found%empty%value) then
+        found%empty = bound(value, 0, point, code)
+      end if
    end subroutine offer_empty
 
    !> Limits of lambda from sa + lambda sb <= f

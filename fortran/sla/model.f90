@@ -8,7 +8,8 @@ module sla_model
    use sla_assembly, only : build_pattern, assemble
    use sla_c_bindings, only : extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, &
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
-   use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, most_rank, report_rows
+   use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, most_rank, &
+      report_rows
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
    implicit none

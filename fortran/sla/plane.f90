@@ -336,8 +336,9 @@ contains
          f = self%limit(k, p)
          if (f < unbounded) call linear_bound(sa(k), sb(k), f, f, lambda, noise, p, code_tension + k - 1, found)
          fc = self%limit(k + 2, p)
-         if (fc < unbounded) &
-            call linear_bound(-sa(k), -sb(k), fc, fc, lambda, noise, p, code_compression + k - 1, found)
+         if (fc < unbounded) then
+           call linear_bound(-sa(k), -sb(k), fc, fc, lambda, noise, p, code_compression + k - 1, found)
+         end if
          if (.not. self%options%closure .or. self%tooth(k, p) == 1) cycle
          f = self%teeth%strength_of(self%table(e), 1_c_int, 1.0_wp)
          if (self%shut(k, p) /= 0) then
@@ -441,8 +442,9 @@ contains
          call add_vector(self, e, p, v, alpha * self%weight(p), event)
       end if
       change = old(4) - self%stiff(4, p)
-      if (abs(change) > 1.0e-14_wp * old(4)) &
-         call add_vector(self, e, p, [0.0_wp, 0.0_wp, 1.0_wp], change * self%weight(p), event)
+      if (abs(change) > 1.0e-14_wp * old(4)) then
+        call add_vector(self, e, p, [0.0_wp, 0.0_wp, 1.0_wp], change * self%weight(p), event)
+      end if
 
    end subroutine damage
 

@@ -77,7 +77,7 @@ contains
       case (law_exponential)
          law%range = gf / (ft * h) - 0.5_wp * law%peak
          law%total = gf / h
-      case (law_hordijk)
+      case default
          law%range = hordijk_area * gf / (ft * h)
          law%total = ft * law%range * hordijk_integral(1.0_wp)
       end select
@@ -129,7 +129,8 @@ contains
       case (law_exponential)
          area = self%total - self%stress(x) * self%range
       case default
-         area = self%ft * self%range * hordijk_integral(min(x / self%range, 1.0_wp)) + 0.5_wp * self%stress(x)**2 / self%e
+         area = self%ft * self%range * hordijk_integral(min(x / self%range, 1.0_wp)) &
+            + 0.5_wp * self%stress(x)**2 / self%e
       end select
    end function energy
 

@@ -98,8 +98,9 @@ contains
       real(wp) :: strength
       strength = huge(1.0_wp)
       if (table == 0) return
-      if (self%first(table) + tooth - 1 < self%first(table + 1)) &
-         strength = share * self%strength(self%first(table) + tooth - 1)
+      if (self%first(table) + tooth - 1 < self%first(table + 1)) then
+        strength = share * self%strength(self%first(table) + tooth - 1)
+      end if
    end function strength_of
 
 end module sla_tables
