@@ -9,7 +9,7 @@ module sla_interval
    use common_kinds, only : wp
    implicit none
    private
-   public :: cone_interval, inside_cone, overload
+   public :: cone_interval, overload
 
 contains
 
@@ -73,16 +73,6 @@ contains
          hi = -huge(1.0_wp)
       end if
    end subroutine cone_interval
-
-   !> True where the stress lies safely inside
-   pure function inside_cone(alpha, beta, s) result(inside)
-      real(wp), intent(in) :: alpha, beta
-      real(wp), intent(in) :: s(3)    !! sx, sy, txy [Pa]
-      logical :: inside
-      real(wp) :: margin
-      margin = alpha - beta * 0.5_wp * (s(1) + s(2))
-      inside = margin >= 0.0_wp .and. margin**2 >= 0.25_wp * (s(1) - s(2))**2 + s(3)**2
-   end function inside_cone
 
    !> By how much the criterion is exceeded, relative to alpha
    pure function overload(alpha, beta, s) result(excess)

@@ -11,7 +11,7 @@ module sla_plane
    use sla_element, only : element_rule, element_rule_new, element_gradients, most_nodes, most_points
    use sla_group, only : point_group, scan_result, event_vectors, material_options, unbounded, &
       offer_hi, offer_lo, offer_empty, linear_bound, code_tension, code_compression, code_close, code_open
-   use sla_interval, only : cone_interval, inside_cone, overload
+   use sla_interval, only : cone_interval, overload
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -379,6 +379,16 @@ contains
          if (lo > -unbounded) call offer_lo(found, lo, p, code)
       end if
    end subroutine cone
+
+   !> True where the stress lies safely inside r <= alpha - beta m; in this module so that it is inlined
+   pure function inside_cone(alpha, beta, s) result(inside)
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: s(3)    !! sx, sy, txy [Pa]
+      logical :: inside
+      real(wp) :: margin
+      margin = alpha - beta * 0.5_wp * (s(1) + s(2))
+      inside = margin >= 0.0_wp .and. margin**2 >= 0.25_wp * (s(1) - s(2))**2 + s(3)**2
+   end function inside_cone
 
    pure subroutine damage(self, point, code, lambda, ua, ub, event, tooth)
       class(plane_group), intent(inout) :: self
