@@ -14,7 +14,7 @@
 
 #include "extrados.h"
 
-enum { most_vectors = 4 };
+enum { most_vectors = 4, most_ahead = 16384 /* bytes */ };
 
 struct extrados_sparse {
   cholmod_common common;
@@ -204,28 +204,52 @@ static inline void forward_block(const struct extrados_sparse *self, int64_t s, 
   }
 }
 
-/* Backward through supernode s; `vectors` is a constant at each call, so that the loops over it unroll. */
-static inline void backward_block(const struct extrados_sparse *self, int64_t s, const int vectors, double *z) {
+/* Sums l[i] t[i] from `from` on, of two columns and `vectors` right-hand sides at once: what is loaded is used
+ * twice. `columns` and `vectors` are constants at each call, so that the loops over them unroll. */
+__attribute__((always_inline)) static inline void products(int64_t from, int64_t rows, const double *const l[2], const double *t,
+                            const int columns, const int vectors, double total[2][most_vectors]) {
+  four sum[2][most_vectors] = {{{0.0}}};
+  int64_t i = from;
+  for (; i + 4 <= rows; i += 4)
+    for (int v = 0; v < vectors; v++) {
+      const four part = *(const four *)(t + v * rows + i);
+      for (int k = 0; k < columns; k++) sum[k][v] += *(const four *)(l[k] + i) * part;
+    }
+  for (int k = 0; k < columns; k++)
+    for (int v = 0; v < vectors; v++) {
+      total[k][v] = (sum[k][v][0] + sum[k][v][1]) + (sum[k][v][2] + sum[k][v][3]);
+      for (int64_t j = i; j < rows; j++) total[k][v] += l[k][j] * t[v * rows + j];
+    }
+}
+
+/* Backward through supernode s; `vectors` is a constant at each call. */
+__attribute__((always_inline)) static inline void backward_block(const struct extrados_sparse *self, int64_t s, const int vectors, double *z) {
   const int64_t *super = self->factor->super, *pi = self->factor->pi;
   const int64_t *row = (const int64_t *)self->factor->s + pi[s];
   const double *x = (const double *)self->factor->x + ((const int64_t *)self->factor->px)[s];
   int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s], n = self->n;
-  double *t = self->buffer;
+  double *t = self->buffer, total[2][most_vectors];
+  /* The factor is walked from its end, which the processor does not foresee: the next block is asked for now. */
+  if (s > 0) {
+    const char *next = (const char *)((const double *)self->factor->x + ((const int64_t *)self->factor->px)[s - 1]);
+    for (const char *line = next; line < (const char *)x && line < next + most_ahead; line += 64)
+      __builtin_prefetch(line);
+  }
   for (int v = 0; v < vectors; v++)
     for (int64_t i = 0; i < rows; i++) t[v * rows + i] = z[v * n + row[i]];
-  for (int64_t c = columns - 1; c >= 0; c--) {
-    const double *l = x + c * rows;
-    four sum[most_vectors] = {{0.0}};
-    int64_t i = c + 1;
-    for (; i + 4 <= rows; i += 4) {
-      const four part = *(const four *)(l + i);
-      for (int v = 0; v < vectors; v++) sum[v] += part * *(const four *)(t + v * rows + i);
-    }
+  int64_t c = columns - 1;
+  for (; c > 0; c -= 2) {
+    const double *l[2] = {x + c * rows, x + (c - 1) * rows};
+    products(c + 1, rows, l, t, 2, vectors, total);
     for (int v = 0; v < vectors; v++) {
-      double total = (sum[v][0] + sum[v][1]) + (sum[v][2] + sum[v][3]);
-      for (int64_t k = i; k < rows; k++) total += l[k] * t[v * rows + k];
-      t[v * rows + c] -= total;
+      t[v * rows + c] -= total[0][v];
+      t[v * rows + c - 1] -= total[1][v] + l[1][c] * t[v * rows + c];
     }
+  }
+  if (c == 0) {
+    const double *l[2] = {x, x};
+    products(1, rows, l, t, 1, vectors, total);
+    for (int v = 0; v < vectors; v++) t[v * rows] -= total[0][v];
   }
   for (int v = 0; v < vectors; v++)
     memcpy(z + v * n + super[s], t + v * rows, (size_t)columns * sizeof *t);

@@ -293,15 +293,30 @@ contains
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
       real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), sa(3), sb(3)
-      integer :: e, p
+      logical :: simple
+      integer :: e, p, i
 
       do e = first, last
          if (self%table(e) == 0 .and. self%crush_table(e) == 0) cycle
-         call self%gather(e, ua, la)
-         call self%gather(e, ub, lb)
+         do i = 1, self%freedoms
+            la(i) = ua(self%equation(i, e))
+            lb(i) = ub(self%equation(i, e))
+         end do
+         if (self%tied) then
+            la(1:self%freedoms) = la(1:self%freedoms) * self%factor(:, e)
+            lb(1:self%freedoms) = lb(1:self%freedoms) * self%factor(:, e)
+         end if
+         simple = self%table(e) /= 0 .and. self%crush_table(e) == 0 .and. self%lateral(e) <= 0.0_wp
          do p = (e - 1) * self%rule%points + 1, e * self%rule%points
             sa = stress_at(self, p, strain_at(self, e, p, la))
             sb = stress_at(self, p, strain_at(self, e, p, lb))
+            if (simple .and. self%cracked(p) == 0 .and. found%hi%value < unbounded .and. &
+                found%lo%value > -unbounded) then
+               ! Nearly all points end here: they admit both limits found so far, see cone.
+               if (inside_cone(self%limit(1, p), 1.0_wp, sa + found%hi%value * sb)) then
+                  if (inside_cone(self%limit(1, p), 1.0_wp, sa + found%lo%value * sb)) cycle
+               end if
+            end if
             call scan_point(self, e, p, sa, sb, lambda, noise, found)
          end do
       end do
