@@ -38,6 +38,7 @@ DRIVERS = {
     "code-checks": "extrados.analyses.code_checks",
     "motion": "extrados.analyses.motion_study",
     "shake-table": "extrados.analyses.shake_table",
+    "sla": "extrados.analyses.sla",
 }
 
 

@@ -28,6 +28,7 @@ DRAWERS = {
     "code-checks": "extrados.plots.statistics:draw_code_checks",
     "motion": "extrados.plots.motion:draw_motion",
     "shake-table": "extrados.plots.motion:draw_shake_table",
+    "sla": "extrados.plots.sla:draw_sla",
 }
 
 TEMPLATE = """<!doctype html>
