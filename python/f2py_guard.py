@@ -17,9 +17,7 @@ run = subprocess.run(
 said = run.stdout + run.stderr
 bad = re.findall(r"^.*(?:is mapped to C|not impl|kipping|No C typespec|crackline:.*unknown).*$", said, re.M)
 missing = [
-    name
-    for name in (f"{module}module.c", f"{module}-f2pywrappers2.f90")
-    if not os.path.exists(os.path.join(out, name))
+    name for name in (f"{module}module.c", f"{module}-f2pywrappers2.f90") if not os.path.exists(os.path.join(out, name))
 ]
 if run.returncode or bad or missing:
     sys.exit("\n".join([said, "f2py guard refuses:", *bad, *(f"missing {name}" for name in missing)]))

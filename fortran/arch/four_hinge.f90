@@ -82,8 +82,9 @@ contains
             mechanism%lock = bisect(mechanism, previous, q, for_lock=.true.)
             exit
          end if
-         if (dv <= 0.0_wp .and. mechanism%critical <= 0.0_wp) &
-            mechanism%critical = bisect(mechanism, previous, q, for_lock=.false.)
+         if (dv <= 0.0_wp .and. mechanism%critical <= 0.0_wp) then
+           mechanism%critical = bisect(mechanism, previous, q, for_lock=.false.)
+         end if
          previous = q
       end do
       if (mechanism%lock <= 0.0_wp) mechanism%lock = 1.6_wp

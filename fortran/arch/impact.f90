@@ -63,7 +63,8 @@ contains
       a(5, 5) = -spin_momentum(after, int(joint(3)) + 1, n, opposite(:, 3))
       b(5) = -spin_momentum(before, int(joint(3)) + 1, n, opposite(:, 3))
       call small_solve(a, b, status)
-      if (status == status_ok) thesis = b(5)
+      ! Before impact the links close, after it they open: the fields are those of opening.
+      if (status == status_ok) thesis = -b(5)
 
    contains
 

@@ -223,8 +223,7 @@ contains
             end if
             call polish_impact(problem, q, v, a, atol_q, atol_v, options%tolerance, s, step)
             call note_turning(step, v)
-            call account(step)
-            call record_moving(step)
+            call record_moving(step, 1.0_wp)
             from_rest = .false.
             t = step%t + step%h
             v_before = min(step%v, 0.0_wp)
@@ -253,9 +252,8 @@ contains
 
          if (step%q >= body%limit(i)) then
             s = crossing_fraction(step, body%limit(i))
-            step%h = step%h * s
             call record_moving(step, s)
-            t = step%t + step%h
+            t = step%t + s * step%h
             answer%outcome = outcome_collapse
             answer%stop_time = t
             call note_peak(body%limit(i))
@@ -264,8 +262,7 @@ contains
          end if
 
          call note_turning(step, v)
-         call account(step)
-         call record_moving(step)
+         call record_moving(step, 1.0_wp)
          from_rest = .false.
          t = step%t + step%h
          if (h >= remaining) t = t_next
@@ -364,12 +361,8 @@ contains
          history%loss = history%loss - energy
       end subroutine gain
 
-      !> Work of the ground over a step, by three Gauss points on the dense output (thesis Eq. 6.4)
-      subroutine account(done)
-         type(dopri5_step), intent(in) :: done
-         if (present(history)) history%work = history%work + work_of(done, 1.0_wp)
-      end subroutine account
-
+      !> Work of the ground over the first part of a step, by three Gauss points on the dense output
+      !> (thesis Eq. 6.4)
       function work_of(done, fraction) result(work)
          type(dopri5_step), intent(in) :: done
          real(wp), intent(in) :: fraction
@@ -389,29 +382,28 @@ contains
          end do
       end function work_of
 
-      !> Fill the output times that a step covers; `covered` is the fraction of the original step kept
+      !> Fill the output times that the first part of a step covers, and book the work done over it
       subroutine record_moving(done, covered)
          type(dopri5_step), intent(in) :: done
-         real(wp), intent(in), optional :: covered
-         real(wp) :: x, end_time, rotation, rate, horizontal, vertical, kinetic, sigma, shrink
+         real(wp), intent(in) :: covered  !! fraction of the step
+         real(wp) :: x, end_time, rotation, rate, horizontal, vertical, energy, potential, sigma
          if (.not. present(history)) return
-         shrink = 1.0_wp
-         if (present(covered)) shrink = covered
          sigma = real(problem%side, wp)
-         end_time = done%t + done%h
+         end_time = done%t + covered * done%h
          do while (history%points < size(history%time))
             if (history%time(history%points + 1) > end_time) exit
             history%points = history%points + 1
-            x = shrink * max(0.0_wp, (history%time(history%points) - done%t) / done%h)
+            x = max(0.0_wp, (history%time(history%points) - done%t) / done%h)
             rotation = max(done%coordinate(x), 0.0_wp)
             rate = done%rate(x)
             call ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
-            call body_energy(rotation, rate, kinetic)
-            kinetic = kinetic - body%potential(problem%side, rotation)
+            call body_energy(rotation, rate, energy)
+            potential = body%potential(problem%side, rotation)
             history%state(:, history%points) = [sigma * rotation, sigma * rate, &
                sigma * problem%acceleration(history%time(history%points), rotation, rate), horizontal, vertical, &
-               kinetic, body%potential(problem%side, rotation), history%work - history%loss]
+               energy - potential, potential, history%work + work_of(done, x) - history%loss]
          end do
+         history%work = history%work + work_of(done, covered)
       end subroutine record_moving
 
       subroutine record_rest(until)

@@ -99,9 +99,10 @@ class ThrustLine:
 
     @property
     def friction(self) -> np.ndarray:
-        """Coefficient of friction needed at each joint; infinite where the joint is in tension."""
+        """Coefficient of friction needed at each joint; infinite in tension, 0 where the state is at rest (NaN)."""
         with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(self.normal > 0.0, np.abs(self.shear) / self.normal, np.inf)
+            needed = np.where(self.normal > 0.0, np.abs(self.shear) / self.normal, np.inf)
+        return np.where(np.isnan(self.normal), 0.0, needed)
 
 
 def thrust_line(mechanism: FourHinge, arch, q, v, a, horizontal, vertical) -> ThrustLine:
@@ -118,7 +119,11 @@ def thrust_line(mechanism: FourHinge, arch, q, v, a, horizontal, vertical) -> Th
         integers("joint", mechanism.joint, 4),
         real("intrados", arch.intrados.T, (2, n + 1)),
         real("extrados", arch.extrados.T, (2, n + 1)),
-        *(real(name, x, (nt,)) for name, x in zip("qvahz", (q, v, a, horizontal, vertical), strict=True)),
+        real("q", q, (nt,)),
+        real("v", v, (nt,)),
+        real("a", a, (nt,)),
+        real("horizontal", horizontal, (nt,)),
+        real("vertical", vertical, (nt,)),
     )
     check(status, "dynamic thrust line")
     return ThrustLine(normal.T, shear.T, position.T, point.transpose(2, 1, 0), miss)

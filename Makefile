@@ -1,0 +1,43 @@
+# `make run` and `make test` set up whatever is missing first; both are quick the second time.
+DECK ?= cases/arch/readme.toml
+PYTHON := .venv/bin/python
+
+.PHONY: run test verify bench lint format wheel setup table-5-3 docs clean
+
+run: setup
+	@.venv/bin/extrados run $(DECK)
+
+test: setup
+	@$(PYTHON) -m pytest -q
+	@$(PYTHON) tools/fortran_tests.py
+
+verify: setup  ## long validation; writes docs/verification.md
+	@$(PYTHON) -m pytest -q -m ""
+	@$(PYTHON) tools/verification_book.py
+
+bench: setup
+	@$(PYTHON) -m tests.bench
+
+lint: setup
+	@.venv/bin/ruff check python tests tools
+	@.venv/bin/ruff format --check python tests tools
+	@.venv/bin/fortitude check fortran tests/fortran
+
+format: setup
+	@.venv/bin/ruff check --fix python tests tools
+	@.venv/bin/ruff format python tests tools
+
+docs: setup  ## the deck reference, from the deck models
+	@.venv/bin/extrados explain --manual > docs/decks.md
+
+table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3)
+	@$(PYTHON) -m extrados.analyses.criterion
+
+wheel: setup
+	@$(PYTHON) -m pip wheel --no-deps --no-build-isolation -w dist .
+
+setup:
+	@sh tools/setup.sh
+
+clean:
+	rm -rf .venv build dist results

@@ -1,0 +1,248 @@
+"""The command line. Exit codes: 0 done; 2 the deck is wrong; 3 refused or failed; 130 interrupted."""
+
+import json
+import logging
+import sys
+import time
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from extrados._build_info import VERSION
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
+out_console = Console(highlight=False, soft_wrap=True)
+err_console = Console(stderr=True, highlight=False, soft_wrap=True)
+
+WRONG_DECK, NOT_DONE, INTERRUPTED = 2, 3, 130
+
+
+class _Progress:
+    """A bar on a terminal, plain lines every few seconds elsewhere, nothing before the first second."""
+
+    def __init__(self, quiet: bool):
+        self.quiet = quiet
+        self.begin = self.last = time.monotonic()
+        self.bar = None
+        self.task = None
+
+    def __call__(self, done: float, total: float, text: str) -> None:
+        now = time.monotonic()
+        if self.quiet or now - self.begin < 1.0:
+            return
+        if err_console.is_terminal:
+            if self.bar is None:
+                from rich.progress import Progress
+
+                self.bar = Progress(console=err_console, transient=True)
+                self.bar.start()
+                self.task = self.bar.add_task(text, total=total)
+            self.bar.update(self.task, completed=done, total=total, description=text)
+        elif now - self.last > 5.0:
+            err_console.print(f"{text}: {100 * done / max(total, 1e-300):.0f} %", markup=False)
+            self.last = now
+
+    def stop(self) -> None:
+        if self.bar is not None:
+            self.bar.stop()
+
+
+@contextmanager
+def _errors(json_out: bool = False):
+    """Every error a user can cause ends as a message and an exit code, never as a traceback."""
+    from extrados.decks.reader import DeckError
+    from extrados.results.store import StoreError
+
+    def tell(lines: list[str], code: int) -> None:
+        if json_out:
+            out_console.print_json(json.dumps({"error": lines, "exit": code}))
+        else:
+            for line in lines:
+                err_console.print(line, markup=False)
+        raise typer.Exit(code)
+
+    try:
+        yield
+    except DeckError as error:
+        tell(error.complaints, WRONG_DECK)
+    except StoreError as error:
+        tell([str(error)], NOT_DONE)
+    except KeyboardInterrupt:
+        tell(["interrupted"], INTERRUPTED)
+
+
+@app.command()
+def run(
+    decks: Annotated[list[Path], typer.Argument(help="decks to run")],
+    out: Annotated[Path | None, typer.Option(help="results folder; default results/<deck name>")] = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
+    resume: Annotated[bool, typer.Option(help="go on from the checkpoint of an interrupted run")] = False,
+    figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no answer")] = False,
+    as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
+) -> None:
+    """Run decks: print the answer, write results, figures and report."""
+    from extrados.analyses.run import Context, default_threads
+    from extrados.decks.reader import read_deck
+    from extrados.session import run_deck
+
+    if out is not None and len(decks) > 1:
+        err_console.print("--out takes one deck at a time")
+        raise typer.Exit(WRONG_DECK)
+    worst = 0
+    with _errors(as_json):
+        checked = [read_deck(path) for path in decks]
+        for deck in checked:
+            progress = _Progress(quiet or as_json)
+            context = Context(deck, threads or default_threads(), progress, resume=resume)
+            try:
+                folder, results = run_deck(context, out, figures)
+            finally:
+                progress.stop()
+            if as_json:
+                out_console.print_json((folder / "summary.json").read_text(encoding="utf-8"))
+            elif not quiet:
+                _tell(deck, results, folder, figures)
+            codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": INTERRUPTED}
+            for result in results:
+                if quiet and result.status != "ok":
+                    err_console.print(f"{result.kind}: {result.status}: {result.reason}", markup=False)
+                worst = max(worst, codes[result.status])
+            if worst == INTERRUPTED:
+                break
+    raise typer.Exit(worst)
+
+
+def _tell(deck, results, folder: Path, figures: bool) -> None:
+    if deck.title:
+        out_console.print(deck.title, style="bold", markup=False)
+    for result in results:
+        if result.status != "ok":
+            out_console.print(f"{result.kind}: {result.status}: {result.reason}", markup=False)
+        if result.answer:
+            out_console.print(f"{result.kind}: {result.answer}", markup=False)
+        for warning in result.warnings:
+            out_console.print(f"{result.kind}: warning: {warning}", markup=False)
+    if figures:
+        out_console.print(f"Report:  {folder / 'report.html'}", markup=False)
+        out_console.print(f"Figures: {folder / 'figures'}", markup=False)
+    else:
+        out_console.print(f"Results: {folder}", markup=False)
+
+
+@app.command()
+def check(decks: Annotated[list[Path], typer.Argument(help="decks to check")]) -> None:
+    """Check decks without running them; every complaint at once."""
+    from extrados.decks.reader import DeckError, read_deck
+
+    complaints = []
+    for path in decks:
+        try:
+            read_deck(path)
+        except DeckError as error:
+            complaints += error.complaints
+    for line in complaints:
+        err_console.print(line, markup=False)
+    if complaints:
+        raise typer.Exit(WRONG_DECK)
+    out_console.print("ok" if len(decks) == 1 else f"{len(decks)} decks ok")
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of decks, for editors."""
+    from extrados.decks.explain import json_schema
+
+    print(json.dumps(json_schema(), indent=1))
+
+
+@app.command()
+def explain(
+    key: Annotated[str | None, typer.Argument(help="a key, a kind or a section")] = None,
+    manual: Annotated[bool, typer.Option(help="the whole reference manual in Markdown")] = False,
+) -> None:
+    """Say what a deck key or kind means: unit, default, bounds, source."""
+    from extrados.decks import explain as explanation
+
+    if manual or key is None:
+        print(explanation.manual())
+        return
+    try:
+        out_console.print(explanation.explain(key), markup=False)
+    except KeyError as error:
+        err_console.print(error.args[0], markup=False)
+        raise typer.Exit(WRONG_DECK) from None
+
+
+@app.command()
+def new(kind: Annotated[str, typer.Argument(help="an analysis or structure kind")]) -> None:
+    """Print a commented starter deck."""
+    from extrados.decks.explain import starter
+
+    try:
+        print(starter(kind))
+    except KeyError as error:
+        err_console.print(error.args[0], markup=False)
+        raise typer.Exit(WRONG_DECK) from None
+
+
+@app.command()
+def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("cases")) -> None:
+    """List the decks below a folder with their titles."""
+    import tomllib
+
+    for path in sorted(folder.rglob("*.toml")):
+        if path.name.endswith(".expect.toml"):
+            continue
+        try:
+            title = tomllib.loads(path.read_text(encoding="utf-8")).get("title", "")
+        except (OSError, ValueError):
+            title = "(cannot be read)"
+        out_console.print(f"{path}: {title}", markup=False)
+
+
+@app.command()
+def report(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
+    """Draw the figures and the report of stored results anew."""
+    from extrados.plots.report import write_report
+
+    with _errors():
+        out_console.print(f"Report:  {write_report(folder)}", markup=False)
+
+
+@app.command()
+def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
+    """Draw the figures of stored results anew."""
+    from extrados.plots.report import draw
+    from extrados.results.store import read
+
+    with _errors():
+        for figures in draw(read(folder), folder).values():
+            for name, caption in figures:
+                out_console.print(f"{folder / 'figures' / name}.png: {caption}", markup=False)
+
+
+@app.command()
+def version() -> None:
+    """Version, commit and compilers."""
+    from extrados.session import provenance
+
+    made = provenance()
+    out_console.print(f"extrados {VERSION} {made['commit']} ({made['compiler']}, {made['build_type']})", markup=False)
+
+
+def main() -> None:
+    """Entry point of the `extrados` command."""
+    logging.basicConfig(level=logging.WARNING, format="%(message)s")
+    try:
+        app()
+    except BrokenPipeError:  # the reader of our output went away, as in `extrados cases | head`
+        sys.stderr.close()
+        sys.exit(NOT_DONE)
+
+
+if __name__ == "__main__":
+    main()

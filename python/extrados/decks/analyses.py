@@ -1,0 +1,60 @@
+"""Analysis kinds of the arch: tilt, rocking, failure domain, assessment."""
+
+from typing import ClassVar, Literal
+
+from extrados.decks.quantities import Acceleration, Time
+from extrados.decks.table import Analysis, key
+
+STANDARD_GRAVITY = 9.80665
+
+
+class Tilt(Analysis):
+    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+
+    kind: Literal["tilt"]
+    structures: ClassVar = ("arch",)
+    friction: float | None = key(
+        None, "coefficient of friction of the joints; without it sliding is excluded", gt=0, le=10
+    )
+
+
+class Rocking(Analysis):
+    """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
+
+    kind: Literal["rocking"]
+    structures: ClassVar = ("arch",)
+    needs_motion: ClassVar = True
+    end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
+    output_step: Time = key(0.005, "spacing of the history", gt=0)
+    tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
+    thrust_line_times: list[Time] = key([], "draw the arch and its dynamic thrust line at these times", max_length=24)
+
+
+class FailureDomain(Analysis):
+    """Which pulses bring the arch down: Mode I (after one impact) and Mode II (without impact)."""
+
+    kind: Literal["failure-domain"]
+    structures: ClassVar = ("arch",)
+    pulse: Literal["step", "sine"] = key(
+        "step", "step pulse of duration t_p, or one sine of period T_p", source="thesis 5.2.3"
+    )
+    durations: list[Time] | None = key(
+        None, "t_p or T_p; default 40 values scaled to the arch", min_length=1, max_length=2000
+    )
+    amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
+    max_amplitude: Acceleration = key(1.5 * STANDARD_GRAVITY, "cap of the search", gt=0)
+    accuracy: float = key(1e-4, "accuracy of the curves, in g (and of durations in s)", gt=0, le=0.1)
+    at_amplitudes: list[Acceleration] = key(
+        [], "also find the shortest failing durations at these amplitudes", max_length=200
+    )
+
+
+class Assessment(Analysis):
+    """Eq. 5.8: does the primary impulse of the motion fall above the failure curve of the arch?"""
+
+    kind: Literal["assessment"]
+    structures: ClassVar = ("arch",)
+    needs_motion: ClassVar = True
+    impulses: int = key(3, "how many of the strongest impulses are tried", ge=1, le=20)
+    min_period: Time | None = key(None, "shortest impulse sought; default 4 sampling steps", gt=0)
+    max_period: Time = key(4.0, "longest impulse sought", gt=0)

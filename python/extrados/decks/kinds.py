@@ -1,0 +1,31 @@
+"""The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
+
+from extrados.decks import analyses, motions, structures
+from extrados.decks.table import Analysis, Motion, Structure, Table
+
+STRUCTURES: tuple[type[Structure], ...] = (structures.Arch,)
+MOTIONS: tuple[type[Motion], ...] = (
+    motions.Constant,
+    motions.StepPulse,
+    motions.SinePulse,
+    motions.Harmonic,
+    motions.Record,
+)
+ANALYSES: tuple[type[Analysis], ...] = (
+    analyses.Tilt,
+    analyses.Rocking,
+    analyses.FailureDomain,
+    analyses.Assessment,
+)
+
+
+def kind_of(model: type[Table]) -> str:
+    """The word that selects a model."""
+    return model.model_fields["kind"].annotation.__args__[0]
+
+
+SECTIONS: dict[str, dict[str, type[Table]]] = {
+    "structure": {kind_of(m): m for m in STRUCTURES},
+    "motion": {kind_of(m): m for m in MOTIONS},
+    "analysis": {kind_of(m): m for m in ANALYSES},
+}

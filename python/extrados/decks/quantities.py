@@ -1,0 +1,84 @@
+"""Numbers with units: SI numbers, or text "NUMBER UNIT" under a strict grammar.
+
+pint sees the unit alone: given a whole string it reads "1,5 m" as 15 m, evaluates "2*3 m" and hangs on
+powers of powers. In decks `g` is gravity, not gram.
+"""
+
+import re
+from functools import lru_cache
+from typing import Annotated, Any
+
+import pint
+from pydantic import BeforeValidator, Field
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
+FACTOR = r"[A-Za-z_%°]\w*(?:(?:\*\*|\^)-?\d)?"
+QUANTITY = re.compile(rf"({NUMBER}) +({FACTOR}(?: ?[*/] ?{FACTOR})*)", re.ASCII)
+LONGEST = 60
+
+_EXAMPLE = {
+    "m": "20 cm", "s": "0.2 s", "m/s^2": "0.5 g", "m/s": "12 cm/s", "Hz": "2 Hz", "deg": "157.5 deg",
+    "kg/m^3": "2000 kg/m^3", "Pa": "3 MPa", "N": "55.6 kN", "N/m": "60 N/m", "Pa/m": "10 GPa/m",
+    "rad/s": "3 rad/s",
+}  # fmt: skip
+
+
+@lru_cache(maxsize=1)
+def _registry() -> pint.UnitRegistry:
+    units = pint.UnitRegistry()
+    units.define("gravity_unit = 9.80665 m/s**2")
+    return units
+
+
+@lru_cache(maxsize=4096)
+def factor(unit: str, si: str) -> float:
+    """How many `si` one `unit` is; pint.UndefinedUnitError and pint.DimensionalityError say what is wrong."""
+    unit = re.sub(r"\bg\b", "gravity_unit", unit) if si == "m/s^2" else unit
+    return float(_registry().Quantity(1.0, unit.replace("^", "**")).to(si.replace("^", "**")).magnitude)
+
+
+def parse(text: str, si: str) -> float:
+    """The value of "NUMBER UNIT" in `si`; ValueError says what is wrong and what was expected."""
+    wanted = f"expected a number and a unit such as '{_EXAMPLE.get(si, '1 ' + si)}'"
+    found = QUANTITY.fullmatch(text.strip()) if len(text) <= LONGEST else None
+    if not found:
+        hint = "; the decimal sign is a point" if re.search(r"\d,\d", text) else ""
+        raise ValueError(f"'{text[:LONGEST]}' is not a quantity: {wanted}{hint}")
+    try:
+        return float(found[1]) * factor(found[2], si)
+    except pint.UndefinedUnitError:
+        raise ValueError(f"unknown unit '{found[2]}': {wanted}") from None
+    except pint.DimensionalityError:
+        raise ValueError(f"'{found[2]}' is not a unit of {si}: {wanted}") from None
+    except Exception as error:  # pint raises many kinds on malformed units
+        raise ValueError(f"'{found[2]}' is not a unit ({type(error).__name__}): {wanted}") from None
+
+
+def quantity(si: str, *, bare: bool = True) -> Any:
+    """Field type for a number in `si`; with bare=False a number without a unit is refused."""
+
+    def read(value: Any) -> Any:
+        if isinstance(value, str):
+            return parse(value, si)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"expected a number in {si} or text such as '{_EXAMPLE.get(si, '1 ' + si)}'")
+        if not bare:
+            raise ValueError(f'a bare number is ambiguous here: write "{value} g" or "{value} m/s^2"')
+        return float(value)
+
+    return Annotated[float, BeforeValidator(read), Field(json_schema_extra={"unit": si})]
+
+
+Length = quantity("m")
+Time = quantity("s")
+Acceleration = quantity("m/s^2", bare=False)
+Velocity = quantity("m/s")
+Frequency = quantity("Hz")
+Angle = quantity("deg")
+Density = quantity("kg/m^3")
+Mass = quantity("kg")
+Force = quantity("N")
+LineForce = quantity("N/m")
+Stress = quantity("Pa")
+Energy = quantity("N/m")
+Stiffness = quantity("Pa/m")

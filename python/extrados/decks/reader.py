@@ -1,0 +1,237 @@
+"""Read a deck: all complaints at once, each with file, line, key, what is wrong and what is expected."""
+
+import difflib
+import hashlib
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from extrados.decks.kinds import SECTIONS
+from extrados.decks.positions import key_lines, line_of
+from extrados.decks.table import Analysis, Motion, Structure, Table
+
+LARGEST = 1_000_000  # bytes
+MOST_COMPLAINTS = 50
+TOP_LEVEL = {"title", "note", "structure", "motion", "analysis"}
+
+
+class DeckError(Exception):
+    """The deck is wrong; `complaints` holds lines "deck.toml:LINE: key: what is wrong, what is expected"."""
+
+    def __init__(self, complaints: list[str]):
+        self.complaints = complaints
+        super().__init__("\n".join(complaints))
+
+
+@dataclass(frozen=True)
+class Deck:
+    """A checked deck. `data` is what stood in it; folder is where its files are looked for."""
+
+    title: str
+    note: str
+    structure: Structure | None
+    motion: Motion | None
+    analyses: list[Analysis]
+    path: str = ""
+    folder: Path = field(default_factory=Path.cwd)
+    sha256: str = ""
+    data: dict[str, Any] = field(default_factory=dict)
+
+    def resolved(self) -> dict[str, Any]:
+        """All keys with their defaults, in SI."""
+        return {
+            "title": self.title,
+            "structure": self.structure.model_dump() if self.structure else None,
+            "motion": self.motion.model_dump() if self.motion else None,
+            "analysis": [a.model_dump() for a in self.analyses],
+        }
+
+
+def read_deck(path: str | Path) -> Deck:
+    """The deck in a file; DeckError lists every complaint."""
+    path = Path(path)
+    name = str(path)
+    try:
+        if not path.is_file():
+            raise DeckError([f"{name}: " + ("is not a file" if path.exists() else "no such file")])
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise DeckError([f"{name}: is {size / 1e6:.1f} MB, a deck has at most {LARGEST / 1e6:g} MB"])
+        raw = path.read_bytes()
+    except OSError as error:
+        raise DeckError([f"{name}: cannot be read: {error.strerror or error}"]) from None
+    return read_text(raw, name, path.resolve().parent)
+
+
+def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -> Deck:
+    """The deck in a text; `folder` is where its files are looked for."""
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw[: error.start].count(b"\n") + 1
+        raise DeckError([f"{name}:{line}: is not UTF-8 text (byte {error.start}); expected a TOML deck"]) from None
+    try:
+        data = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        line, what = _syntax(str(error), text)
+        raise DeckError([f"{name}:{line}: {what}"]) from None
+    except RecursionError:
+        raise DeckError([f"{name}: is nested too deeply for a deck"]) from None
+    except ValueError as error:  # integers of more digits than Python converts
+        raise DeckError([f"{name}: {error}"]) from None
+    lines = key_lines(text)
+    return _Checker(name, lines).deck(data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest())
+
+
+def make_deck(data: dict[str, Any], folder: Path | None = None) -> Deck:
+    """A deck from Python dictionaries, checked like a file."""
+    return _Checker("deck", {(): 0}).deck(data, folder or Path.cwd(), "")
+
+
+def _syntax(message: str, text: str) -> tuple[int, str]:
+    what, _, where = message.partition(" (at ")
+    if where.startswith("line "):
+        line = int(where.split()[1].strip(",)"))
+    else:
+        line = text.count("\n") + 1
+    shown = text.splitlines()[line - 1].strip()[:60] if text else ""
+    hint = ""
+    if "," in shown and "=" in shown and "[" not in shown:
+        hint = "; the decimal sign is a point"
+    return line, f"{what[0].lower()}{what[1:]} in '{shown}': expected TOML such as  key = value{hint}"
+
+
+class _Checker:
+    def __init__(self, name: str, lines: dict):
+        self.name = name
+        self.lines = lines
+        self.complaints: list[tuple[int, str]] = []
+
+    def complain(self, path: tuple, what: str) -> None:
+        line = line_of(path, self.lines)
+        shown = ".".join(str(p) for p in path if not isinstance(p, int))
+        where = f"{self.name}:{line}: " if line else f"{self.name}: "
+        self.complaints.append((line, f"{where}{shown + ': ' if shown else ''}{what}"))
+
+    def deck(self, data: dict[str, Any], folder: Path, sha256: str) -> Deck:
+        for word in data:
+            if word not in TOP_LEVEL:
+                self.complain((word,), f"unknown key or section{_nearest(word, TOP_LEVEL)}")
+        for word in ("title", "note"):
+            if not isinstance(data.get(word, ""), str):
+                self.complain((word,), "expected text in quotes")
+        structure = self.section("structure", data.get("structure"), ("structure",))
+        motion = self.section("motion", data.get("motion"), ("motion",))
+        given = data.get("analysis")
+        if given is None:
+            self.complain((), f"no [analysis]: expected one of {_words(SECTIONS['analysis'])}")
+            given = []
+        tables = given if isinstance(given, list) else [given]
+        several = isinstance(given, list)
+        analyses = []
+        for i, table in enumerate(tables):
+            path = ("analysis", i) if several else ("analysis",)
+            analysis = self.section("analysis", table, path)
+            if analysis is not None:
+                self.fits(analysis, data, path)
+                analyses.append(analysis)
+        if self.complaints:
+            found = [text for _, text in sorted(self.complaints, key=lambda c: c[0])]
+            if len(found) > MOST_COMPLAINTS:
+                more = len(found) - MOST_COMPLAINTS
+                found = [*found[:MOST_COMPLAINTS], f"{self.name}: and {more} more"]
+            raise DeckError(found)
+        return Deck(
+            data.get("title", ""),
+            data.get("note", ""),
+            structure,
+            motion,
+            analyses,
+            self.name,
+            folder,
+            sha256,
+            data,
+        )
+
+    def section(self, section: str, table: Any, path: tuple) -> Any:
+        if table is None:
+            return None
+        if not isinstance(table, dict):
+            self.complain(path, f"expected a table [{section}]")
+            return None
+        kinds = SECTIONS[section]
+        kind = table.get("kind")
+        if kind not in kinds if isinstance(kind, str) else True:
+            if kind is None:
+                self.complain(path, f"kind is missing: expected one of {_words(kinds)}")
+            else:
+                self.complain(
+                    (*path, "kind"),
+                    f"unknown kind {kind!r}{_nearest(str(kind), kinds)}; expected one of {_words(kinds)}",
+                )
+            return None
+        model = kinds[kind]
+        try:
+            return model.model_validate(table)
+        except ValidationError as error:
+            for problem in error.errors():
+                self.problem(model, path, problem)
+            return None
+
+    def problem(self, model: type[Table], path: tuple, problem: dict[str, Any]) -> None:
+        place = tuple(p for p in problem["loc"] if isinstance(p, int) or not _is_branch(p))
+        at = (*path, *place)
+        sort, text, context = problem["type"], problem["msg"], problem.get("ctx", {})
+        if sort == "extra_forbidden":
+            self.complain(at, f"unknown key{_nearest(str(place[-1]), model.model_fields)}")
+        elif sort == "missing":
+            about = model.model_fields[place[0]].description if place and place[0] in model.model_fields else ""
+            self.complain(path, f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
+        elif sort == "value_error":
+            self.complain(at, str(context.get("error", text)))
+        else:
+            unit = _unit(model, place)
+            given = problem.get("input")
+            self.complain(at, f"{_shown(given)}: {text[0].lower()}{text[1:]}{f' {unit}' if unit else ''}")
+
+    def fits(self, analysis: Analysis, data: dict[str, Any], path: tuple) -> None:
+        wanted = analysis.structures
+        kind = analysis.kind
+        structure = data.get("structure")
+        if wanted != () and structure is None:
+            self.complain(path, f"{kind} needs a [structure]{'' if wanted is None else ' of kind ' + _words(wanted)}")
+        elif wanted and isinstance(structure, dict) and structure.get("kind") in SECTIONS["structure"] \
+                and structure["kind"] not in wanted:  # fmt: skip
+            self.complain(
+                path,
+                f"{kind} does not take a structure of kind '{structure['kind']}'; expected {_words(wanted)}",
+            )
+        if analysis.needs_motion and data.get("motion") is None:
+            self.complain(path, f"{kind} needs a [motion]: expected one of {_words(SECTIONS['motion'])}")
+
+
+def _is_branch(part: str) -> bool:
+    """True for pydantic's names of union branches, which are no keys of the deck."""
+    return "[" in part or "-" in part or part in {"float", "int", "str", "bool", "none"}
+
+
+def _unit(model: type[Table], place: tuple) -> str:
+    schema = model.model_json_schema()["properties"].get(str(place[0]), {}) if place else {}
+    return schema.get("unit", "")
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _words(words: Any) -> str:
+    return ", ".join(f"'{w}'" for w in words)
+
+
+def _nearest(word: str, known: Any) -> str:
+    close = difflib.get_close_matches(word, list(known), n=1, cutoff=0.5)
+    return f"; did you mean '{close[0]}'?" if close else f"; known are {_words(known)}"

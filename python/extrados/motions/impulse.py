@@ -1,0 +1,125 @@
+"""The primary impulse of a motion: the single sine that fits it best (thesis 5.3.2, 5.4.2)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Impulse:
+    """One cycle of a sine, A_p sin(2 pi (t - start)/T_p).
+
+    amplitude [m/s^2], signed; period, start [s]. explained: share of the motion's total squared
+    acceleration that it takes away; goodness: 1 - (squared misfit)/(squared motion) over its own span.
+    """
+
+    amplitude: float
+    period: float
+    start: float
+    explained: float
+    goodness: float
+
+
+def primary_impulses(
+    time: np.ndarray,
+    acceleration: np.ndarray,
+    count: int = 3,
+    min_period: float | None = None,
+    max_period: float = 4.0,
+) -> list[Impulse]:
+    """The strongest impulses, first the primary one; later ones do not overlap earlier ones.
+
+    Least squares over amplitude, period, start and sign: for a given period and start the amplitude is
+    linear, and the misfit falls by (a . s)^2/(s . s), so that quantity is greatest. Its greatest value over
+    a grid of periods (all starts at once by FFT) is then polished continuously. time ascending in equal
+    steps [s], acceleration [m/s^2].
+    """
+    step = float(time[1] - time[0])
+    low = max(min_period or 4.0 * step, 4.0 * step)
+    high = min(max_period, 0.98 * (time[-1] - time[0]))
+    total = float(acceleration @ acceleration)
+    if high <= low or total <= 0.0:
+        return []
+    rest = acceleration.astype(float).copy()
+    free = np.ones(len(rest), dtype=bool)
+    periods = np.geomspace(low, high, max(40, int(40 * np.log(high / low))))
+    found: list[Impulse] = []
+    for _ in range(count):
+        best = _best_on_grid(rest, free, step, periods)
+        if best is None:
+            break
+        period, start = _polish(rest, free, step, *best, low, high)
+        gain, amplitude, inside = _gain(rest, step, period, start)
+        if gain <= 0.0:
+            break
+        here = acceleration[inside]
+        misfit = here - amplitude * np.sin(2.0 * np.pi * (np.flatnonzero(inside) * step - start) / period)
+        found.append(
+            Impulse(
+                amplitude,
+                period,
+                float(time[0]) + start,
+                gain / total,
+                1.0 - float(misfit @ misfit) / float(here @ here),
+            )
+        )
+        free &= ~inside
+        rest[inside] = 0.0
+    return found
+
+
+def _best_on_grid(rest: np.ndarray, free: np.ndarray, step: float, periods: np.ndarray) -> tuple[float, float] | None:
+    n = len(rest)
+    size = 1 << int(np.ceil(np.log2(2 * n)))
+    spectrum = np.fft.rfft(rest, size)
+    blocked = np.concatenate([[0], np.cumsum(~free)])
+    best, answer = 0.0, None
+    for period in periods:
+        length = int(period / step) + 1
+        if length >= n:
+            continue
+        wave = np.sin(2.0 * np.pi * np.arange(length) * step / period)
+        product = np.fft.irfft(spectrum * np.conj(np.fft.rfft(wave, size)), size)[: n - length + 1]
+        gain = product**2 / float(wave @ wave)
+        gain[blocked[length : length + len(gain)] - blocked[: len(gain)] > 0] = 0.0
+        k = int(gain.argmax())
+        if gain[k] > best:
+            best, answer = float(gain[k]), (float(period), k * step)
+    return answer
+
+
+def _gain(rest: np.ndarray, step: float, period: float, start: float) -> tuple[float, float, np.ndarray]:
+    """Fall of the squared misfit, the amplitude that gives it, and the samples inside the impulse."""
+    t = np.arange(len(rest)) * step - start
+    inside = (t >= 0.0) & (t <= period)
+    wave = np.sin(2.0 * np.pi * t[inside] / period)
+    square = float(wave @ wave)
+    if square <= 0.0:
+        return 0.0, 0.0, inside
+    product = float(wave @ rest[inside])
+    return product**2 / square, product / square, inside
+
+
+def _polish(
+    rest: np.ndarray, free: np.ndarray, step: float, period: float, start: float, low: float, high: float
+) -> tuple[float, float]:
+    """Greatest gain near a grid point, over period and start between the samples."""
+    from scipy.optimize import minimize
+
+    def loss(x: np.ndarray) -> float:
+        p, s = x
+        if not low <= p <= high or s < 0.0 or s + p > (len(rest) - 1) * step:
+            return 0.0
+        gain, _, inside = _gain(rest, step, p, s)
+        return 0.0 if not free[inside].all() else -gain
+
+    simplex = np.array([[period, start], [1.03 * period, start], [period, start + step]])
+    answer = minimize(
+        loss,
+        [period, start],
+        method="Nelder-Mead",
+        options={"initial_simplex": simplex, "xatol": 1e-5, "fatol": 0.0},
+    )
+    return (
+        (float(answer.x[0]), float(answer.x[1])) if answer.fun <= loss(np.array([period, start])) else (period, start)
+    )

@@ -1,0 +1,52 @@
+"""One ground motion, analytic or sampled."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from extrados.core.rocking import Ground
+
+GRAVITY = 9.80665
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A ground motion with its name and origin; `ground` is what the core integrates [m/s^2]."""
+
+    name: str
+    ground: Ground
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def end(self) -> float:
+        """When it is over [s]."""
+        return self.ground.end
+
+    def sample(self, time: np.ndarray, channel: int = 0) -> np.ndarray:
+        """Acceleration at the given times [m/s^2]; zero outside the motion."""
+        g = self.ground
+        time = np.asarray(time, dtype=float)
+        if g.samples is not None:
+            axis = g.start + g.step * np.arange(g.samples.shape[1])
+            return np.interp(time, axis, g.samples[channel], left=0.0, right=0.0)
+        k = np.clip(np.searchsorted(g.breaks, time, side="right") - 1, 0, len(g.breaks) - 2)
+        tau = time - g.breaks[k]
+        value = g.linear[k, channel, 0] + g.linear[k, channel, 1] * tau
+        for i in range(g.terms):
+            a, b, w, phi = g.harmonic[k, channel, i].T
+            value = value + (a + b * tau) * np.sin(w * tau + phi)
+        return np.where((time >= g.breaks[0]) & (time < g.breaks[-1]), value, 0.0)
+
+    def series(self, step: float | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Times [s] and horizontal accelerations [m/s^2]; sampled motions keep their own step."""
+        g = self.ground
+        if g.samples is not None and step is None:
+            return g.start + g.step * np.arange(g.samples.shape[1]), g.samples[0].copy()
+        step = step or min(0.01, float(np.diff(g.breaks).min()) / 50)
+        time = np.arange(0.0, self.end + 0.5 * step, step)
+        return time, self.sample(time)
+
+    @property
+    def peak(self) -> float:
+        """Greatest absolute horizontal acceleration [m/s^2]."""
+        return float(np.abs(self.series()[1]).max())

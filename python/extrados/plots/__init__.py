@@ -1,0 +1,1 @@
+"""Figures and report, from stored results only."""

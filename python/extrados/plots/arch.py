@@ -1,0 +1,261 @@
+"""Figures of the arch: tilt, rocking, failure domain, assessment."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+
+from extrados.plots import style
+from extrados.results.store import Stored
+
+GRAVITY = 9.80665
+
+
+def outlines(run: Stored, name: str) -> list[np.ndarray]:
+    """Outlines of the blocks of an analysis."""
+    vertices, start = run.array(name, "outline"), run.array(name, "outline_start")
+    return [vertices[a:b] for a, b in itertools.pairwise(start)]
+
+
+def moved(outline: np.ndarray, centroid: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """An outline carried to a pose x, y, rotation of its centroid."""
+    c, s = np.cos(pose[2]), np.sin(pose[2])
+    return (outline - centroid) @ np.array([[c, s], [-s, c]]) + pose[:2]
+
+
+def _hinge_points(run: Stored, name: str) -> tuple[np.ndarray, list[str]]:
+    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
+    hinges = run[name]["hinges"]
+    points = np.array([(p if h["side"] == "intrados" else q)[h["joint"]] for h in hinges]).reshape(-1, 2)
+    return points, [f"{letter} (joint {h['joint']})" for letter, h in zip("ABCDEFGH", hinges, strict=False)]
+
+
+def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Thrust line and mechanism at collapse, and the thrust lines upright."""
+    r = run[name]
+    blocks, centroid, velocity = outlines(run, name), run.array(name, "centroid"), run.array(name, "velocity")
+    with style.figure(9.0, 4.2, columns=2) as (fig, (left, right)):
+        style.draw_blocks(left, blocks)
+        left.plot(*run.array(name, "collapse_point").T, color=style.THRUST, label="thrust line at collapse")
+        points, labels = _hinge_points(run, name)
+        style.draw_hinges(left, points, labels)
+        left.set_title(f"Collapse at {r['collapse_acceleration_g']:.4f} g to +x (tilt {r['tilt_angle_deg']:.2f} deg)")
+        left.legend(loc="lower center")
+        style.draw_blocks(right, blocks, facecolor="none", linestyle=":", linewidth=0.5)
+        # Small enough a turn to show the mechanism without stretching the blocks
+        amount = 0.06 / max(np.abs(velocity[:, 2]).max(), 1e-300)
+        style.draw_blocks(
+            right,
+            [
+                moved(o, c, np.array([*(c + amount * v[:2]), amount * v[2]]))
+                for o, c, v in zip(blocks, centroid, velocity, strict=True)
+            ],
+        )
+        right.set_title("Mechanism")
+        for ax in (left, right):
+            style.section_axes(ax)
+        tilt = style.save(fig, folder, f"{name}-collapse")
+    with style.figure(6.0, 4.0) as (fig, (ax,)):
+        style.draw_blocks(ax, blocks)
+        ax.plot(
+            *run.array(name, "least_point").T,
+            color=style.THRUST,
+            label=f"least thrust {r['thrust_min_N'] / 1e3:.4g} kN",
+        )
+        ax.plot(
+            *run.array(name, "most_point").T,
+            color=style.HINGE,
+            label=f"greatest thrust {r['thrust_max_N'] / 1e3:.4g} kN",
+        )
+        ax.legend(loc="lower center")
+        ax.set_title("Thrust lines upright")
+        style.section_axes(ax)
+        upright = style.save(fig, folder, f"{name}-upright")
+    return [
+        (tilt, "Thrust line, hinges and mechanism under the greatest constant acceleration."),
+        (upright, "Thrust lines of least and greatest horizontal thrust under self-weight."),
+    ]
+
+
+def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """History of rotation, ground acceleration, energies and friction; deformed arch with its thrust line."""
+    r = run[name]
+    t = run.array(name, "time")
+    found = []
+    with style.figure(8.0, 7.0, rows=4, sharex=True, height_ratios=[1, 1.6, 1, 1]) as (fig, axes):
+        ground, rotation, energy, friction = axes
+        ground.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
+        for sign in (1, -1):
+            ground.axhline(sign * r["uplift_acceleration_g"], color=style.EDGE, linestyle="--", linewidth=0.7)
+        ground.set_ylabel("ground [g]")
+        rotation.plot(t, 1e3 * run.array(name, "rotation"), color=style.THRUST)
+        for sign in (1, -1):
+            rotation.axhline(1e3 * sign * r["critical_rotation_rad"], color=style.EDGE, linestyle=":", linewidth=0.8)
+        limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=1e-9)
+        rotation.set_ylim(-limit, limit)
+        rotation.plot(
+            run.array(name, "impact_time"),
+            np.zeros(len(run.array(name, "impact_time"))),
+            "k|",
+            markersize=8,
+            label="impacts",
+        )
+        rotation.set_ylabel("rotation [mrad]\n+ to +x")
+        rotation.legend(loc="upper right")
+        energy.plot(t, run.array(name, "kinetic") / 1e3, label="kinetic")
+        energy.plot(t, run.array(name, "potential") / 1e3, label="potential")
+        energy.plot(t, run.array(name, "ledger") / 1e3, "k--", linewidth=0.8, label="supplied less lost")
+        energy.set_ylabel("energy [kJ]")
+        energy.legend(ncols=3, loc="upper right")
+        needed = run.array(name, "required_friction").max(axis=1) if len(t) else t
+        friction.plot(t, np.minimum(needed, 2.0), color=style.HINGE, linewidth=0.8)
+        friction.set_ylabel("friction\nneeded")
+        friction.set_xlabel("time [s]")
+        moving = np.flatnonzero(np.abs(run.array(name, "rotation")) > 0.0)
+        if len(moving):
+            pad = 0.5 + 0.05 * (t[moving[-1]] - t[moving[0]])
+            friction.set_xlim(max(0.0, t[moving[0]] - pad), min(t[-1], t[moving[-1]] + pad))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-history"),
+                "Ground motion, rotation of link AB with impacts, energies, friction needed. Dashed: acceleration at which hinges open; dotted: critical rotation.",
+            )
+        )
+    times = run.arrays[name].get("snapshot_time")
+    if times is not None and len(times.data):
+        blocks, centroid = outlines(run, name), run.array(name, "centroid")
+        poses, thrust = run.array(name, "snapshot_pose"), run.array(name, "snapshot_thrust")
+        count = len(times.data)
+        columns = min(3, count)
+        rows = -(-count // columns)
+        with style.figure(3.2 * columns, 2.5 * rows, rows=rows, columns=columns) as (fig, axes):
+            for ax in axes[count:]:
+                ax.set_axis_off()
+            for ax, when, pose, line in zip(axes, times.data, poses, thrust, strict=False):
+                style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, pose, strict=True)])
+                low, high = ax.get_xlim(), ax.get_ylim()
+                ax.plot(*line.T, color=style.THRUST, marker=".", markersize=3)
+                span = high[1] - high[0]
+                ax.set_xlim(low[0] - 0.05 * span, low[1] + 0.05 * span)
+                ax.set_ylim(high[0] - 0.05 * span, high[1] + 0.15 * span)
+                ax.set_title(f"{when:.3f} s")
+                style.section_axes(ax)
+            found.append(
+                (
+                    style.save(fig, folder, f"{name}-shapes"),
+                    "Deformed arch (true scale) and dynamic thrust line at the greatest rotations.",
+                )
+            )
+    return found
+
+
+def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Map of outcomes with the Mode I and Mode II curves (Figs 5-3 and 5-7)."""
+    from matplotlib.colors import ListedColormap
+
+    r = run[name]
+    d, a, codes = run.array(name, "duration"), run.array(name, "amplitude"), run.array(name, "outcome")
+    with style.figure(7.0, 4.6) as (fig, (ax,)):
+        ax.pcolormesh(
+            d,
+            a,
+            codes.T,
+            cmap=ListedColormap(style.MODES),
+            vmin=0,
+            vmax=3,
+            shading="nearest",
+            rasterized=True,
+        )
+        ax.plot(d, run.array(name, "mode_I"), "k-", label="Mode I (governs)")
+        ax.plot(d, run.array(name, "mode_II"), "k--", label="Mode II")
+        ax.axhline(r["uplift_acceleration_g"], color=style.EDGE, linewidth=0.8, linestyle=":")
+        for code, text in enumerate(
+            ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
+        ):
+            ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
+        ax.set_xlabel("duration t_p of the first part [s]" if r["pulse"] == "step" else "period T_p [s]")
+        ax.set_ylabel("amplitude [g]")
+        ax.set_ylim(0.0, a[-1])
+        ax.set_xlim(d[0], d[-1])
+        ax.legend(loc="upper right", frameon=True)
+        ax.grid(False)
+        title = f"Failure domain of {'step' if r['pulse'] == 'step' else 'sine'} pulses"
+        ax.set_title(title)
+        return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest failing amplitudes.")]
+
+
+def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Impulses against the failure curve (Fig. 5-15) and the fitted impulses on the record (Fig. 5-10)."""
+    r = run[name]
+    gamma = r["uplift_acceleration_g"]
+    with style.figure(8.5, 4.0, columns=2, width_ratios=[1.1, 1]) as (fig, (curve, record)):
+        period = run.array(name, "period")
+        curve.plot(period, run.array(name, "failing_amplitude"), "k-", label=f"Eq. 5.8, {r['coefficients_source']}")
+        curve.plot(
+            period,
+            run.array(name, "failing_amplitude_own"),
+            "--",
+            color=style.EDGE,
+            label="Eq. 5.8, fitted to this arch",
+        )
+        curve.plot(
+            run.array(name, "computed_period"),
+            run.array(name, "computed_amplitude"),
+            ".",
+            color=style.EDGE,
+            markersize=3,
+            label="computed Mode I points",
+        )
+        curve.axhline(gamma, linestyle=":", color=style.EDGE, linewidth=0.8)
+        for k, i in enumerate(r["impulses"]):
+            color = style.THRUST if i["verdict"] == "fails" else style.SAFE
+            curve.plot(
+                i["period_s"],
+                abs(i["amplitude_g"]),
+                "o" if k == 0 else "s",
+                color=color,
+                markersize=7 if k == 0 else 5,
+            )
+            curve.annotate(
+                str(i["rank"]),
+                (i["period_s"], abs(i["amplitude_g"])),
+                textcoords="offset points",
+                xytext=(6, 4),
+            )
+        top = max([3.0 * gamma, *(1.3 * abs(i["amplitude_g"]) for i in r["impulses"])])
+        curve.set_ylim(0.0, top)
+        curve.set_xlim(0.0, period[-1])
+        curve.set_xlabel("period of the impulse T_p [s]")
+        curve.set_ylabel("amplitude A_p [g]")
+        curve.set_title(f"Verdict: the arch {r['verdict']}")
+        curve.legend(loc="upper right")
+        t = run.array(name, "time")
+        record.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.6)
+        for k, (amplitude, length, start) in enumerate(
+            zip(
+                run.array(name, "impulse_amplitude"),
+                run.array(name, "impulse_period"),
+                run.array(name, "impulse_start"),
+                strict=True,
+            )
+        ):
+            s = np.linspace(0.0, length, 100)
+            record.plot(
+                start + s,
+                amplitude / GRAVITY * np.sin(2 * np.pi * s / length),
+                color=style.THRUST,
+                linewidth=1.6 if k == 0 else 1.0,
+            )
+            record.annotate(str(k + 1), (start + 0.25 * length, amplitude / GRAVITY), fontsize=8)
+        if len(r["impulses"]):
+            ends = [(i["start_s"], i["start_s"] + i["period_s"]) for i in r["impulses"]]
+            record.set_xlim(max(0.0, min(e[0] for e in ends) - 2.0), min(t[-1], max(e[1] for e in ends) + 3.0))
+        record.set_xlabel("time [s]")
+        record.set_ylabel("ground acceleration [g]")
+        record.set_title("Impulses of the motion")
+        return [
+            (
+                style.save(fig, folder, name),
+                "Impulses against the failure curve, and where they lie in the motion.",
+            )
+        ]

@@ -1,0 +1,114 @@
+"""Figures and one self-contained HTML report of a stored run."""
+
+import base64
+import html
+import importlib
+from pathlib import Path
+from typing import Any
+
+import jinja2
+
+from extrados.results.store import Stored, StoreError, read
+
+#: Analysis kind -> "module:function" that draws its figures: (run, analysis name, folder) -> [(figure, caption)]
+DRAWERS = {
+    "tilt": "extrados.plots.arch:draw_tilt",
+    "rocking": "extrados.plots.arch:draw_rocking",
+    "failure-domain": "extrados.plots.arch:draw_failure_domain",
+    "assessment": "extrados.plots.arch:draw_assessment",
+}
+
+TEMPLATE = """<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title>
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<style>
+body{font:15px/1.5 Georgia,serif;max-width:60rem;margin:2rem auto;padding:0 1rem;color:#222}
+h1{font-size:1.6rem}h2{font-size:1.25rem;border-bottom:1px solid #ccc;margin-top:2.2rem}
+p.answer{background:#f6f2ea;border-left:4px solid #b3261e;padding:.7rem 1rem}
+p.bad{background:#fbe9e7;border-left:4px solid #b3261e;padding:.7rem 1rem}
+p.warn{background:#fff7e0;border-left:4px solid #d9a400;padding:.5rem 1rem}
+figure{margin:1.2rem 0}figure img{max-width:100%}figcaption{font-size:.85rem;color:#555}
+table{border-collapse:collapse;font:13px/1.4 sans-serif}td,th{border-bottom:1px solid #ddd;padding:.15rem .7rem .15rem 0;text-align:left;vertical-align:top}
+pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px}footer{margin-top:3rem;font-size:.8rem;color:#666}
+</style></head><body>
+<h1>{{ title }}</h1>{% if note %}<p>{{ note }}</p>{% endif %}
+{% for a in analyses %}<h2>{{ a.name }}</h2>
+{% if a.status != "ok" %}<p class="bad"><b>{{ a.status }}</b>: {{ a.reason }}</p>{% endif %}
+{% if a.answer %}<p class="answer">{{ a.answer }}</p>{% endif %}
+{% for w in a.warnings %}<p class="warn">Warning: {{ w }}</p>{% endfor %}
+{% for f in a.figures %}<figure><img alt="{{ f.caption }}" src="data:image/svg+xml;base64,{{ f.data }}"><figcaption>{{ f.caption }}</figcaption></figure>{% endfor %}
+<details><summary>Numbers</summary><table>{% for k, v in a.rows %}<tr><th>{{ k }}</th><td>{{ v }}</td></tr>{% endfor %}</table></details>
+{% endfor %}
+<h2>Deck</h2><p>{{ deck.path }} (sha256 {{ deck.sha256[:16] }}); all keys with their defaults, in SI:</p>
+<table>{% for k, v in resolved %}<tr><th>{{ k }}</th><td>{{ v }}</td></tr>{% endfor %}</table>
+<footer>extrados {{ made.version }} {{ made.commit }}, {{ made.compiler }}. Assumptions of each analysis are stated in the documentation; a result is no better than the geometry it was given.</footer>
+</body></html>
+"""
+
+
+def draw(run: Stored, folder: Path) -> dict[str, list[tuple[str, str]]]:
+    """All figures of a run into folder/figures; analysis name -> (figure name, caption)."""
+    drawn = {}
+    for analysis in run.analyses:
+        drawer = DRAWERS.get(analysis["kind"])
+        if not drawer or not run.arrays.get(analysis["name"]):
+            continue
+        module, function = drawer.split(":")
+        drawn[analysis["name"]] = getattr(importlib.import_module(module), function)(run, analysis["name"], folder)
+    return drawn
+
+
+def _rows(values: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+    rows = []
+    for key, value in values.items():
+        if isinstance(value, dict):
+            rows += _rows(value, f"{prefix}{key}.")
+        else:
+            rows.append((prefix + key, _cell(value)))
+    return rows
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, list):
+        shown = ", ".join(_cell(v) for v in value[:12])
+        return shown + (f", ... ({len(value)})" if len(value) > 12 else "")
+    if isinstance(value, dict):
+        return "; ".join(f"{k} {_cell(v)}" for k, v in value.items())
+    return "none" if value is None else str(value)
+
+
+def write_report(folder: Path) -> Path:
+    """Draw the figures of a stored run and write report.html beside them; StoreError where it cannot be written."""
+    run = read(folder)
+    try:
+        drawn = draw(run, folder)
+        analyses = []
+        for a in run.analyses:
+            figures = [
+                {
+                    "caption": caption,
+                    "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode(),
+                }
+                for name, caption in drawn.get(a["name"], [])
+            ]
+            analyses.append({**a, "figures": figures, "rows": _rows(a["results"])})
+        deck = run.summary["deck"]
+        page = (
+            jinja2.Environment(autoescape=True)
+            .from_string(TEMPLATE)
+            .render(
+                title=deck.get("title") or html.escape(deck["path"]) or "extrados run",
+                note=deck.get("note", ""),
+                analyses=analyses,
+                deck=deck,
+                resolved=_rows({k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}),
+                made=run.summary["extrados"],
+            )
+        )
+        target = folder / "report.html"
+        target.write_text(page, encoding="utf-8")
+    except OSError as error:
+        raise StoreError(f"{folder}: the report could not be written: {error.strerror or error}") from None
+    return target

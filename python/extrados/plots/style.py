@@ -1,0 +1,69 @@
+"""One look for all figures."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Polygon
+
+STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
+MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d")
+
+RC = {
+    "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 110,
+    "savefig.dpi": 150, "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
+    "grid.color": "#e4e4e4", "grid.linewidth": 0.6, "lines.linewidth": 1.2, "svg.hashsalt": "extrados",
+    "legend.frameon": False, "figure.constrained_layout.use": True,
+}  # fmt: skip
+
+
+@contextmanager
+def figure(
+    width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options
+) -> Iterator[tuple[Figure, np.ndarray]]:
+    """A figure in the common style; its axes come as a flat array."""
+    with plt.rc_context(RC):
+        fig, axes = plt.subplots(rows, columns, figsize=(width, height), squeeze=False, **options)
+        try:
+            yield fig, axes.ravel()
+        finally:
+            plt.close(fig)
+
+
+def save(fig: Figure, folder: Path, name: str) -> str:
+    """Write figures/NAME.png and .svg; returns the name."""
+    target = folder / "figures"
+    target.mkdir(exist_ok=True)
+    fig.savefig(target / f"{name}.png")
+    fig.savefig(target / f"{name}.svg", metadata={"Date": None})
+    return name
+
+
+def section_axes(ax: Axes) -> None:
+    """Axes for a drawing of a structure: equal scales, metres."""
+    ax.set_aspect("equal")
+    ax.grid(False)
+    ax.set_xlabel("x [m]")
+    ax.set_ylabel("y [m]")
+
+
+def draw_blocks(ax: Axes, outlines: list[np.ndarray], **style) -> None:
+    """Block outlines as hatched stone."""
+    options = {"facecolor": STONE, "edgecolor": EDGE, "linewidth": 0.7, **style}
+    for outline in outlines:
+        ax.add_patch(Polygon(outline, closed=True, **options))
+    ax.autoscale_view()
+
+
+def draw_hinges(ax: Axes, points: np.ndarray, labels: list[str] | None = None) -> None:
+    """Hinges as circles, with labels beside them."""
+    ax.plot(*points.T, "o", color=HINGE, markersize=6, markerfacecolor="white", markeredgewidth=1.6, zorder=5)
+    for point, label in zip(points, labels or [], strict=False):
+        ax.annotate(label, point, textcoords="offset points", xytext=(6, 6), fontsize=8, color=HINGE)

@@ -1,0 +1,1 @@
+"""The results store: what an analysis returns, how it is written and read back."""

@@ -1,0 +1,50 @@
+"""What an analysis returns."""
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Array:
+    """A named, dimensioned array; `dims` names its axes, `unit` in SI ("" where it has none)."""
+
+    data: np.ndarray
+    dims: tuple[str, ...]
+    unit: str = ""
+    about: str = ""
+
+
+@dataclass(frozen=True)
+class TableData:
+    """Columns of equal length with their units, written as NAME.csv."""
+
+    columns: dict[str, np.ndarray | list]
+    units: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass
+class Result:
+    """The outcome of one analysis.
+
+    status: ok, refused (the structure or the question does not allow it), failed (the computation did
+    not succeed) or interrupted (partial results are kept); `reason` says why. `answer` is the result in
+    words an engineer reads. `results` holds numbers and words whose keys end in their unit. `files` maps
+    the name of a further file (VTU, PVD, AT2, MP4) to its bytes.
+    """
+
+    kind: str
+    status: str = "ok"
+    reason: str = ""
+    seconds: float = 0.0
+    answer: str = ""
+    results: dict[str, Any] = field(default_factory=dict)
+    arrays: dict[str, Array] = field(default_factory=dict)
+    tables: dict[str, TableData] = field(default_factory=dict)
+    files: dict[str, bytes] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
+
+    def __getitem__(self, name: str) -> Any:
+        """A result by its name, or an array's data."""
+        return self.results[name] if name in self.results else self.arrays[name].data

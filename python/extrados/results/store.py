@@ -1,0 +1,263 @@
+"""Write a run's folder so that a killed run leaves either the old one or the new one, and read it back."""
+
+import contextlib
+import csv
+import ctypes
+import hashlib
+import io
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from extrados.results.model import Array, Result, TableData
+
+SUMMARY = "summary.json"
+STORE = "results.h5"
+
+
+class StoreError(Exception):
+    """Results cannot be written or read; the text names the file and the reason."""
+
+
+def _plain(value: Any) -> Any:
+    """Values as JSON knows them; NaN and infinity become null, which summary.json cannot hold otherwise."""
+    if isinstance(value, dict):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.ndarray):
+        return _plain(value.tolist())
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float):
+        return value if np.isfinite(value) else None
+    if isinstance(value, Path):
+        return str(value)
+    return value
+
+
+def group_names(kinds: list[str]) -> list[str]:
+    """One name per analysis: its kind, numbered from the second of the same kind on."""
+    seen: dict[str, int] = {}
+    names = []
+    for kind in kinds:
+        seen[kind] = seen.get(kind, 0) + 1
+        names.append(kind if seen[kind] == 1 else f"{kind}-{seen[kind]}")
+    return names
+
+
+def prepare(out: Path) -> None:
+    """Refuse early, before a long run, what could not be written after it."""
+    out = Path(os.path.abspath(out))
+    try:
+        _may_replace(out)
+        out.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=out.parent):
+            pass
+    except OSError as error:
+        raise StoreError(f"{out}: cannot write here: {error.strerror or error}") from None
+
+
+@contextlib.contextmanager
+def new_folder(out: Path) -> Iterator[Path]:
+    """A scratch folder that takes the place of `out` when the block ends well."""
+    out = Path(os.path.abspath(out))
+    _may_replace(out)
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
+        scratch.chmod(0o755)
+    except OSError as error:
+        raise StoreError(f"{out}: cannot write here: {error.strerror or error}") from None
+    try:
+        yield scratch
+        for path in sorted(scratch.rglob("*")):
+            _sync(path)
+        _sync(scratch)
+        _exchange(scratch, out)
+        _sync(out.parent)
+    except OSError as error:
+        raise StoreError(f"{out}: results could not be written: {error.strerror or error}") from None
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+def _may_replace(out: Path) -> None:
+    """Only a folder that holds results of ours, or nothing, is ever replaced."""
+    if not os.path.lexists(out):
+        return
+    if out.is_symlink() or not out.is_dir():
+        raise StoreError(f"{out}: is not a folder; name another with --out")
+    names = {p.name for p in out.iterdir()}
+    if names and SUMMARY not in names:
+        raise StoreError(f"{out}: holds files that are no results of extrados; name another folder with --out")
+
+
+def _sync(path: Path) -> None:
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _exchange(scratch: Path, out: Path) -> None:
+    """Put `scratch` in the place of `out` in one step where the system can (Linux renameat2)."""
+    if not out.exists():
+        scratch.rename(out)
+        return
+    with contextlib.suppress(OSError, AttributeError):
+        libc = ctypes.CDLL(None, use_errno=True)
+        at_cwd, exchange = -100, 2
+        if libc.renameat2(at_cwd, os.fsencode(scratch), at_cwd, os.fsencode(out), exchange) == 0:
+            return
+    aside = out.with_name(f".{out.name}.old")
+    shutil.rmtree(aside, ignore_errors=True)
+    out.rename(aside)
+    scratch.rename(out)
+    shutil.rmtree(aside, ignore_errors=True)
+
+
+def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
+    """Write summary.json, results.h5, tables and further files of all analyses into `folder`."""
+    names = group_names([r.kind for r in results])
+    try:
+        _write_h5(folder / STORE, names, results)
+        for name, result in zip(names, results, strict=True):
+            for title, table in result.tables.items():
+                suffix = name.removeprefix(result.kind)
+                (folder / f"{title}{suffix}.csv").write_text(csv_text(table), encoding="utf-8")
+            for title, content in result.files.items():
+                target = folder / title
+                target.parent.mkdir(parents=True, exist_ok=True)
+                target.write_bytes(content)
+        summary = {
+            **head,
+            "analyses": [
+                {
+                    "name": name, "kind": r.kind, "status": r.status, "reason": r.reason, "seconds": round(r.seconds, 6),
+                    "answer": r.answer, "warnings": r.warnings, "results": r.results,
+                }
+                for name, r in zip(names, results, strict=True)
+            ],
+            "files": {
+                str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
+                for p in sorted(folder.rglob("*")) if p.is_file()
+            },
+        }  # fmt: skip
+        text = json.dumps(_plain(summary), indent=1, ensure_ascii=False)
+        (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise StoreError(f"{folder}: results could not be written: {error.strerror or error}") from None
+
+
+def csv_text(table: TableData) -> str:
+    """A table as CSV: the header carries the unit after the name; numbers round-trip."""
+    out = io.StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    names = list(table.columns)
+    units = [table.units.get(name, "") for name in names]
+    writer.writerow([f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)])
+    for row in zip(*(np.asarray(c).tolist() for c in table.columns.values()), strict=True):
+        writer.writerow([repr(v) if isinstance(v, float) else _cell(v) for v in row])
+    return out.getvalue()
+
+
+def _cell(value: Any) -> Any:
+    """Text that a spreadsheet would take for a formula is quoted."""
+    return "'" + value if isinstance(value, str) and value[:1] in ("=", "+", "-", "@") else value
+
+
+def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
+    """One group per analysis; axes that have an array of their name become dimension scales (xarray reads them)."""
+    import h5py
+
+    with h5py.File(path, "w", track_order=True) as file:
+        for name, result in zip(names, results, strict=True):
+            group = file.create_group(name, track_order=True)
+            group.attrs["kind"] = result.kind
+            group.attrs["status"] = result.status
+            for title, array in result.arrays.items():
+                data = np.asarray(array.data)
+                if data.dtype.kind in "OU":
+                    data = data.astype(h5py.string_dtype())
+                store = group.create_dataset(title, data=data)
+                store.attrs["unit"] = store.attrs["units"] = array.unit
+                store.attrs["about"] = array.about
+                if array.dims == (title,):
+                    store.make_scale(title)
+            sizes = {d: n for a in result.arrays.values() for d, n in zip(a.dims, np.shape(a.data), strict=True)}
+            for dim, size in sizes.items():
+                if dim not in group:
+                    group.create_dataset(dim, data=np.arange(size)).make_scale(dim)
+            for title, array in result.arrays.items():
+                for axis, dim in enumerate(array.dims):
+                    if dim != title:
+                        group[title].dims[axis].attach_scale(group[dim])
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A run read back: `summary` as written, `arrays[analysis][name]`, and the analyses by name."""
+
+    folder: Path
+    summary: dict[str, Any]
+    arrays: dict[str, dict[str, Array]]
+
+    @property
+    def analyses(self) -> list[dict[str, Any]]:
+        return self.summary["analyses"]
+
+    def __getitem__(self, name: str) -> dict[str, Any]:
+        """The results of an analysis by its name, for instance run["tilt"]["collapse_acceleration_g"]."""
+        for analysis in self.analyses:
+            if analysis["name"] == name:
+                return analysis["results"]
+        raise KeyError(f"{self.folder}: no analysis '{name}'; there are {', '.join(a['name'] for a in self.analyses)}")
+
+    def array(self, analysis: str, name: str) -> np.ndarray:
+        return self.arrays[analysis][name].data
+
+    def dataset(self, analysis: str) -> Any:
+        """The arrays of an analysis as an xarray.Dataset (xarray must be installed)."""
+        import xarray
+
+        arrays = self.arrays[analysis]
+        return xarray.Dataset(
+            {n: (a.dims, a.data, {"units": a.unit, "about": a.about}) for n, a in arrays.items()},
+            attrs={"kind": analysis, "extrados": self.summary["extrados"]["version"]},
+        )
+
+
+def read(folder: str | Path) -> Stored:
+    """Read a run's folder; StoreError where it is damaged."""
+    import h5py
+
+    folder = Path(folder)
+    try:
+        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        recorded = summary["files"].get(STORE)
+        if hashlib.sha256((folder / STORE).read_bytes()).hexdigest() != recorded:
+            raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
+        arrays: dict[str, dict[str, Array]] = {}
+        with h5py.File(folder / STORE, "r") as file:
+            for name, group in file.items():
+                arrays[name] = {}
+                for title, store in group.items():
+                    if "unit" not in store.attrs:
+                        continue
+                    data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
+                    dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
+                    arrays[name][title] = Array(data, dims, store.attrs["unit"], store.attrs["about"])
+        return Stored(folder, summary, arrays)
+    except FileNotFoundError as error:
+        raise StoreError(f"{error.filename}: not found; {folder} holds no results of extrados") from None
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise StoreError(f"{folder}: results cannot be read: {error}") from None

@@ -1,0 +1,62 @@
+"""A whole run: deck, analyses, results folder, figures and report."""
+
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from extrados._build_info import BUILD_TYPE, C_COMPILER, COMPILER, VERSION
+from extrados.analyses.run import Context, run_analyses
+from extrados.decks.reader import Deck
+from extrados.results import store
+from extrados.results.model import Result
+
+
+def provenance() -> dict[str, Any]:
+    """Version, commit and compilers of this copy."""
+    commit = ""
+    folder = Path(__file__).resolve().parent
+    try:
+        answer = subprocess.run(
+            ["git", "-C", str(folder), "describe", "--always", "--dirty", "--exclude=*"],
+            capture_output=True, text=True, timeout=5,
+        )  # fmt: skip
+        commit = answer.stdout.strip() if answer.returncode == 0 else ""
+    except (OSError, subprocess.TimeoutExpired):
+        pass  # an installed copy without git: the version stands alone
+    return {
+        "version": VERSION,
+        "commit": commit,
+        "compiler": f"{COMPILER}, {C_COMPILER}",
+        "build_type": BUILD_TYPE,
+    }
+
+
+def default_out(deck: Deck) -> Path:
+    """results/<deck name> below the current folder."""
+    return Path("results") / (Path(deck.path).stem or "deck")
+
+
+def run_deck(context: Context, out: Path | None = None, figures: bool = True) -> tuple[Path, list[Result]]:
+    """Run a deck and write its folder (default results/<deck name>); the folder and the results."""
+    deck = context.deck
+    out = Path(out) if out is not None else default_out(deck)
+    store.prepare(out)
+    context.out = out
+    results = run_analyses(context)
+    with store.new_folder(out) as folder:
+        head = {
+            "extrados": provenance(),
+            "deck": {
+                "path": deck.path,
+                "sha256": deck.sha256,
+                "title": deck.title,
+                "note": deck.note,
+                "resolved": deck.resolved(),
+            },
+        }
+        store.write(folder, head, results)
+        if figures:
+            from extrados.plots.report import write_report
+
+            write_report(folder)
+    return out, results

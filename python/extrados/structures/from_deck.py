@@ -1,0 +1,25 @@
+"""The structure that a deck asks for."""
+
+from pathlib import Path
+from typing import Any
+
+from extrados.decks import structures as models
+from extrados.decks.table import Structure
+from extrados.structures.arch import make_arch
+
+
+def make_structure(model: Structure | None, folder: Path) -> Any:
+    """Blocks and joints, or a mesh, of a deck's [structure]; None where the deck has none."""
+    match model:
+        case None:
+            return None
+        case models.Arch():
+            return make_arch(
+                model.radius,
+                model.thickness * model.thickness_factor,
+                model.embrace,
+                model.voussoirs,
+                model.density,
+                model.depth,
+            )
+    raise TypeError(f"no structure for {type(model).__name__}")
