@@ -114,7 +114,7 @@ contains
             it%contacts%law_body(ntable), it%contacts%law_number(ntable), stat=failed)
          if (failed /= 0) return
          status = status_invalid_argument
-         if (any(table_law < 1) .or. any(table_law > nlaw) .or. table_first(nb + 1) /= ntable + 1) return
+         if (any(table_law < 1) .or. any(table_law > nlaw) .or. table_first(nb + 1) > ntable + 1) return
          do k = 1, nlaw
             it%law(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k), law(5, k), law(6, k))
          end do
