@@ -205,46 +205,73 @@ contains
          swap = set%edges(k2)%length > set%edges(k1)%length
       end if
       if (keep) then
-         call face(set, it, .true.)
+         call face(set, skin, it, .true.)
       else if (swap) then
          it%parts = had%parts([2, 1])
          it%bodies = had%bodies([2, 1])
          it%edges = [k2, 0]
-         call face(set, it, .false.)
+         call face(set, skin, it, .false.)
       else
          it%edges(1) = k1
-         call face(set, it, .false.)
+         call face(set, skin, it, .false.)
       end if
       if (.not. is_new .and. any(it%edges /= had%edges)) call carry_over(set, had, it)
    end subroutine choose_edges
 
-   !> The edge of the incident part that faces the reference edge most squarely
-   pure subroutine face(set, it, keep)
+   !> The incident edge: of the two that meet at the vertex nearest to the reference edge (or beyond it), the one
+   !> that faces it more squarely, provided that it lies before it: at a hinge on two corners the other one
+   !> leads outward, where nothing touches
+   pure subroutine face(set, skin, it, keep)
       type(body_set), intent(in) :: set
+      real(wp), intent(in) :: skin          !! [m]
       type(contact_pair), intent(inout) :: it
       logical, intent(in) :: keep           !! the reference edge is the one it had
-      integer :: k, best
-      real(wp) :: c, s, tx, ty, along, least, had
+      integer :: k, nearest, before, had
+      real(wp) :: c, s, tx, ty, ox, oy, d, least
 
       associate (a => set%item(it%bodies(1)), b => set%item(it%bodies(2)), e => set%edges(it%edges(1)))
+         ! Reference edge in the frame of the incident body
          c = b%c * a%c + b%s * a%s
          s = b%c * a%s - b%s * a%c
          tx = c * e%tx - s * e%ty
          ty = s * e%tx + c * e%ty
+         ox = b%c * (a%x - b%x) + b%s * (a%y - b%y) + c * e%x - s * e%y
+         oy = b%c * (a%y - b%y) - b%s * (a%x - b%x) + s * e%x + c * e%y
       end associate
       least = huge(1.0_wp)
-      had = huge(1.0_wp)
-      best = 0
+      nearest = 0
       do k = set%parts(it%parts(2))%first, set%parts(it%parts(2))%last
-         along = set%edges(k)%tx * tx + set%edges(k)%ty * ty
-         if (along < least) then
-            least = along
-            best = k
+         d = (set%edges(k)%x - ox) * ty - (set%edges(k)%y - oy) * tx
+         if (d < least) then
+            least = d
+            nearest = k
          end if
-         if (keep .and. k == it%edges(2)) had = along
       end do
-      if (had > least + 1.0e-3_wp) it%edges(2) = best
+      before = nearest - 1
+      if (before < set%parts(it%parts(2))%first) before = set%parts(it%parts(2))%last
+      had = it%edges(2)
+      it%edges(2) = merge(before, nearest, merit(before) > merit(nearest))
+      if (keep .and. (had == before .or. had == nearest)) then
+         if (merit(had) > merit(it%edges(2)) - 0.02_wp) it%edges(2) = had
+      end if
       call take_edges(set, it)
+
+   contains
+
+      !> How squarely an edge faces the reference edge, less where their common stretch is short
+      pure function merit(edge_number) result(m)
+         integer, intent(in) :: edge_number
+         real(wp) :: m
+         real(wp) :: one, two, width, whole
+         associate (i => set%edges(edge_number))
+            one = (i%x - ox) * tx + (i%y - oy) * ty
+            two = (set%edges(i%next)%x - ox) * tx + (set%edges(i%next)%y - oy) * ty
+            whole = min(4.0_wp * skin, 0.5_wp * set%edges(it%edges(1))%length, 0.5_wp * i%length)
+            width = min(set%edges(it%edges(1))%length, max(one, two)) - max(0.0_wp, min(one, two))
+            m = -(i%tx * tx + i%ty * ty) * min(1.0_wp, max(width, 0.0_wp) / whole)
+         end associate
+      end function merit
+
    end subroutine face
 
    !> Copy the geometry of the chosen edges into the pair
