@@ -175,8 +175,8 @@ contains
                   normal = pair%point(i)%spring_n + pair%point(i)%dash_n
                   shear = pair%point(i)%spring_s + pair%point(i)%dash_s
                   contact_body(:, n) = int(pair%bodies, c_int)
-                  contact(:, n) = [now%ox + now%s(i) * now%tx, now%oy + now%s(i) * now%ty, &
-                     normal * now%ty + shear * now%tx, -normal * now%tx + shear * now%ty, normal, shear]
+                  contact(:, n) = [now%x(i), now%y(i), normal * now%ty(i) + shear * now%tx(i), &
+                     shear * now%ty(i) - normal * now%tx(i), normal, shear]
                end do
             end associate
          end do

@@ -65,12 +65,13 @@ module dem_contacts
       real(wp) :: support_work = 0.0_wp
    end type contact_set
 
-   !> Where two parts face each other now
+   !> Where two parts face each other now. Each point has the direction of the edge that it slides on: a corner
+   !> of the incident part on the reference edge, or an end of the reference edge on the incident one. Only so
+   !> are normal forces conservative where an open joint slides.
    type :: overlap
-      real(wp) :: tx, ty                !! tangent of the reference edge; its outward normal is (ty, -tx)
-      real(wp) :: ox, oy                !! start of the reference edge [m]
-      real(wp) :: s(2)                  !! contact points along the reference edge [m]
-      real(wp) :: gap(2)                !! their distances from it, negative where they overlap [m]
+      real(wp) :: tx(2), ty(2)          !! tangents; the normal (ty, -tx) points from body 1 to body 2
+      real(wp) :: x(2), y(2)            !! contact points [m]
+      real(wp) :: gap(2)                !! distances, negative where they overlap [m]
       real(wp) :: width                 !! of the common stretch [m]
    end type overlap
 
@@ -78,40 +79,49 @@ module dem_contacts
 
 contains
 
-   !> Ends of the incident edge, clipped to the reference edge
+   !> Ends of the common stretch of reference and incident edge
    pure subroutine measure(it, a, b, now)
       type(contact_pair), intent(in) :: it
       type(body), intent(in) :: a           !! owner of the reference edge
       type(body), intent(in) :: b           !! owner of the incident edge
       type(overlap), intent(out) :: now
-      real(wp) :: dx, dy, low, high, gap_low, gap_high, slope
+      real(wp) :: tx, ty, ox, oy, ix, iy, s(2), gap(2), length, run, rise
+      integer :: i
 
-      now%tx = a%c * it%tx - a%s * it%ty
-      now%ty = a%s * it%tx + a%c * it%ty
-      now%ox = a%x + a%c * it%rx - a%s * it%ry
-      now%oy = a%y + a%s * it%rx + a%c * it%ry
-      dx = b%x - now%ox + b%c * it%ax - b%s * it%ay
-      dy = b%y - now%oy + b%s * it%ax + b%c * it%ay
-      low = dx * now%tx + dy * now%ty
-      gap_low = dx * now%ty - dy * now%tx
-      dx = b%x - now%ox + b%c * it%bx - b%s * it%by
-      dy = b%y - now%oy + b%s * it%bx + b%c * it%by
-      high = dx * now%tx + dy * now%ty
-      gap_high = dx * now%ty - dy * now%tx
-      slope = (gap_high - gap_low) / max(high - low, tiny(1.0_wp))
-      if (high > it%reference_length) then
-         gap_high = gap_high + slope * (it%reference_length - high)
-         high = it%reference_length
-      end if
-      if (low < 0.0_wp) then
-         gap_low = gap_low - slope * low
-         low = 0.0_wp
-      end if
-      now%s(1) = low
-      now%s(2) = high
-      now%gap(1) = gap_low
-      now%gap(2) = gap_high
-      now%width = high - low
+      tx = a%c * it%tx - a%s * it%ty
+      ty = a%s * it%tx + a%c * it%ty
+      ox = a%x + a%c * it%rx - a%s * it%ry
+      oy = a%y + a%s * it%rx + a%c * it%ry
+      ix = b%x - ox + b%c * it%ax - b%s * it%ay
+      iy = b%y - oy + b%s * it%ax + b%c * it%ay
+      s(1) = ix * tx + iy * ty
+      gap(1) = ix * ty - iy * tx
+      ix = b%x - ox + b%c * it%bx - b%s * it%by
+      iy = b%y - oy + b%s * it%bx + b%c * it%by
+      s(2) = ix * tx + iy * ty
+      gap(2) = ix * ty - iy * tx
+      length = it%incident_length
+      run = max((s(2) - s(1)) / length, tiny(1.0_wp))
+      rise = (gap(2) - gap(1)) / length
+      do i = 1, 2
+         if (s(i) < 0.0_wp .or. s(i) > it%reference_length) then
+            ! An end of the reference edge on the incident edge
+            length = merge(0.0_wp, it%reference_length, s(i) < 0.0_wp)
+            now%gap(i) = run * (gap(i) + (length - s(i)) * rise / run)
+            now%tx(i) = run * tx + rise * ty
+            now%ty(i) = run * ty - rise * tx
+            s(i) = length
+            now%x(i) = ox + s(i) * tx + 0.5_wp * now%gap(i) * now%ty(i)
+            now%y(i) = oy + s(i) * ty - 0.5_wp * now%gap(i) * now%tx(i)
+         else
+            now%gap(i) = gap(i)
+            now%tx(i) = tx
+            now%ty(i) = ty
+            now%x(i) = ox + s(i) * tx + 0.5_wp * gap(i) * ty
+            now%y(i) = oy + s(i) * ty - 0.5_wp * gap(i) * tx
+         end if
+      end do
+      now%width = s(2) - s(1)
    end subroutine measure
 
    !> Vertices of a part where they are now
@@ -310,8 +320,7 @@ contains
       reach = 0.1_wp * min(old%reference_length, old%incident_length)
       do i = 1, 2
          do j = 1, 2
-            distance(i, j) = hypot(now%ox + now%s(i) * now%tx - was%ox - was%s(j) * was%tx, &
-                                   now%oy + now%s(i) * now%ty - was%oy - was%s(j) * was%ty)
+            distance(i, j) = hypot(now%x(i) - was%x(j), now%y(i) - was%y(j))
          end do
       end do
       taken = .false.

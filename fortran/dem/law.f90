@@ -35,12 +35,10 @@ contains
       type(body), intent(inout) :: b            !! owner of the incident edge
       type(contact_pair), intent(inout) :: it
       integer :: i
-      real(wp) :: nx, ny, x, y, ax, ay, bx, by, a_n, a_t, b_n, b_t, w_nn, w_nt, w_tt
+      real(wp) :: nx, ny, tx, ty, ax, ay, bx, by, a_n, a_t, b_n, b_t, w_nn, w_nt, w_tt
       real(wp) :: ux, uy, u_n, u_t, old_n, old_s, dash_n, dash_s, spring_n, spring_s, stiff_n, stiff_s
       real(wp) :: trial, bound, viscous, normal, shear, d_n, d_s
 
-      nx = now%ty
-      ny = -now%tx
       do i = 1, 2
          associate (point => it%point(i))
             if (now%gap(i) >= 0.0_wp .or. now%width <= 0.0_wp) then
@@ -48,21 +46,23 @@ contains
                if (point%bonded) point%bonded = law%normal_stiffness * now%gap(i) <= law%tension .and. now%width > 0.0_wp
                if (.not. (point%closed .or. point%bonded)) cycle
             end if
-            x = now%ox + now%s(i) * now%tx + 0.5_wp * now%gap(i) * nx
-            y = now%oy + now%s(i) * now%ty + 0.5_wp * now%gap(i) * ny
-            ax = x - a%x
-            ay = y - a%y
-            bx = x - b%x
-            by = y - b%y
+            tx = now%tx(i)
+            ty = now%ty(i)
+            nx = ty
+            ny = -tx
+            ax = now%x(i) - a%x
+            ay = now%y(i) - a%y
+            bx = now%x(i) - b%x
+            by = now%y(i) - b%y
             a_n = ax * ny - ay * nx
             b_n = bx * ny - by * nx
-            a_t = ax * now%ty - ay * now%tx
-            b_t = bx * now%ty - by * now%tx
+            a_t = ax * ty - ay * tx
+            b_t = bx * ty - by * tx
             ! Relative velocity over the position step before: it has moved the springs.
             ux = b%vx - a%vx
             uy = b%vy - a%vy
             u_n = ux * nx + uy * ny + b%spin * b_n - a%spin * a_n
-            u_t = ux * now%tx + uy * now%ty + b%spin * b_t - a%spin * a_t
+            u_t = ux * tx + uy * ty + b%spin * b_t - a%spin * a_t
             old_n = point%spring_n + point%dash_n
             old_s = point%spring_s + point%dash_s
             if ((now%gap(i) < 0.0_wp .and. now%width > 0.0_wp) .or. point%bonded) then
@@ -79,7 +79,9 @@ contains
                ux = b%px - a%px
                uy = b%py - a%py
                d_n = spring_n - point%spring_n
-               d_s = trial - point%spring_s
+               bound = law%friction * max(spring_n + point%dash_n, 0.0_wp)
+               if (point%bonded) bound = bound + law%cohesion * point%length
+               d_s = max(-bound, min(bound, trial + point%dash_s)) - old_s
                dash_n = ux * nx + uy * ny + b%pspin * b_n - a%pspin * a_n + kick * (w_nn * d_n + w_nt * d_s)
                viscous = law%damping * stiff_n
                dash_n = -viscous * (dash_n - kick * w_nn * point%dash_n) / (1.0_wp + viscous * kick * w_nn)
@@ -88,7 +90,8 @@ contains
                normal = max(normal, merge(-law%tension * point%length, 0.0_wp, point%bonded))
                dash_n = normal - spring_n
                d_n = normal - old_n
-               dash_s = ux * now%tx + uy * now%ty + b%pspin * b_t - a%pspin * a_t + kick * (w_tt * d_s + w_nt * d_n)
+               d_s = trial - point%spring_s
+               dash_s = ux * tx + uy * ty + b%pspin * b_t - a%pspin * a_t + kick * (w_tt * d_s + w_nt * d_n)
                viscous = law%damping * stiff_s
                dash_s = -viscous * (dash_s - kick * w_tt * point%dash_s) / (1.0_wp + viscous * kick * w_tt)
                bound = law%friction * normal
@@ -103,7 +106,9 @@ contains
                if (abs(trial) >= bound) then
                   spring_s = sign(bound, trial)
                   shear = spring_s
-                  point%friction_loss = point%friction_loss + 0.5_wp * (trial - spring_s) * (trial + spring_s) / stiff_s
+                  ! Mean force over the step times the slip; the trial force itself was never there.
+                  point%friction_loss = point%friction_loss &
+                     + 0.5_wp * (trial - spring_s) * (point%spring_s + spring_s) / stiff_s
                else
                   spring_s = trial
                   shear = max(-bound, min(bound, trial + dash_s))
@@ -126,15 +131,15 @@ contains
             d_s = kick * (shear - old_s)
             if (a%fixed) then
                it%support_work = it%support_work &
-                  + 0.5_wp * drift * power(a, now, a_n, a_t, normal + old_n, shear + old_s)
+                  + 0.5_wp * drift * power(a, tx, ty, a_n, a_t, normal + old_n, shear + old_s)
             else
-               call push(a, -1.0_wp, nx, ny, now%tx, now%ty, a_n, a_t, d_n, d_s, normal, shear)
+               call push(a, -1.0_wp, nx, ny, tx, ty, a_n, a_t, d_n, d_s, normal, shear)
             end if
             if (b%fixed) then
                it%support_work = it%support_work &
-                  - 0.5_wp * drift * power(b, now, b_n, b_t, normal + old_n, shear + old_s)
+                  - 0.5_wp * drift * power(b, tx, ty, b_n, b_t, normal + old_n, shear + old_s)
             else
-               call push(b, 1.0_wp, nx, ny, now%tx, now%ty, b_n, b_t, d_n, d_s, normal, shear)
+               call push(b, 1.0_wp, nx, ny, tx, ty, b_n, b_t, d_n, d_s, normal, shear)
             end if
             point%spring_n = spring_n
             point%spring_s = spring_s
@@ -170,16 +175,17 @@ contains
    end subroutine push
 
    !> Power of a contact force at the velocity of a body [W]
-   pure function power(it, now, arm_n, arm_t, normal, shear) result(p)
+   pure function power(it, tx, ty, arm_n, arm_t, normal, shear) result(p)
       type(body), intent(in) :: it
-      type(overlap), intent(in) :: now
+      real(wp), intent(in) :: tx                !! tangent
+      real(wp), intent(in) :: ty
       real(wp), intent(in) :: arm_n             !! moment of a unit normal force [m]
       real(wp), intent(in) :: arm_t
       real(wp), intent(in) :: normal            !! [N]
       real(wp), intent(in) :: shear             !! [N]
       real(wp) :: p
-      p = normal * (it%vx * now%ty - it%vy * now%tx + it%spin * arm_n) &
-         + shear * (it%vx * now%tx + it%vy * now%ty + it%spin * arm_t)
+      p = normal * (it%vx * ty - it%vy * tx + it%spin * arm_n) &
+         + shear * (it%vx * tx + it%vy * ty + it%spin * arm_t)
    end function power
 
    !> A point closes: it carries half of the common stretch, but never a sliver

@@ -238,7 +238,7 @@ contains
       real(wp), allocatable :: k(:, :)
       integer :: n, i, side
       type(overlap) :: now
-      real(wp) :: x, y, stiff_n, stiff_s, length, share, greatest
+      real(wp) :: stiff_n, stiff_s, length, share, greatest
 
       allocate (k(6, size(it%set%item)))
       k = 0.0_wp
@@ -252,13 +252,11 @@ contains
                if (pair%point(i)%closed) length = max(length, pair%point(i)%length)
                stiff_n = share * it%law(pair%law)%normal_stiffness * length
                stiff_s = share * it%law(pair%law)%shear_stiffness * length
-               x = now%ox + now%s(i) * now%tx
-               y = now%oy + now%s(i) * now%ty
                do side = 1, 2
                   associate (c => it%set%item(pair%bodies(side)))
                      if (c%fixed) cycle
-                     call add(k(:, pair%bodies(side)), c, now%ty, -now%tx, x, y, stiff_n)
-                     call add(k(:, pair%bodies(side)), c, now%tx, now%ty, x, y, stiff_s)
+                     call add(k(:, pair%bodies(side)), c, now%ty(i), -now%tx(i), now%x(i), now%y(i), stiff_n)
+                     call add(k(:, pair%bodies(side)), c, now%tx(i), now%ty(i), now%x(i), now%y(i), stiff_s)
                   end associate
                end do
             end do
