@@ -41,18 +41,20 @@ contains
       type(model), intent(in) :: it
       type(energy_terms) :: now
       integer :: k
-      real(wp) :: vx, vy, spin, ax, ay, turn, cut
+      real(wp) :: vx, vy, spin, ax, ay, turn, cut, span
 
-      cut = 0.5_wp * it%mass_damping * it%kick
+      ! The first step takes half a kick from the initial velocity; steps never grow after it.
+      span = max(it%kick, it%step)
+      cut = 0.5_wp * it%mass_damping * span
       do k = 1, size(it%set%item)
          associate (b => it%set%item(k))
             if (b%fixed) cycle
             ax = b%fx * b%inverse_mass + it%pull(1)
             ay = b%fy * b%inverse_mass + it%pull(2)
             turn = b%moment * b%inverse_inertia
-            vx = (b%vx * (1.0_wp + cut) - it%kick * ax) / (1.0_wp - cut)
-            vy = (b%vy * (1.0_wp + cut) - it%kick * ay) / (1.0_wp - cut)
-            spin = (b%spin * (1.0_wp + cut) - it%kick * turn) / (1.0_wp - cut)
+            vx = (b%vx * (1.0_wp + cut) - span * ax) / (1.0_wp - cut)
+            vy = (b%vy * (1.0_wp + cut) - span * ay) / (1.0_wp - cut)
+            spin = (b%spin * (1.0_wp + cut) - span * turn) / (1.0_wp - cut)
             now%leapfrog = now%leapfrog + 0.5_wp * (b%mass * (b%vx * vx + b%vy * vy) + b%inertia * b%spin * spin)
             now%kinetic = now%kinetic + 0.125_wp * (b%mass * ((b%vx + vx - 2.0_wp * it%base(1))**2 &
                + (b%vy + vy - 2.0_wp * it%base(2))**2) + b%inertia * (b%spin + spin)**2)

@@ -262,6 +262,17 @@ contains
             end do
          end associate
       end do
+      ! A body that touches nothing yet will land, on its longest edge at the worst.
+      do n = 1, size(it%set%parts)
+         associate (c => it%set%item(it%set%parts(n)%owner))
+            if (c%fixed .or. any(k(1:3, it%set%parts(n)%owner) > 0.0_wp)) cycle
+            length = maxval(it%set%edges(it%set%parts(n)%first:it%set%parts(n)%last)%length)
+            call add(k(:, it%set%parts(n)%owner), c, 0.0_wp, 1.0_wp, c%x + 0.5_wp * length, c%y, &
+               2.0_wp * it%law(1)%normal_stiffness * length)
+            call add(k(:, it%set%parts(n)%owner), c, 1.0_wp, 0.0_wp, c%x, c%y - c%radius, &
+               2.0_wp * it%law(1)%shear_stiffness * length)
+         end associate
+      end do
       greatest = 0.0_wp
       do n = 1, size(it%set%item)
          greatest = max(greatest, greatest_eigenvalue(k(:, n)))
