@@ -105,7 +105,7 @@ contains
    !> Many runs without histories; run_status tells each member's fate
    subroutine ensemble(nbody, np, kind, bodies, nmotion, channels, terms, npoint, nbreak, sampled, first, segments, &
                        start, step, samples, breaks, linear, harmonic, nrun, run_body, run_motion, run_scale, &
-                       end_time, tolerance, stop_when_safe, threads, outcome, peak, stop_time, run_status, status)
+                       end_time, start_q, tolerance, stop_when_safe, threads, outcome, peak, stop_time, run_status, status)
       use rocking_ensemble, only : run_ensemble, motion_set
       use rocking_response, only : response, response_options
       use common_status, only : status_out_of_memory
@@ -132,6 +132,7 @@ contains
       integer(c_int), intent(in) :: run_motion(nrun)        !! 1-based
       real(c_double), intent(in) :: run_scale(nrun)
       real(c_double), intent(in) :: end_time(nrun)          !! [s]
+      real(c_double), intent(in) :: start_q(nrun)           !! initial rotation, > 0 to +x [rad]
       real(c_double), intent(in) :: tolerance
       integer(c_int), intent(in) :: stop_when_safe          !! 1: outcome and peak only
       integer(c_int), intent(in) :: threads
@@ -166,6 +167,8 @@ contains
          set = motion_set(forms, firsts, counts, starts, steps, values, edges, lines, sines)
          do k = 1, nrun
             options(k)%end_time = end_time(k)
+            options(k)%start_q = abs(start_q(k))
+            options(k)%start_side = merge(1, -1, start_q(k) >= 0.0_c_double)
             options(k)%tolerance = tolerance
             options(k)%stop_when_safe = stop_when_safe /= 0
          end do

@@ -4,10 +4,11 @@
 !> PI step control after E. Hairer, S. P. Norsett and G. Wanner, Solving Ordinary Differential
 !> Equations I, 2nd ed., II.5, II.6 and IV.2. The thesis integrates with the same pair (App. B.3).
 module common_dopri5
+   use common_dense_step, only : dense_step
    use common_kinds, only : wp
    implicit none
    private
-   public :: oscillator, dopri5_step, dopri5_attempt, dopri5_factor, step_memory
+   public :: oscillator, dopri5_attempt, dopri5_factor, step_memory
 
    !> A second-order equation of one degree of freedom
    type, abstract :: oscillator
@@ -27,21 +28,6 @@ module common_dopri5
          real(wp) :: a
       end function acceleration
    end interface
-
-   !> One step with its continuous extension of order 4
-   type :: dopri5_step
-      real(wp) :: t = 0.0_wp      !! start time
-      real(wp) :: h = 0.0_wp      !! length
-      real(wp) :: q = 0.0_wp      !! coordinate at the end
-      real(wp) :: v = 0.0_wp      !! rate at the end
-      real(wp) :: a = 0.0_wp      !! acceleration at the end
-      real(wp) :: error = 0.0_wp  !! estimate over tolerance; accept where <= 1
-      real(wp) :: cq(5) = 0.0_wp  !! dense coefficients of q
-      real(wp) :: cv(5) = 0.0_wp  !! dense coefficients of v
-   contains
-      procedure :: coordinate
-      procedure :: rate
-   end type dopri5_step
 
    !> What the PI controller remembers between steps
    type :: step_memory
@@ -78,8 +64,8 @@ contains
       real(wp), intent(in) :: atol_q           !! absolute tolerance of q
       real(wp), intent(in) :: atol_v           !! absolute tolerance of v
       real(wp), intent(in) :: rtol             !! relative tolerance
-      type(dopri5_step), intent(out) :: step
-      real(wp) :: v2, v3, v4, v5, v6, k2, k3, k4, k5, k6, q_new, v_new, k7, error_q, error_v, rise
+      type(dense_step), intent(inout) :: step
+      real(wp) :: v2, v3, v4, v5, v6, k2, k3, k4, k5, k6, q_new, v_new, k7, error_q, error_v
 
       v2 = v + h * a21 * a
       k2 = problem%acceleration(t + c2 * h, q + h * a21 * v, v2)
@@ -105,18 +91,11 @@ contains
       step%v = v_new
       step%a = k7
 
-      rise = q_new - q
-      step%cq(1) = q
-      step%cq(2) = rise
-      step%cq(3) = h * v - rise
-      step%cq(4) = rise - h * v_new - step%cq(3)
-      step%cq(5) = h * (d1 * v + d3 * v3 + d4 * v4 + d5 * v5 + d6 * v6 + d7 * v_new)
-      rise = v_new - v
-      step%cv(1) = v
-      step%cv(2) = rise
-      step%cv(3) = h * a - rise
-      step%cv(4) = rise - h * k7 - step%cv(3)
-      step%cv(5) = h * (d1 * a + d3 * k3 + d4 * k4 + d5 * k5 + d6 * k6 + d7 * k7)
+      step%degree = 4
+      call extension(q, q_new, h * v, h * v_new, h * (d1 * v + d3 * v3 + d4 * v4 + d5 * v5 + d6 * v6 + d7 * v_new), &
+         step%cq(0:4))
+      call extension(v, v_new, h * a, h * k7, h * (d1 * a + d3 * k3 + d4 * k4 + d5 * k5 + d6 * k6 + d7 * k7), &
+         step%cv(0:4))
    end subroutine dopri5_attempt
 
    !> Factor for the next step length by the PI controller; remembers the error of accepted steps
@@ -145,27 +124,20 @@ contains
       end if
    end subroutine dopri5_factor
 
-   !> q at the fraction s in [0, 1] of the step, order 4
-   pure function coordinate(self, s) result(q)
-      class(dopri5_step), intent(in) :: self
-      real(wp), intent(in) :: s
-      real(wp) :: q
-      q = dense(self%cq, s)
-   end function coordinate
-
-   !> q' at the fraction s in [0, 1] of the step, order 4
-   pure function rate(self, s) result(v)
-      class(dopri5_step), intent(in) :: self
-      real(wp), intent(in) :: s
-      real(wp) :: v
-      v = dense(self%cv, s)
-   end function rate
-
-   pure function dense(c, s) result(y)
-      real(wp), intent(in) :: c(5)
-      real(wp), intent(in) :: s
-      real(wp) :: y
-      y = c(1) + s * (c(2) + (1.0_wp - s) * (c(3) + s * (c(4) + (1.0_wp - s) * c(5))))
-   end function dense
+   !> The extension of order 4 by powers of the fraction s; Hairer's form is
+   !> y0 + s (rise + (1 - s) (c3 + s (c4 + (1 - s) top)))
+   pure subroutine extension(start, finish, slope_start, slope_finish, top, c)
+      real(wp), intent(in) :: start         !! value at s = 0
+      real(wp), intent(in) :: finish        !! value at s = 1
+      real(wp), intent(in) :: slope_start   !! derivative to s at s = 0
+      real(wp), intent(in) :: slope_finish  !! derivative to s at s = 1
+      real(wp), intent(in) :: top           !! coefficient of s^4
+      real(wp), intent(out) :: c(0:4)
+      real(wp) :: rise, c3, c4
+      rise = finish - start
+      c3 = slope_start - rise
+      c4 = rise - slope_finish - c3
+      c = [start, slope_start, -c3 + c4 + top, -c4 - 2.0_wp * top, top]
+   end subroutine extension
 
 end module common_dopri5

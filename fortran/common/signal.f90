@@ -2,7 +2,7 @@
 !> acceleration. Between breaks each is smooth, so an integrator that stops at every break
 !> keeps its order. Before the first and after the last break both are zero.
 module common_signal
-   use common_kinds, only : wp
+   use common_kinds, only : wp, pi
    implicit none
    private
    public :: signal, signal_sampled, signal_piecewise
@@ -23,7 +23,9 @@ module common_signal
    contains
       procedure :: break_time
       procedure :: value_at
+      procedure :: line_at
       procedure :: smooth_to_next
+      procedure :: shortest_period
       procedure :: has_harmonics
    end type signal
 
@@ -105,6 +107,34 @@ contains
       vertical = self%scale * value(2)
    end subroutine value_at
 
+   !> Value at time t and slope of the straight lines of segment k, sines left out
+   pure subroutine line_at(self, k, t, value, slope)
+      class(signal), intent(in) :: self
+      integer, intent(in) :: k           !! segment
+      real(wp), intent(in) :: t          !! time [s]
+      real(wp), intent(out) :: value(2)  !! horizontal and vertical
+      real(wp), intent(out) :: slope(2)  !! their change per second
+      real(wp) :: tau
+      integer :: c
+
+      value = 0.0_wp
+      slope = 0.0_wp
+      if (k < 1 .or. k > self%segments) return
+      if (associated(self%samples)) then
+         tau = t - (self%start + real(k - 1, wp) * self%step)
+         do c = 1, size(self%samples, 1)
+            slope(c) = self%scale * (self%samples(c, k + 1) - self%samples(c, k)) / self%step
+            value(c) = self%scale * self%samples(c, k) + tau * slope(c)
+         end do
+      else
+         tau = t - self%breaks(k)
+         do c = 1, size(self%linear, 2)
+            slope(c) = self%scale * self%linear(2, c, k)
+            value(c) = self%scale * self%linear(1, c, k) + tau * slope(c)
+         end do
+      end if
+   end subroutine line_at
+
    !> True where the signal is continuous from segment k into k + 1: samples joined by lines are
    pure function smooth_to_next(self, k) result(answer)
       class(signal), intent(in) :: self
@@ -113,7 +143,20 @@ contains
       answer = associated(self%samples) .and. k >= 1 .and. k < self%segments
    end function smooth_to_next
 
-   !> True where a segment may curve, so that a threshold is crossed more than once in it
+   !> Shortest period of the sines in segment k [s]; huge where it is straight
+   pure function shortest_period(self, k) result(period)
+      class(signal), intent(in) :: self
+      integer, intent(in) :: k
+      real(wp) :: period
+      real(wp) :: fastest
+      period = huge(period)
+      if (.not. associated(self%harmonic) .or. k < 1 .or. k > self%segments) return
+      if (size(self%harmonic, 2) == 0) return
+      fastest = maxval(abs(self%harmonic(3, :, :, k)))
+      if (fastest > 0.0_wp) period = 2.0_wp * pi / fastest
+   end function shortest_period
+
+   !> True where some segment may curve
    pure function has_harmonics(self) result(answer)
       class(signal), intent(in) :: self
       logical :: answer

@@ -3,17 +3,24 @@ module rocking_ensemble
    use common_kinds, only : wp
    use common_cancel, only : cancel_requested
    use common_signal, only : signal, signal_sampled, signal_piecewise
-   use common_status, only : status_ok, status_cancelled, status_invalid_argument
+   use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_out_of_memory
    use rocking_arch_rocker, only : arch_rocker, arch_rocker_new
+   use rocking_block_rocker, only : block_rocker, block_rocker_new
    use rocking_response, only : respond, response, response_options
    use rocking_rocker, only : rocker
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: motion_set, body_arch, make_body, make_motion, run_ensemble
+   public :: motion_set, body_arch, body_block, make_body, make_motion, run_ensemble
 
    !> Kinds of rocking structure, as the facades number them
-   integer(c_int), parameter :: body_arch = 1
+   integer(c_int), parameter :: body_arch = 1, body_block = 2
+
+   !> Room for one structure of any kind
+   type :: any_body
+      class(rocker), allocatable :: it
+      integer(c_int) :: status = status_ok
+   end type any_body
 
    !> Ground motions stored one behind the other in flat arrays
    type :: motion_set
@@ -55,12 +62,17 @@ contains
       class(rocker), allocatable, intent(out) :: body
       integer(c_int), intent(out) :: status
       type(arch_rocker), allocatable :: arch
+      type(block_rocker), allocatable :: stone
 
       select case (kind)
       case (body_arch)
          allocate (arch)
          call arch_rocker_new(parameters, arch, status)
          call move_alloc(arch, body)
+      case (body_block)
+         allocate (stone)
+         call block_rocker_new(parameters, stone, status)
+         call move_alloc(stone, body)
       case default
          status = status_invalid_argument
       end select
@@ -80,22 +92,33 @@ contains
       type(response), intent(out) :: answers(:)
       integer(c_int), intent(out) :: run_status(:)    !! per member; cancelled members were not run
       integer(c_int), intent(out) :: status
-      integer :: k
-      class(rocker), allocatable :: body
+      type(any_body), allocatable :: built(:)
       type(signal) :: ground
+      integer :: k, stat
 
       run_status = status_cancelled
-      !$omp parallel do schedule(dynamic) default(none) num_threads(threads) &
-      !$omp shared(kind, bodies, set, run_body, run_motion, run_scale, options, answers, run_status) &
-      !$omp private(k, body, ground)
+      allocate (built(size(kind)), stat=stat)
+      if (stat /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      !$omp parallel default(none) num_threads(threads) private(k, ground) &
+      !$omp shared(kind, bodies, set, run_body, run_motion, run_scale, options, answers, run_status, built)
+      !$omp do schedule(dynamic)
+      do k = 1, size(kind)
+         call make_body(kind(k), bodies(:, k), built(k)%it, built(k)%status)
+      end do
+      !$omp end do
+      !$omp do schedule(dynamic)
       do k = 1, size(run_body)
          if (cancel_requested()) cycle
-         call make_body(kind(run_body(k)), bodies(:, run_body(k)), body, run_status(k))
+         run_status(k) = built(run_body(k))%status
          if (run_status(k) /= status_ok) cycle
          ground = make_motion(set, int(run_motion(k)), run_scale(k))
-         call respond(body, ground, options(k), answers(k), run_status(k))
+         call respond(built(run_body(k))%it, ground, options(k), answers(k), run_status(k))
       end do
-      !$omp end parallel do
+      !$omp end do
+      !$omp end parallel
       status = merge(status_cancelled, status_ok, any(run_status == status_cancelled))
    end subroutine run_ensemble
 

@@ -7,7 +7,8 @@
 module rocking_response
    use common_kinds, only : wp, gravity
    use common_cancel, only : cancel_requested
-   use common_dopri5, only : oscillator, dopri5_step, dopri5_attempt, dopri5_factor, step_memory
+   use common_dense_step, only : dense_step
+   use common_dopri5, only : oscillator, dopri5_attempt, dopri5_factor, step_memory
    use common_signal, only : signal
    use common_status, only : status_ok, status_cancelled, status_too_many_steps, status_step_too_small
    use rocking_rocker, only : rocker, side_index
@@ -66,6 +67,9 @@ module rocking_response
       type(signal) :: ground
       integer :: segment = 0
       integer :: side = 1
+      logical :: series = .false.  !! the structure solves its own steps
+      real(wp) :: rest_dv(2) = 0.0_wp  !! V' at rest, both sides
+      real(wp) :: rest_dh(2) = 0.0_wp  !! H at rest, both sides
    contains
       procedure :: acceleration
    end type rocking_problem
@@ -101,16 +105,20 @@ contains
       integer(c_int), intent(out) :: status
       type(response_history), intent(inout), optional :: history
       type(rocking_problem) :: problem
-      type(dopri5_step) :: step
+      type(dense_step) :: step
       type(step_memory) :: memory
       real(wp) :: t, t_next, q, v, a, h, h_next, remaining, factor, s, v_before, barrier
-      real(wp) :: atol_q, atol_v
+      real(wp) :: atol_q, atol_v, m, half_dm
       integer :: attempts, found_side, i
-      logical :: resting, from_rest, quiet, renew
+      logical :: resting, from_rest, quiet, renew, closed
 
       problem%body => body
       problem%ground = ground
       problem%side = options%start_side
+      problem%series = body%has_series .and. .not. ground%has_harmonics()
+      do i = 1, 2
+         call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, problem%rest_dv(i), problem%rest_dh(i), closed)
+      end do
       i = side_index(problem%side)
       atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
       atol_v = 0.01_wp * options%tolerance * 1.0e3_wp * maxval(body%rest_rate)
@@ -174,10 +182,11 @@ contains
             call note_event(event_uplift, t, real(found_side, wp))
          end if
 
-         if (renew) a = problem%acceleration(t, q, v)
+         if (renew .and. .not. problem%series) a = problem%acceleration(t, q, v)
          renew = .false.
          remaining = t_next - t
-         h = h_next
+         ! An error estimate can be blind to a whole cycle of the ground inside one step.
+         h = min(h_next, 0.125_wp * ground%shortest_period(problem%segment))
          if (h >= remaining) then
             h = remaining
          else if (h > 0.5_wp * remaining) then
@@ -194,8 +203,12 @@ contains
                exit
             end if
          end if
-         call dopri5_attempt(problem, t, h, q, v, a, atol_q, atol_v, options%tolerance, step)
-         call dopri5_factor(step%error, memory, factor)
+         call attempt(problem, t, h, q, v, a, atol_q, atol_v, options%tolerance, step)
+         if (problem%series) then
+            factor = series_factor(step)
+         else
+            call dopri5_factor(step%error, memory, factor)
+         end if
          if (.not. step%error <= 1.0_wp) then
             answer%rejected = answer%rejected + 1
             h_next = h * factor
@@ -308,7 +321,7 @@ contains
 
       !> A turning point inside the step is a peak of the rotation
       subroutine note_turning(done, rate_before)
-         type(dopri5_step), intent(in) :: done
+         type(dense_step), intent(in) :: done
          real(wp), intent(in) :: rate_before
          real(wp) :: where_turned
          if (.not. (rate_before > 0.0_wp .and. done%v <= 0.0_wp)) return
@@ -364,7 +377,7 @@ contains
       !> Work of the ground over the first part of a step, by three Gauss points on the dense output
       !> (thesis Eq. 6.4)
       function work_of(done, fraction) result(work)
-         type(dopri5_step), intent(in) :: done
+         type(dense_step), intent(in) :: done
          real(wp), intent(in) :: fraction
          real(wp) :: work
          real(wp), parameter :: node(3) = [0.1127016653792583_wp, 0.5_wp, 0.8872983346207417_wp]
@@ -384,7 +397,7 @@ contains
 
       !> Fill the output times that the first part of a step covers, and book the work done over it
       subroutine record_moving(done, covered)
-         type(dopri5_step), intent(in) :: done
+         type(dense_step), intent(in) :: done
          real(wp), intent(in) :: covered  !! fraction of the step
          real(wp) :: x, end_time, rotation, rate, horizontal, vertical, energy, potential, sigma
          if (.not. present(history)) return
@@ -422,13 +435,44 @@ contains
 
    end subroutine respond
 
+   !> One step: by the structure's own series where it has one and the ground runs in straight lines
+   subroutine attempt(problem, t, h, q, v, a, atol_q, atol_v, rtol, step)
+      type(rocking_problem), intent(in) :: problem
+      real(wp), intent(in) :: t, h, q, v, a   !! start time, length, and state at the start
+      real(wp), intent(in) :: atol_q, atol_v  !! absolute tolerances
+      real(wp), intent(in) :: rtol
+      type(dense_step), intent(inout) :: step
+      real(wp) :: value(2), slope(2)
+
+      if (problem%series) then
+         call problem%ground%line_at(problem%segment, t, value, slope)
+         step%t = t
+         call problem%body%series_step(problem%side, h, q, v, value, slope, [atol_q, atol_v, rtol], step)
+      else
+         call dopri5_attempt(problem, t, h, q, v, a, atol_q, atol_v, rtol, step)
+      end if
+   end subroutine attempt
+
+   !> Factor for the next step length after a series: its error grows with the power of the last term
+   pure function series_factor(step) result(factor)
+      type(dense_step), intent(in) :: step
+      real(wp) :: factor
+      if (.not. step%error <= huge(1.0_wp)) then
+         factor = 0.1_wp
+      else if (step%error <= 1.0e-3_wp) then
+         factor = 2.0_wp  ! the series was cut short: a longer step is as cheap
+      else
+         factor = min(2.0_wp, max(0.1_wp, 0.9_wp * step%error**(-1.0_wp / real(step%degree - 2, wp))))
+      end if
+   end function series_factor
+
    !> Fraction of the step at which q falls through zero, or 0 where it does not
    pure function impact_fraction(step, q, v) result(s)
-      type(dopri5_step), intent(in) :: step
+      type(dense_step), intent(in) :: step
       real(wp), intent(in) :: q  !! at the start
       real(wp), intent(in) :: v  !! at the start
       real(wp) :: s
-      real(wp) :: low, high, middle
+      real(wp) :: low, high
       integer :: k
 
       s = 0.0_wp
@@ -452,56 +496,76 @@ contains
             return
          end if
       end if
-      do k = 1, 60
-         middle = 0.5_wp * (low + high)
-         if (step%coordinate(middle) > 0.0_wp) then
-            low = middle
-         else
-            high = middle
-         end if
-      end do
-      s = high
+      s = root_between(step, .false., 0.0_wp, low, high)
    end function impact_fraction
 
    !> Fraction of the step at which the rate changes sign
    pure function turning_fraction(step) result(s)
-      type(dopri5_step), intent(in) :: step
+      type(dense_step), intent(in) :: step
       real(wp) :: s
-      real(wp) :: low, high, middle, first
-      integer :: k
-      low = 0.0_wp
-      high = 1.0_wp
-      first = step%rate(0.0_wp)
-      do k = 1, 50
-         middle = 0.5_wp * (low + high)
-         if (step%rate(middle) * first > 0.0_wp) then
-            low = middle
-         else
-            high = middle
-         end if
-      end do
-      s = 0.5_wp * (low + high)
+      s = root_between(step, .true., 0.0_wp, 0.0_wp, 1.0_wp)
    end function turning_fraction
 
    !> Fraction of the step at which q rises through a level
    pure function crossing_fraction(step, level) result(s)
-      type(dopri5_step), intent(in) :: step
+      type(dense_step), intent(in) :: step
       real(wp), intent(in) :: level
       real(wp) :: s
-      real(wp) :: low, high, middle
-      integer :: k
-      low = 0.0_wp
-      high = 1.0_wp
-      do k = 1, 60
-         middle = 0.5_wp * (low + high)
-         if (step%coordinate(middle) < level) then
+      s = root_between(step, .false., level, 0.0_wp, 1.0_wp)
+   end function crossing_fraction
+
+   !> Where the coordinate, or the rate, passes a level between two fractions on either side of it.
+   !>
+   !> Regula falsi that halves the value of an end that stays (the Illinois rule): never leaves the
+   !> bracket and takes a fifth of the evaluations of bisection. Returns the end beyond the level.
+   pure function root_between(step, of_rate, level, start, finish) result(s)
+      type(dense_step), intent(in) :: step
+      logical, intent(in) :: of_rate     !! the rate, else the coordinate
+      real(wp), intent(in) :: level
+      real(wp), intent(in) :: start      !! value differs from the level in sign from that at finish
+      real(wp), intent(in) :: finish
+      real(wp) :: s
+      real(wp) :: low, high, f_low, f_high, f, middle
+      integer :: k, stayed
+
+      low = start
+      high = finish
+      f_low = value(low)
+      f_high = value(high)
+      stayed = 0
+      do k = 1, 100
+         if (f_high == 0.0_wp .or. abs(high - low) <= 2.0_wp * spacing(high)) exit
+         middle = high - f_high * (high - low) / (f_high - f_low)
+         if (.not. (middle > low .and. middle < high) .or. mod(k, 8) == 0) middle = 0.5_wp * (low + high)
+         if (middle <= low .or. middle >= high) exit
+         f = value(middle)
+         if ((f > 0.0_wp) .eqv. (f_low > 0.0_wp)) then
             low = middle
+            f_low = f
+            if (stayed == 1) f_high = 0.5_wp * f_high
+            stayed = 1
          else
             high = middle
+            f_high = f
+            if (stayed == -1) f_low = 0.5_wp * f_low
+            stayed = -1
          end if
       end do
       s = high
-   end function crossing_fraction
+
+   contains
+
+      pure function value(x) result(f)
+         real(wp), intent(in) :: x
+         real(wp) :: f
+         if (of_rate) then
+            f = step%rate(x) - level
+         else
+            f = step%coordinate(x) - level
+         end if
+      end function value
+
+   end function root_between
 
    !> Repeat the step with its end on the impact: the time then has the order of the integrator
    subroutine polish_impact(problem, q, v, a, atol_q, atol_v, rtol, fraction, step)
@@ -510,10 +574,14 @@ contains
       real(wp), intent(in) :: atol_q, atol_v  !! absolute tolerances
       real(wp), intent(in) :: rtol
       real(wp), intent(in) :: fraction        !! first guess, of the step
-      type(dopri5_step), intent(inout) :: step
+      type(dense_step), intent(inout) :: step
       real(wp) :: h, full, change
       integer :: k
 
+      if (problem%series) then
+         call step%cut(fraction)  ! the series is the solution itself
+         return
+      end if
       full = step%h
       h = fraction * full
       do k = 1, 4
@@ -533,23 +601,19 @@ contains
       real(wp), intent(in) :: t_next
       real(wp), intent(out) :: when
       integer, intent(out) :: side              !! 0 where it stays at rest
-      real(wp) :: m(2), half_dm, dv(2), dh(2), t0, t1, f0(2), f1(2), best, root
-      logical :: closed
-      integer :: j, k, pieces
+      real(wp) :: t0, t1, f0(2), f1(2), best, root, grid
+      integer :: j
 
       side = 0
       when = t_next
-      do j = 1, 2
-         call problem%body%coefficients(3 - 2 * j, 0.0_wp, m(j), half_dm, dv(j), dh(j), closed)
-      end do
-      ! Straight lines are tested at their ends; curved segments on a fine grid.
-      pieces = merge(64, 1, problem%ground%has_harmonics())
+      ! Straight lines are tested at their ends; sines 32 times a cycle.
+      grid = problem%ground%shortest_period(problem%segment) / 32.0_wp
       t1 = t
       f1 = drive(t1)
-      do k = 1, pieces
+      do while (t1 < t_next)
          t0 = t1
          f0 = f1
-         t1 = t + (t_next - t) * real(k, wp) / real(pieces, wp)
+         t1 = min(t_next, t0 + grid)
          f1 = drive(t1)
          best = huge(best)
          do j = 1, 2
@@ -579,8 +643,7 @@ contains
          real(wp) :: f(2)
          real(wp) :: horizontal, vertical
          call problem%ground%value_at(problem%segment, time, horizontal, vertical)
-         f(1) = -horizontal * dh(1) - dv(1) * (1.0_wp + vertical / gravity)
-         f(2) = horizontal * dh(2) - dv(2) * (1.0_wp + vertical / gravity)
+         f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity)
       end function drive
 
       !> The first time at which side j is driven up, between a quiet and a driven time

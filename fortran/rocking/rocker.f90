@@ -7,6 +7,7 @@
 !>
 !> with a_h, a_v the ground accelerations to +x and up (thesis Eqs 5.1, 5.2, 6.1).
 module rocking_rocker
+   use common_dense_step, only : dense_step
    use common_kinds, only : wp
    implicit none
    private
@@ -18,10 +19,13 @@ module rocking_rocker
       real(wp) :: critical(2) = 0.0_wp     !! q of unstable equilibrium [rad]
       real(wp) :: limit(2) = 0.0_wp        !! q taken as collapse [rad]
       real(wp) :: rest_rate(2) = 0.0_wp    !! rate after impact below which the structure rests [rad/s]
+      !> True where series_step solves the motion under straight-line accelerations
+      logical :: has_series = .false.
    contains
       procedure(coefficients), deferred :: coefficients
       procedure(potential), deferred :: potential
       procedure :: set_rest_rate
+      procedure :: series_step
    end type rocker
 
    abstract interface
@@ -56,6 +60,25 @@ contains
       integer :: i
       i = merge(1, 2, side > 0)
    end function side_index
+
+   !> One step by the Taylor series of the solution while the ground acceleration is value + slope tau.
+   !>
+   !> A structure whose series is cheap overrides this and sets has_series; here nothing is known of one, so
+   !> the step is refused.
+   pure subroutine series_step(self, side, h, q, v, value, slope, tolerance, step)
+      class(rocker), intent(in) :: self
+      integer, intent(in) :: side            !! +1 or -1
+      real(wp), intent(in) :: h              !! length [s]
+      real(wp), intent(in) :: q              !! rotation at the start [rad]
+      real(wp), intent(in) :: v              !! its rate [rad/s]
+      real(wp), intent(in) :: value(2)       !! horizontal and vertical ground acceleration at the start [m/s^2]
+      real(wp), intent(in) :: slope(2)       !! their change per second [m/s^3]
+      real(wp), intent(in) :: tolerance(3)   !! absolute of q and of v, relative
+      type(dense_step), intent(inout) :: step  !! t is left alone
+      step%h = h
+      step%error = huge(h)
+      if (.false.) step%q = q + v + value(1) + slope(1) + tolerance(1) + self%critical(side_index(side))
+   end subroutine series_step
 
    !> Rest where the kinetic energy after an impact is below 1e-6 of the energy barrier.
    !>

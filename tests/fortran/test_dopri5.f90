@@ -22,7 +22,8 @@ end module pendulum_case
 
 program test_dopri5
    use common_kinds, only : wp
-   use common_dopri5, only : dopri5_attempt, dopri5_step
+   use common_dense_step, only : dense_step
+   use common_dopri5, only : dopri5_attempt
    use pendulum_case, only : linear_oscillator, frequency
    implicit none (type, external)
    real(wp) :: error(2), dense_error(2), order
@@ -44,7 +45,7 @@ contains
       integer, intent(in) :: steps
       real(wp), intent(out) :: error_end, error_dense
       type(linear_oscillator) :: problem
-      type(dopri5_step) :: step
+      type(dense_step) :: step
       real(wp) :: t, h, q, v, a, s
       integer :: k, j
 

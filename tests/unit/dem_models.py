@@ -4,7 +4,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from extrados.core import dem
-from extrados.core.motion import Ground
+from extrados.core.ground import Ground
 
 G = dem.GRAVITY
 

@@ -1,7 +1,8 @@
-"""rocking: the four-hinge arch under a ground motion (thesis 5.2, Eqs 5.1-5.3, B.1-B.3)."""
+"""rocking: a block, or the four-hinge arch, under a ground motion (thesis 5.2, Eqs 5.1-5.3, B.1-B.3)."""
 
 import numpy as np
 
+from extrados.analyses import block_rocking
 from extrados.analyses.arch_model import ArchModel
 from extrados.analyses.run import Context
 from extrados.analyses.tilt import geometry_arrays
@@ -11,6 +12,7 @@ from extrados.decks.analyses import Rocking
 from extrados.motions.motion import GRAVITY
 from extrados.results.model import Array, Result, TableData
 from extrados.structures.arch import Arch
+from extrados.structures.block import Block
 
 #: How far the thrust line may leave a joint, as a fraction of its length, before it is a warning.
 OUTSIDE = 0.01
@@ -19,6 +21,8 @@ ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, dynamic thrust line and friction needed."""
+    if isinstance(context.structure, Block):
+        return block_rocking.run(context, options)
     model = ArchModel(context.structure, context.deck.structure.restitution)
     context.warnings += model.warnings + context.motion.notes
     gamma = model.collapse[0].gamma

@@ -7,7 +7,7 @@ import numpy as np
 from extrados import _core
 from extrados.core.calls import integers, long_call, real
 from extrados.core.errors import check, status_code
-from extrados.core.motion import Ground, motion_set
+from extrados.core.ground import Ground, motion_set
 
 GRAVITY = 9.80665
 #: Why a run ended, by the number the core gives.

@@ -1,110 +1,219 @@
-"""Ground motions as the core takes them: sampled, or piecewise analytic (fortran/common/signal.f90)."""
+"""Ground motions in the core (fortran/motion, c/quake): generated sets, response spectra, measures, Fourier."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.core.calls import integers, real
+from extrados import _core
+from extrados.core.calls import long_call, real
+from extrados.core.errors import check
+
+ENVELOPES = {"arctangent": 1, "trapezoid": 2, "jennings": 3, "saragoni-hart": 4}
+SPACINGS = {"log": 1, "uniform": 2}
+SCALINGS = {"thesis": 1, "fourier": 2, "energy": 3}
+#: Points on the shortest oscillator period: sampled peaks are at most 1.2 % below the true ones.
+POINTS_PER_CYCLE = 20
+MOST_VALUES = 250_000_000
+_I64 = 2**63 - 1
 
 
-@dataclass(frozen=True)
-class Ground:
-    """A ground motion as the core knows it, accelerations in m/s^2.
-
-    Either `samples` (channels, points) at `step` from `start`, joined by straight lines; or, on each
-    interval between `breaks`, `linear` (value and slope at its start: segments, channels, 2) plus
-    `harmonic` ((a + b tau) sin(w tau + phi): segments, channels, terms, 4).
-    Channels: 1 horizontal, or horizontal and vertical.
-    """
-
-    samples: np.ndarray | None = None
-    step: float = 0.0
-    start: float = 0.0
-    breaks: np.ndarray | None = None
-    linear: np.ndarray | None = None
-    harmonic: np.ndarray | None = None
-
-    @property
-    def end(self) -> float:
-        """When the motion is over [s]."""
-        if self.samples is not None:
-            return self.start + self.step * (self.samples.shape[1] - 1)
-        return float(self.breaks[-1])
-
-    @property
-    def channels(self) -> int:
-        return self.samples.shape[0] if self.samples is not None else self.linear.shape[1]
-
-    @property
-    def terms(self) -> int:
-        return self.harmonic.shape[2] if self.harmonic is not None else 0
+def _size(*lengths: int) -> None:
+    if np.prod([float(n) for n in lengths]) > MOST_VALUES:
+        raise ValueError(f"{' x '.join(map(str, lengths))} values are more than {MOST_VALUES:,}: use smaller batches")
 
 
-@dataclass(frozen=True)
-class MotionSet:
-    """Motions stored one behind the other, as the core reads them (fortran/rocking/ensemble.f90)."""
-
-    sampled: np.ndarray
-    first: np.ndarray
-    segments: np.ndarray
-    start: np.ndarray
-    step: np.ndarray
-    samples: np.ndarray
-    breaks: np.ndarray
-    linear: np.ndarray
-    harmonic: np.ndarray
+def _threads(threads: int) -> int:
+    if threads < 1:
+        raise ValueError(f"threads is {threads}, expected at least 1")
+    return int(threads)
 
 
-def motion_set(grounds: Sequence[Ground]) -> MotionSet:
-    """Motions packed into flat arrays; ValueError where one is malformed."""
-    channels = max(g.channels for g in grounds)
-    terms = max(g.terms for g in grounds)
-    samples, breaks, linear, harmonic = [], [], [], []
-    sampled, first, segments = [], [], []
-    n_sample = n_break = 0
-    for ground in grounds:
-        if ground.samples is not None:
-            block = np.zeros((ground.samples.shape[1], channels))
-            block[:, : ground.channels] = real("samples", ground.samples, (None, None)).T
-            if len(block) < 2 or not ground.step > 0.0:
-                raise ValueError("a sampled motion needs two samples and a step above zero")
-            samples.append(block)
-            sampled.append(1)
-            first.append(n_sample + 1)
-            segments.append(len(block) - 1)
-            n_sample += len(block)
-        else:
-            edges = real("breaks", ground.breaks, (None,))
-            count = len(edges) - 1
-            if count < 1 or np.any(np.diff(edges) <= 0.0):
-                raise ValueError("breaks of a motion must ascend")
-            lines = np.zeros((count + 1, channels, 2))
-            lines[:count, : ground.channels] = real("linear", ground.linear, (count, ground.channels, 2))
-            sines = np.zeros((count + 1, channels, terms, 4))
-            if ground.terms:
-                sines[:count, : ground.channels, : ground.terms] = real(
-                    "harmonic", ground.harmonic, (count, ground.channels, ground.terms, 4)
-                )
-            breaks.append(edges)
-            linear.append(lines)
-            harmonic.append(sines)
-            sampled.append(0)
-            first.append(n_break + 1)
-            segments.append(count)
-            n_break += count + 1
+def _step(step: float) -> float:
+    if not (np.isfinite(step) and step > 0.0):
+        raise ValueError(f"time step is {step} s, expected a number above zero")
+    return float(step)
 
-    def stack(parts: list, empty: tuple[int, ...]) -> np.ndarray:
-        return np.concatenate(parts) if parts else np.zeros(empty)
 
-    return MotionSet(
-        integers("sampled", sampled),
-        integers("first", first),
-        integers("segments", segments),
-        np.array([g.start for g in grounds], dtype=float),
-        np.array([g.step for g in grounds], dtype=float),
-        stack(samples, (1, channels)).T,
-        stack(breaks, (1,)),
-        stack(linear, (1, channels, 2)).T,
-        stack(harmonic, (1, channels, terms, 4)).T,
+def _batch(motions: np.ndarray) -> np.ndarray:
+    """(count, points) or (points,) as the core's (points, count)."""
+    motions = np.atleast_2d(np.asarray(motions, dtype=float))
+    if motions.ndim != 2 or motions.shape[1] < 2:
+        raise ValueError(f"motions have shape {motions.shape}, expected (count, points) with two points or more")
+    return real("motions", np.ascontiguousarray(motions).T, (None, None))
+
+
+def envelope(kind: str, parameters, points: int, step: float) -> np.ndarray:
+    """Envelope at 0, step, ... (points). parameters: start, duration [s] and two of the kind, see c/quake/envelope.c."""
+    value, status = _core.api_motion.envelope(
+        ENVELOPES[kind], real("parameters", parameters, (4,)), int(points), _step(step)
     )
+    check(status, f"{kind} envelope")
+    return value
+
+
+def line_spectrum(intensity, frequency, amplitude, wanted: float, lines) -> np.ndarray:
+    """Fourier amplitudes at `lines` [Hz]; amplitude (intensities, frequencies), log-log in between."""
+    intensity, frequency = real("intensity", intensity, (None,)), real("frequency", frequency, (None,))
+    table = real("amplitude", np.asarray(amplitude).T, (frequency.size, intensity.size))
+    value, status = _core.api_motion.line_spectrum(
+        intensity, frequency, table, float(wanted), real("lines", lines, (None,))
+    )
+    check(status, f"spectrum of intensity {wanted:g}")
+    return value
+
+
+def line_widths(lines, spacing: str) -> np.ndarray:
+    """Share of the band each line stands for [Hz]; bin edges at geometric (log) or arithmetic (uniform) means."""
+    width, status = _core.api_motion.line_widths(SPACINGS[spacing], real("lines", lines, (None,)))
+    check(status, "widths of the lines")
+    return width
+
+
+def line_amplitudes(value, width, scaling: str, factor: float, duration: float) -> np.ndarray:
+    """Amplitudes of the sines [unit of value / s]; duration: integral of the squared envelope [s]. Thesis Eq. 6.6."""
+    value = real("value", value, (None,))
+    amplitude, status = _core.api_motion.line_amplitudes(
+        SCALINGS[scaling], float(factor), float(duration), value, real("width", width, value.shape)
+    )
+    check(status, "amplitudes of the lines")
+    return amplitude
+
+
+def phases(seed: int, index: int, count: int) -> np.ndarray:
+    """Random phases in [0, 2 pi) of motion `index` of the set `seed`."""
+    phase, status = _core.api_motion.phases(int(seed), int(index), int(count))
+    check(status, "random phases")
+    return phase
+
+
+def generate(lines, amplitude, window, step: float, seed: int, first: int, count: int, threads: int = 1) -> np.ndarray:
+    """Motions first .. first + count - 1 of the set `seed` (count, points), thesis Eqs 6.6 to 6.8.
+
+    lines [Hz] and their amplitudes [m/s^2]; window: envelope at 0, step, ... The bits of motion k depend on
+    neither count, first nor threads.
+    """
+    lines, window = real("lines", lines, (None,)), real("window", window, (None,))
+    if not (-_I64 <= seed <= _I64 and first >= 0 and count >= 1):
+        raise ValueError(f"seed {seed}, first {first} or count {count} is out of range")
+    _size(window.size, count)
+    _size(window.size, 2 * lines.size)
+    motions, status = long_call(
+        _core.api_motion.generate, lines, real("amplitude", amplitude, lines.shape), _step(step), window,
+        int(seed), int(first), int(count), _threads(threads),
+    )  # fmt: skip
+    check(status, "generated motions")
+    return motions.T
+
+
+@dataclass(frozen=True)
+class Spectra:
+    """Response spectra (..., dampings, periods) over period [s]: displacement SD [m], relative velocity SV [m/s],
+    absolute acceleration SA [m/s^2], and the pseudo-spectra of the displacement."""
+
+    period: np.ndarray
+    damping: np.ndarray
+    sd: np.ndarray
+    sv: np.ndarray
+    sa: np.ndarray
+
+    @property
+    def psv(self) -> np.ndarray:
+        """Pseudo-velocity [m/s]."""
+        return self.sd * (2.0 * np.pi / self.period)
+
+    @property
+    def psa(self) -> np.ndarray:
+        """Pseudo-acceleration [m/s^2]."""
+        return self.sd * (2.0 * np.pi / self.period) ** 2
+
+
+def response_spectra(
+    motions, step: float, periods, dampings=(0.05,), *, threads: int = 1, points_per_cycle: int = POINTS_PER_CYCLE
+) -> Spectra:
+    """Response spectra of one motion (points) or several (count, points) [m/s^2], from rest.
+
+    Exact for samples joined by straight lines (Nigam and Jennings 1969); free vibration after the end counts.
+    """
+    batch = _batch(motions)
+    periods, dampings = real("periods", periods, (None,)), real("dampings", dampings, (None,))
+    if periods.size < 1 or dampings.size < 1 or np.any(dampings < 0.0) or np.any(dampings >= 1.0):
+        raise ValueError("response spectra need a period, and dampings from 0 to below 1")
+    if periods.min() * 4096 < points_per_cycle * _step(step):
+        raise ValueError(f"period {periods.min():g} s is too short for a time step of {step:g} s")
+    _size(3, periods.size, dampings.size, batch.shape[1])
+    peak, status = long_call(
+        _core.api_motion.spectra, batch, _step(step), periods, dampings, int(points_per_cycle), _threads(threads)
+    )
+    check(status, "response spectra")
+    peak = np.moveaxis(peak, (0, 1, 2, 3), (0, 3, 2, 1))
+    if np.ndim(motions) == 1:
+        peak = peak[:, 0]
+    return Spectra(periods, dampings, *np.ascontiguousarray(peak))
+
+
+def oscillator(motion, step: float, period: float, damping: float) -> tuple[np.ndarray, np.ndarray]:
+    """Displacement [m] and velocity [m/s] of one oscillator relative to the ground at the samples, from rest."""
+    u, v, status = _core.api_motion.oscillator(
+        real("motion", motion, (None,)), _step(step), float(period), float(damping), POINTS_PER_CYCLE
+    )
+    check(status, "oscillator")
+    return u, v
+
+
+@dataclass(frozen=True)
+class Measures:
+    """Intensity measures, one entry per motion, SI. duration is that from 5 to 95 % of the Arias intensity."""
+
+    pga: np.ndarray
+    pga_time: np.ndarray
+    pgv: np.ndarray
+    pgd: np.ndarray
+    arias: np.ndarray
+    cav: np.ndarray
+    t05: np.ndarray
+    t75: np.ndarray
+    t95: np.ndarray
+
+    @property
+    def duration(self) -> np.ndarray:
+        """Significant duration 5-95 % [s]."""
+        return self.t95 - self.t05
+
+    @property
+    def duration_75(self) -> np.ndarray:
+        """Significant duration 5-75 % [s]."""
+        return self.t75 - self.t05
+
+
+def measures(motions, step: float, threads: int = 1) -> Measures:
+    """Measures of one motion (points) or several (count, points) [m/s^2]; exact for straight lines between samples."""
+    value, status = long_call(_core.api_motion.motion_measure, _batch(motions), _step(step), _threads(threads))
+    check(status, "intensity measures")
+    return Measures(*value)
+
+
+def kinematics(motion, step: float) -> tuple[np.ndarray, np.ndarray]:
+    """Velocity [m/s] and displacement [m] at the samples of an acceleration [m/s^2], from rest."""
+    return _core.api_motion.kinematics(real("motion", motion, (None,)), _step(step))
+
+
+def fourier(series, length: int | None = None) -> np.ndarray:
+    """Transform (length // 2 + 1) complex of a real series padded with zeros to `length`; GSL, not scaled."""
+    series = real("series", series, (None,))
+    length = int(length or series.size)
+    if length < max(2, series.size):
+        raise ValueError(f"length is {length}, expected at least {max(2, series.size)}")
+    re, im, status = _core.api_motion.fourier(series, length, length // 2 + 1)
+    check(status, "Fourier transform")
+    return re + 1j * im
+
+
+def fourier_inverse(transform, length: int) -> np.ndarray:
+    """Real series (length) of a transform made by `fourier`."""
+    transform = np.asarray(transform)
+    half = int(length) // 2 + 1
+    series, status = _core.api_motion.fourier_inverse(
+        real("transform", transform.real, (half,)), real("transform", transform.imag, (half,)), int(length)
+    )
+    check(status, "inverse Fourier transform")
+    return series

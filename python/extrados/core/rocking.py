@@ -9,7 +9,7 @@ from extrados import _core
 from extrados.core.arch import FourHinge
 from extrados.core.calls import integers, long_call, real
 from extrados.core.errors import check, status_code, status_list
-from extrados.core.motion import Ground, motion_set
+from extrados.core.ground import Ground, motion_set
 
 OUTCOMES = ("no-hinging", "recovery", "collapse")
 EVENTS = {1: "uplift", 2: "impact", 3: "peak", 4: "rest", 5: "collapse"}
@@ -29,6 +29,26 @@ def arch_body(mechanism: FourHinge, restitution: float) -> Body:
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
     hinge, mass, centroid, inertia = mechanism.links()
     return Body(1, np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]))
+
+
+def block_body(
+    mass: float,
+    inertia: float,
+    height: float,
+    toe_right: float,
+    toe_left: float,
+    restitution: tuple[float, float],
+    linear: bool = False,
+) -> Body:
+    """A rigid block: mass [kg], inertia about its centre of mass [kg m^2], height of that centre and its
+    distance from the toes [m], restitution of the impacts after which it rocks to +x and to -x; `linear` for
+    the slender form of the equations."""
+    values = [float(linear), mass, inertia, height, toe_right, toe_left, *restitution]
+    if not (np.isfinite(values).all() and min(values[1:6]) > 0.0):
+        raise ValueError(f"mass, inertia, height and toes of a block must be above zero, got {values[1:6]}")
+    if not all(0.0 <= c <= 1.0 for c in restitution):
+        raise ValueError(f"restitution is {restitution}, expected 0 to 1")
+    return Body(2, np.array(values))
 
 
 @dataclass(frozen=True)
@@ -146,11 +166,14 @@ def ensemble(
     run_scale,
     end_time,
     *,
+    start_rotation=0.0,
     tolerance: float = 1e-8,
     stop_when_safe: bool = True,
     threads: int = 1,
 ) -> Ensemble:
     """Run pairs of bodies and motions (0-based indices); results do not depend on `threads`.
+
+    run_scale, end_time [s] and start_rotation (> 0 to +x) [rad] are one number or one for each run.
 
     With `stop_when_safe` a run ends once the motion is over and the energy left is below the barrier:
     outcome and peak are known then, the number of impacts is not.
@@ -174,6 +197,7 @@ def ensemble(
         run_body + np.int32(1), run_motion + np.int32(1),
         real("run_scale", np.broadcast_to(run_scale, n), (n,)),
         real("end_time", np.broadcast_to(end_time, n), (n,)),
+        real("start_rotation", np.broadcast_to(start_rotation, n), (n,)),
         float(tolerance), int(stop_when_safe), int(threads),
     )  # fmt: skip
     outcome, peak, stop_time, run_status, status = out

@@ -22,12 +22,12 @@ class Rocking(Analysis):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]
-    structures: ClassVar = ("arch",)
+    structures: ClassVar = ("arch", "block")
     needs_motion: ClassVar = True
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.005, "spacing of the history", gt=0)
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
-    thrust_line_times: list[Time] = key([], "draw the arch and its dynamic thrust line at these times", max_length=24)
+    thrust_line_times: list[Time] = key([], "draw the structure and its thrust line at these times", max_length=24)
 
 
 class FailureDomain(Analysis):

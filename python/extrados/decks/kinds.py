@@ -1,21 +1,28 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, motions, structures
+from extrados.decks import analyses, block, motion_analyses, motions, structures
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch,)
+STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
     motions.SinePulse,
     motions.Harmonic,
+    motions.Pulse,
+    motions.VelocityPulse,
     motions.Record,
+    motions.Suite,
+    motions.Generated,
+    motions.Compatible,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Tilt,
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,
+    motion_analyses.MotionStudy,
+    motion_analyses.ShakeTable,
 )
 
 

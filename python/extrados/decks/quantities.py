@@ -4,6 +4,7 @@ pint sees the unit alone: given a whole string it reads "1,5 m" as 15 m, evaluat
 powers of powers. In decks `g` is gravity, not gram.
 """
 
+import math
 import re
 from functools import lru_cache
 from typing import Annotated, Any
@@ -19,7 +20,7 @@ LONGEST = 60
 _EXAMPLE = {
     "m": "20 cm", "s": "0.2 s", "m/s^2": "0.5 g", "m/s": "12 cm/s", "Hz": "2 Hz", "deg": "157.5 deg",
     "kg/m^3": "2000 kg/m^3", "Pa": "3 MPa", "N": "55.6 kN", "N/m": "60 N/m", "Pa/m": "10 GPa/m",
-    "rad/s": "3 rad/s",
+    "rad/s": "3 rad/s", "kg*m^2": "12 kg*m^2", "m^2": "0.4 in^2", "m^3/s": "0.75 gallon/min",
 }  # fmt: skip
 
 
@@ -34,6 +35,8 @@ def _registry() -> pint.UnitRegistry:
 def factor(unit: str, si: str) -> float:
     """How many `si` one `unit` is; pint.UndefinedUnitError and pint.DimensionalityError say what is wrong."""
     unit = re.sub(r"\bg\b", "gravity_unit", unit) if si == "m/s^2" else unit
+    if si == "Hz" and re.match(r"rad(ian)?s?\b", unit):  # pint takes a radian per second for a hertz
+        return factor(unit, "rad/s") / (2.0 * math.pi)
     return float(_registry().Quantity(1.0, unit.replace("^", "**")).to(si.replace("^", "**")).magnitude)
 
 
@@ -77,8 +80,11 @@ Frequency = quantity("Hz")
 Angle = quantity("deg")
 Density = quantity("kg/m^3")
 Mass = quantity("kg")
+Inertia = quantity("kg*m^2")
 Force = quantity("N")
 LineForce = quantity("N/m")
 Stress = quantity("Pa")
 Energy = quantity("N/m")
 Stiffness = quantity("Pa/m")
+Area = quantity("m^2")
+FlowRate = quantity("m^3/s")

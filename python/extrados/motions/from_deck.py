@@ -1,15 +1,23 @@
-"""The motion that a deck asks for."""
+"""The motion, or the motions, that a deck asks for."""
 
+from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
+from extrados.core.rocking import Ground
 from extrados.decks import motions as models
 from extrados.decks.table import Motion as Model
-from extrados.motions import pulses, records
+from extrados.motions import code_spectra, pulses, records
+from extrados.motions.compatible import CompatibleSet, NotMatched
+from extrados.motions.formats.record import RecordError
+from extrados.motions.generated import GeneratedSet, generated
 from extrados.motions.motion import Motion
+
+Sets = models.Suite | models.Generated | models.Compatible
 
 
 def make_motion(model: Model, folder: Path) -> Motion:
-    """The motion of a deck's [motion]; records.RecordError where a file is wrong."""
+    """The motion of a deck's [motion], of a set its `member`; records.RecordError where a file is wrong."""
     match model:
         case models.Constant():
             return pulses.constant(model.amplitude, model.duration)
@@ -21,14 +29,122 @@ def make_motion(model: Model, folder: Path) -> Motion:
             return pulses.harmonic(
                 model.amplitude, model.frequency, model.duration, model.phase, model.ramp, model.carrier
             )
+        case models.Pulse():
+            return pulses.pulse(model.shape, model.amplitude, model.period)
+        case models.VelocityPulse():
+            return pulses.velocity_pulse(model.velocity, model.period, model.cycles, model.phase)
         case models.Record():
-            path = records.locate(model.file, folder)
-            return records.record_motion(
-                records.read_record(path),
-                time_step=model.time_step,
-                unit=model.unit,
-                scale=model.scale,
-                time_scale=model.time_scale,
-                source=model.file,
-            )
+            return _record(model, folder)
+        case models.Suite():
+            paths = suite_files(model, folder)
+            if model.member > len(paths):
+                raise RecordError(f"member is {model.member}, but the suite holds {len(paths)} records")
+            return _suite_member(model, paths[model.member - 1])
+        case models.Generated():
+            return _numbered("generated", generated_set(model, folder).ground(model.member - 1), model.member)
+        case models.Compatible():
+            return _compatible(compatible_set(model, folder), model.member - 1)
     raise TypeError(f"no motion for {type(model).__name__}")
+
+
+def is_set(model: Model) -> bool:
+    """True where the deck's motion stands for many."""
+    return isinstance(model, Sets)
+
+
+def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion]:
+    """All records of a suite, the first `count` motions of a generated or compatible set, or the one motion."""
+    match model:
+        case models.Suite():
+            for path in suite_files(model, folder):
+                yield _suite_member(model, path)
+        case models.Generated():
+            made = generated_set(model, folder)
+            for first, batch in made.batches(count):
+                for k, row in enumerate(batch, start=first):
+                    yield _numbered("generated", Ground(samples=row[None, :], step=made.step), k + 1)
+        case models.Compatible():
+            for k in range(count):
+                yield _compatible(compatible_set(model, folder), k)
+        case _:
+            yield make_motion(model, folder)
+
+
+def suite_files(model: models.Suite, folder: Path) -> list[Path]:
+    """The files of a suite."""
+    return records.list_suite(model.files, model.pattern, model.folder, folder)
+
+
+def generated_set(model: models.Generated, folder: Path, seed: int | None = None) -> GeneratedSet:
+    """The set of a deck's `generated` motion, its seed replaced where given."""
+    keys = model.model_dump(exclude={"kind", "member", "time_step"})
+    if seed is not None:
+        keys["seed"] = seed
+    if model.spectrum != "boore-worden":
+        keys["spectrum"] = str(records.locate(model.spectrum, folder))
+    try:
+        return generated(**keys, step=model.time_step)
+    except ValueError as error:
+        raise RecordError(f"[motion] generated: {error}") from None
+
+
+def compatible_set(model: models.Compatible, folder: Path) -> CompatibleSet:
+    """The set of a deck's `compatible` motion."""
+    try:
+        return CompatibleSet(
+            target_of(model, folder), model.damping, model.shortest, model.longest, model.tolerance, model.duration,
+            model.time_step, model.seed, model.envelope, model.rise, model.decay,
+        )  # fmt: skip
+    except ValueError as error:
+        raise RecordError(f"[motion] compatible: {error}") from None
+
+
+def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
+    """The target spectrum of a deck's `compatible` motion."""
+    match model.code:
+        case "EN1998-1" | "EN1998-2":
+            return code_spectra.en1998(int(model.code[-1]), model.ground, model.acceleration, model.damping)
+        case "NTC":
+            return code_spectra.ntc(
+                model.ground,
+                model.acceleration,
+                model.amplification,
+                model.corner_period,
+                model.topography,
+                model.damping,
+            )
+        case "ASCE7":
+            return code_spectra.asce7(model.sds, model.sd1, model.long_period)
+    spectrum = code_spectra.read_table(records.locate(model.table, folder))
+    spectrum(model.longest)  # refuses a table that ends before the band
+    return spectrum
+
+
+def _numbered(name: str, ground: Ground, number: int) -> Motion:
+    return Motion(f"{name} motion {number}", ground)
+
+
+def _compatible(made: CompatibleSet, k: int) -> Motion:
+    try:
+        return _numbered("compatible", made.ground(k), k + 1)
+    except (NotMatched, ValueError) as error:
+        raise RecordError(f"[motion] compatible: {error}") from None
+
+
+def _treatment(model: models.Treated) -> records.Treatment:
+    return records.Treatment(**{k: getattr(model, k) for k in records.Treatment.__dataclass_fields__})
+
+
+def _record(model: models.Record, folder: Path) -> Motion:
+    path = records.locate(model.file, folder)
+    record = records.read_record(path, model.channel)
+    vertical = None
+    if model.vertical is not None or model.vertical_channel is not None:
+        other = records.locate(model.vertical, folder) if model.vertical is not None else path
+        vertical = records.read_record(other, model.vertical_channel)
+    return records.record_motion(record, _treatment(model), vertical=vertical, source=model.file)
+
+
+def _suite_member(model: models.Suite, path: Path) -> Motion:
+    motion = records.record_motion(records.read_record(path), _treatment(model), source=str(path))
+    return replace(motion, name=path.stem)

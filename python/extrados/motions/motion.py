@@ -1,12 +1,15 @@
 """One ground motion, analytic or sampled."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
 from extrados.core.rocking import Ground
 
 GRAVITY = 9.80665
+#: An analytic motion is never sampled at more points than this.
+MOST_SAMPLES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -42,11 +45,14 @@ class Motion:
         g = self.ground
         if g.samples is not None and step is None:
             return g.start + g.step * np.arange(g.samples.shape[1]), g.samples[0].copy()
-        step = step or min(0.01, float(np.diff(g.breaks).min()) / 50)
+        if step is None:
+            fastest = float(np.abs(g.harmonic[..., 2]).max(initial=0.0)) if g.terms else 0.0
+            step = min(0.01, float(np.diff(g.breaks).min()) / 50, np.pi / 32 / max(fastest, 1e-9))
+            step = max(step, self.end / MOST_SAMPLES)
         time = np.arange(0.0, self.end + 0.5 * step, step)
         return time, self.sample(time)
 
-    @property
+    @cached_property
     def peak(self) -> float:
         """Greatest absolute horizontal acceleration [m/s^2]."""
         return float(np.abs(self.series()[1]).max())

@@ -54,3 +54,37 @@ def harmonic(
     slope = amplitude / ramp if ramp > 0.0 else 0.0
     start = 0.0 if ramp > 0.0 else amplitude
     return Motion("harmonic motion", _pieces([0.0, duration], [[0.0, 0.0]], [[[start, slope, w, phi]]]))
+
+
+def pulse(shape: str, amplitude: float, period: float) -> Motion:
+    """rectangular (lasting `period`), half-sine (half of it), cosine (all of it) or ricker; amplitude [m/s^2].
+
+    The Ricker wavelet is A (1 - 2 x) exp(-x), x = (pi (t - t0)/T)^2, cut where it is below 1e-7 A, sampled at T/200.
+    """
+    w = 2.0 * np.pi / period
+    if shape == "rectangular":
+        return Motion("rectangular pulse", _pieces([0.0, period], [[amplitude, 0.0]]))
+    if shape == "half-sine":
+        return Motion("half-sine pulse", _pieces([0.0, 0.5 * period], [[0.0, 0.0]], [[[amplitude, 0.0, w, 0.0]]]))
+    if shape == "cosine":
+        return Motion("cosine pulse", _pieces([0.0, period], [[0.0, 0.0]], [[[amplitude, 0.0, w, 0.5 * np.pi]]]))
+    if shape == "ricker":
+        step = period / 200.0
+        half = 280  # 1.4 periods each way
+        x = (np.pi * np.arange(-half, half + 1) * step / period) ** 2
+        return Motion("Ricker pulse", Ground(samples=(amplitude * (1.0 - 2.0 * x) * np.exp(-x))[None, :], step=step))
+    raise ValueError(f"unknown pulse '{shape}': expected rectangular, half-sine, cosine or ricker")
+
+
+def velocity_pulse(velocity: float, period: float, cycles: float, phase: float) -> Motion:
+    """v = A/2 [1 + cos(w t/g)] cos(w t + nu) over g periods (Mavroeidis and Papageorgiou 2003).
+
+    A [m/s], g = cycles, nu = phase [deg]. Its acceleration is the sum of three sines, exact in the core.
+    """
+    w, nu = 2.0 * np.pi / period, np.radians(phase)
+    half = 0.5 * cycles * period  # t runs from -half to half
+    terms = [
+        [-0.5 * velocity * share * v, 0.0, v, nu - v * half]
+        for share, v in ((1.0, w), (0.5, w + w / cycles), (0.5, w - w / cycles))
+    ]
+    return Motion("velocity pulse", _pieces([0.0, 2.0 * half], [[0.0, 0.0]], [terms]))

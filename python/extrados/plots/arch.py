@@ -118,7 +118,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found.append(
             (
                 style.save(fig, folder, f"{name}-history"),
-                "Ground motion, rotation of link AB with impacts, energies, friction needed. Dashed: acceleration at which hinges open; dotted: critical rotation.",
+                f"Ground motion, rotation of {r.get('rotation_of', 'link AB')} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
             )
         )
     times = run.arrays[name].get("snapshot_time")
@@ -143,7 +143,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),
-                    "Deformed arch (true scale) and dynamic thrust line at the greatest rotations.",
+                    "The structure (true scale) and its dynamic thrust line at the greatest rotations.",
                 )
             )
     return found

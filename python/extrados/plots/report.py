@@ -8,7 +8,7 @@ from typing import Any
 
 import jinja2
 
-from extrados.results.store import Stored, StoreError, read
+from extrados.results.store import Stored, StoreError, read, reason
 
 #: Analysis kind -> "module:function" that draws its figures: (run, analysis name, folder) -> [(figure, caption)]
 DRAWERS = {
@@ -110,5 +110,5 @@ def write_report(folder: Path) -> Path:
         target = folder / "report.html"
         target.write_text(page, encoding="utf-8")
     except OSError as error:
-        raise StoreError(f"{folder}: the report could not be written: {error.strerror or error}") from None
+        raise StoreError(f"{folder}: the report could not be written: {reason(error)}") from None
     return target

@@ -62,7 +62,7 @@ def prepare(out: Path) -> None:
         with tempfile.TemporaryFile(dir=out.parent):
             pass
     except OSError as error:
-        raise StoreError(f"{out}: cannot write here: {error.strerror or error}") from None
+        raise StoreError(f"{out}: cannot write here: {reason(error)}") from None
 
 
 @contextlib.contextmanager
@@ -75,7 +75,7 @@ def new_folder(out: Path) -> Iterator[Path]:
         scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
         scratch.chmod(0o755)
     except OSError as error:
-        raise StoreError(f"{out}: cannot write here: {error.strerror or error}") from None
+        raise StoreError(f"{out}: cannot write here: {reason(error)}") from None
     try:
         yield scratch
         for path in sorted(scratch.rglob("*")):
@@ -84,9 +84,16 @@ def new_folder(out: Path) -> Iterator[Path]:
         _exchange(scratch, out)
         _sync(out.parent)
     except OSError as error:
-        raise StoreError(f"{out}: results could not be written: {error.strerror or error}") from None
+        raise StoreError(f"{out}: results could not be written: {reason(error)}") from None
+    except StoreError as error:  # of a file inside the scratch folder: name the place the user knows
+        raise StoreError(str(error).replace(str(scratch), str(out))) from None
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
+
+
+def reason(error: OSError) -> str:
+    """The system's words for an error; h5py wraps them in a page of its own."""
+    return os.strerror(error.errno) if error.errno else str(error)
 
 
 def _may_replace(out: Path) -> None:
@@ -155,7 +162,7 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
         text = json.dumps(_plain(summary), indent=1, ensure_ascii=False)
         (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
-        raise StoreError(f"{folder}: results could not be written: {error.strerror or error}") from None
+        raise StoreError(f"{folder}: results could not be written: {reason(error)}") from None
 
 
 def csv_text(table: TableData) -> str:
@@ -176,10 +183,14 @@ def _cell(value: Any) -> Any:
 
 
 def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
-    """One group per analysis; axes that have an array of their name become dimension scales (xarray reads them)."""
+    """One group per analysis; axes that have an array of their name become dimension scales (xarray reads them).
+
+    Built in memory first: HDF5 on a full disk fails again and again while it closes, Python's write fails once.
+    """
     import h5py
 
-    with h5py.File(path, "w", track_order=True) as file:
+    image = io.BytesIO()
+    with h5py.File(image, "w", track_order=True) as file:
         for name, result in zip(names, results, strict=True):
             group = file.create_group(name, track_order=True)
             group.attrs["kind"] = result.kind
@@ -201,6 +212,7 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                 for axis, dim in enumerate(array.dims):
                     if dim != title:
                         group[title].dims[axis].attach_scale(group[dim])
+    path.write_bytes(image.getbuffer())
 
 
 @dataclass(frozen=True)

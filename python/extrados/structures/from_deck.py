@@ -3,9 +3,13 @@
 from pathlib import Path
 from typing import Any
 
+from extrados.decks import block as block_models
 from extrados.decks import structures as models
 from extrados.decks.table import Structure
 from extrados.structures.arch import make_arch
+from extrados.structures.block import make_block
+
+BLOCK_KEYS = {"width", "height", "depth", "density", "mass", "inertia", "centre_height", "toe_right", "toe_left"}
 
 
 def make_structure(model: Structure | None, folder: Path) -> Any:
@@ -22,4 +26,6 @@ def make_structure(model: Structure | None, folder: Path) -> Any:
                 model.density,
                 model.depth,
             )
+        case block_models.Block():
+            return make_block(**model.model_dump(include=BLOCK_KEYS))
     raise TypeError(f"no structure for {type(model).__name__}")

@@ -1,0 +1,184 @@
+!> The rigid block on two toes (thesis Eqs 6.1 to 6.3; Housner 1963), also with unequal toes.
+!>
+!> With R the distance of the toe from the centre of mass and alpha its angle from the vertical,
+!>    (I + m R^2) q'' + m R sin(alpha - q) (g + a_v) + side a_h m R cos(alpha - q) = 0;
+!> the linear form of slender blocks writes alpha - q for the sine and 1 for the cosine.
+module rocking_block_rocker
+   use common_dense_step, only : dense_step
+   use common_kinds, only : wp, gravity, pi
+   use common_status, only : status_ok, status_invalid_argument
+   use rocking_rocker, only : rocker, side_index
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: block_rocker, block_rocker_new, block_parameters
+
+   !> Length of the parameter list: form (0 nonlinear, 1 linear), mass [kg], inertia about the centre of
+   !> mass [kg m^2], its height [m], distance of the right and of the left toe [m], restitution of the
+   !> impacts after which the block rocks to +x and to -x
+   integer, parameter :: block_parameters = 8
+   !> Terms of the series of the rate; the rotation has one more
+   integer, parameter :: order = 8
+   !> Terms below this share of the tolerance end the series
+   real(wp), parameter :: negligible = 1.0e-3_wp
+   real(wp), parameter :: inverse(order + 1) = [1.0_wp, 1.0_wp / 2.0_wp, 1.0_wp / 3.0_wp, 1.0_wp / 4.0_wp, &
+      1.0_wp / 5.0_wp, 1.0_wp / 6.0_wp, 1.0_wp / 7.0_wp, 1.0_wp / 8.0_wp, 1.0_wp / 9.0_wp]
+
+   type, extends(rocker) :: block_rocker
+      logical :: linear = .false.
+      real(wp) :: alpha(2) = 0.0_wp    !! angle of the toe's ray from the vertical [rad]
+      real(wp) :: moment(2) = 0.0_wp   !! m R [kg m]
+      real(wp) :: inertia(2) = 0.0_wp  !! about the toe [kg m^2]
+   contains
+      procedure :: coefficients
+      procedure :: potential
+      procedure :: series_step
+   end type block_rocker
+
+contains
+
+   !> Set up from the flat parameter list of the facades
+   subroutine block_rocker_new(parameters, body, status)
+      real(wp), intent(in) :: parameters(:)  !! see block_parameters
+      type(block_rocker), intent(out) :: body
+      integer(c_int), intent(out) :: status
+      real(wp) :: radius(2)
+
+      status = status_invalid_argument
+      if (size(parameters) < block_parameters) return
+      if (any(parameters(2:6) <= 0.0_wp)) return
+      if (any(parameters(7:8) < 0.0_wp) .or. any(parameters(7:8) > 1.0_wp)) return
+      associate (mass => parameters(2), inertia => parameters(3), height => parameters(4), toe => parameters(5:6))
+         radius = hypot(toe, height)
+         body%linear = parameters(1) > 0.5_wp
+         body%alpha = atan2(toe, height)
+         body%moment = mass * radius
+         body%inertia = inertia + mass * radius**2
+      end associate
+      body%restitution = parameters(7:8)
+      body%critical = body%alpha
+      ! As far beyond the balance as rest is short of it, and not below the ground.
+      body%limit = min(2.0_wp * body%alpha, 0.5_wp * pi)
+      body%has_series = .true.
+      call body%set_rest_rate()
+      status = status_ok
+   end subroutine block_rocker_new
+
+   pure subroutine coefficients(self, side, q, m, half_dm, dv, dh, closed)
+      class(block_rocker), intent(in) :: self
+      integer, intent(in) :: side
+      real(wp), intent(in) :: q
+      real(wp), intent(out) :: m
+      real(wp), intent(out) :: half_dm
+      real(wp), intent(out) :: dv
+      real(wp), intent(out) :: dh
+      logical, intent(out) :: closed
+      integer :: i
+      i = side_index(side)
+      m = self%inertia(i)
+      half_dm = 0.0_wp
+      if (self%linear) then
+         dv = gravity * self%moment(i) * (self%alpha(i) - q)
+         dh = self%moment(i)
+      else
+         dv = gravity * self%moment(i) * sin(self%alpha(i) - q)
+         dh = self%moment(i) * cos(self%alpha(i) - q)
+      end if
+      closed = .true.
+   end subroutine coefficients
+
+   pure function potential(self, side, q) result(v)
+      class(block_rocker), intent(in) :: self
+      integer, intent(in) :: side
+      real(wp), intent(in) :: q
+      real(wp) :: v
+      integer :: i
+      i = side_index(side)
+      if (self%linear) then
+         v = gravity * self%moment(i) * q * (self%alpha(i) - 0.5_wp * q)
+      else
+         ! cos(alpha - q) - cos(alpha) without cancellation
+         v = 2.0_wp * gravity * self%moment(i) * sin(self%alpha(i) - 0.5_wp * q) * sin(0.5_wp * q)
+      end if
+   end function potential
+
+   !> Taylor series in the fraction of the step. Sine and cosine of alpha - q follow their own recurrences
+   !> (S' = -C q', C' = S q'), so one evaluation of each serves the whole step.
+   pure subroutine series_step(self, side, h, q, v, value, slope, tolerance, step)
+      class(block_rocker), intent(in) :: self
+      integer, intent(in) :: side
+      real(wp), intent(in) :: h
+      real(wp), intent(in) :: q
+      real(wp), intent(in) :: v
+      real(wp), intent(in) :: value(2)
+      real(wp), intent(in) :: slope(2)
+      real(wp), intent(in) :: tolerance(3)
+      type(dense_step), intent(inout) :: step
+      real(wp) :: s(0:order - 1), c(0:order - 1), u(0:order), x(0:order + 1)
+      real(wp) :: pull, push, pull_slope, push_slope, factor, rise, fall, q_end, u_end, tolerance_q, tolerance_u
+      integer :: i, j, k, last
+
+      i = side_index(side)
+      ! u is h v, so that q_k = u_(k-1)/k; the right-hand side is scaled by h^2
+      factor = h * h * self%moment(i) / self%inertia(i)
+      pull = factor * (gravity + value(2))
+      pull_slope = factor * h * slope(2)
+      push = factor * real(side, wp) * value(1)
+      push_slope = factor * h * real(side, wp) * slope(1)
+      x(0) = q
+      u(0) = h * v
+      x(1) = u(0)
+      if (self%linear) then
+         s(0) = self%alpha(i) - q
+         c(0) = 1.0_wp
+      else
+         s(0) = sin(self%alpha(i) - q)
+         c(0) = cos(self%alpha(i) - q)
+      end if
+      u(1) = -(pull * s(0) + push * c(0))
+      x(2) = 0.5_wp * u(1)
+      tolerance_q = tolerance(1) + tolerance(3) * abs(q)
+      tolerance_u = h * tolerance(2) + tolerance(3) * abs(u(0))
+      last = order
+      do k = 1, order - 1
+         if (self%linear) then
+            s(k) = -x(k)
+            c(k) = 0.0_wp
+         else
+            rise = 0.0_wp
+            fall = 0.0_wp
+            do j = 0, k - 1
+               rise = rise + s(j) * u(k - 1 - j)
+               fall = fall + c(j) * u(k - 1 - j)
+            end do
+            s(k) = -inverse(k) * fall
+            c(k) = inverse(k) * rise
+         end if
+         u(k + 1) = -inverse(k + 1) * (pull * s(k) + pull_slope * s(k - 1) + push * c(k) + push_slope * c(k - 1))
+         x(k + 2) = inverse(k + 2) * u(k + 1)
+         if (k < 3) cycle
+         ! The last two terms bound what is left out; a thousandth of the tolerance needs no more.
+         if (abs(u(k + 1)) + abs(u(k)) <= negligible * tolerance_u .and. &
+             abs(x(k + 2)) + abs(x(k + 1)) <= negligible * tolerance_q) then
+            last = k + 1
+            exit
+         end if
+      end do
+      q_end = x(last + 1)
+      u_end = 0.0_wp
+      do k = last, 0, -1
+         q_end = q_end + x(k)
+         u_end = u_end + u(k)
+      end do
+      step%h = h
+      step%q = q_end
+      step%v = u_end / h
+      step%a = 0.0_wp
+      step%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
+      step%degree = last + 1
+      step%cq(0:last + 1) = x(0:last + 1)
+      step%cv(0:last) = u(0:last) / h
+      step%cv(last + 1) = 0.0_wp
+   end subroutine series_step
+
+end module rocking_block_rocker

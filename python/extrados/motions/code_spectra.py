@@ -1,0 +1,108 @@
+"""Elastic response spectra of codes: pseudo-acceleration [m/s^2] over period [s]."""
+
+import csv
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+GRAVITY = 9.80665
+Spectrum = Callable[[np.ndarray], np.ndarray]
+
+#: EN 1998-1:2004 Tables 3.2 and 3.3: S, T_B, T_C, T_D
+EN1998 = {
+    1: {"A": (1.0, 0.15, 0.4, 2.0), "B": (1.2, 0.15, 0.5, 2.0), "C": (1.15, 0.20, 0.6, 2.0), "D": (1.35, 0.20, 0.8, 2.0),
+        "E": (1.4, 0.15, 0.5, 2.0)},
+    2: {"A": (1.0, 0.05, 0.25, 1.2), "B": (1.35, 0.05, 0.25, 1.2), "C": (1.5, 0.10, 0.25, 1.2), "D": (1.8, 0.10, 0.30, 1.2),
+        "E": (1.6, 0.05, 0.25, 1.2)},
+}  # fmt: skip
+
+#: NTC 2018 Table 3.2.IV: S_S = a - b F_0 a_g/g between bounds; C_C = c T_C*^e
+_NTC = {
+    "A": (1.0, 0.0, 1.0, 1.0, 1.0, 0.0), "B": (1.40, 0.40, 1.00, 1.20, 1.10, -0.20), "C": (1.70, 0.60, 1.00, 1.50, 1.05, -0.33),
+    "D": (2.40, 1.50, 0.90, 1.80, 1.25, -0.50), "E": (2.00, 1.10, 1.00, 1.60, 1.15, -0.40),
+}  # fmt: skip
+
+
+def damping_factor(damping: float) -> float:
+    """eta = sqrt(10 / (5 + xi)), not below 0.55; damping as a ratio (EN 1998-1 Eq. 3.6)."""
+    return max(float(np.sqrt(10.0 / (5.0 + 100.0 * damping))), 0.55)
+
+
+def _four_branches(peak: float, start: float, tb: float, tc: float, td: float) -> Spectrum:
+    """start at T = 0, straight to the plateau at T_B, constant velocity from T_C, constant displacement from T_D."""
+
+    def at(period: np.ndarray) -> np.ndarray:
+        t = np.asarray(period, dtype=float)
+        late = np.maximum(t, 1e-12)
+        return np.select(
+            [t < tb, t <= tc, t <= td],
+            [start + (peak - start) * t / tb, np.full_like(t, peak), peak * tc / late],
+            peak * tc * td / late**2,
+        )
+
+    return at
+
+
+def en1998(kind: int, ground: str, acceleration: float, damping: float = 0.05) -> Spectrum:
+    """EN 1998-1:2004 Eqs 3.2 to 3.5, recommended values; acceleration a_g on ground A [m/s^2]."""
+    soil, tb, tc, td = EN1998[kind][ground]
+    return _four_branches(2.5 * damping_factor(damping) * acceleration * soil, acceleration * soil, tb, tc, td)
+
+
+def ntc(
+    ground: str, acceleration: float, f0: float, corner: float, topography: float = 1.0, damping: float = 0.05
+) -> Spectrum:
+    """NTC 2018 Eqs 3.2.2 to 3.2.7; acceleration a_g [m/s^2], f0 F_0, corner T_C* [s], topography S_T."""
+    a, b, low, high, c, e = _NTC[ground]
+    soil = min(max(a - b * f0 * acceleration / GRAVITY, low), high) * topography
+    tc = c * corner**e * corner
+    td = 4.0 * acceleration / GRAVITY + 1.6
+    return _four_branches(damping_factor(damping) * f0 * acceleration * soil, acceleration * soil, tc / 3.0, tc, td)
+
+
+def asce7(sds: float, sd1: float, long_period: float) -> Spectrum:
+    """ASCE 7-16 11.4.6, 5 % damping; sds, sd1 [m/s^2], long_period T_L [s]."""
+    ts = sd1 / sds
+    return _four_branches(sds, 0.4 * sds, 0.2 * ts, ts, long_period)
+
+
+def tabulated(period: np.ndarray, acceleration: np.ndarray) -> Spectrum:
+    """Straight lines between points of a table; constant below the first period, refused above the last."""
+
+    def at(t: np.ndarray) -> np.ndarray:
+        if np.max(t) > period[-1] * (1.0 + 1e-9):
+            raise ValueError(f"the table ends at {period[-1]:g} s, {np.max(t):g} s is asked for")
+        return np.interp(t, period, acceleration)
+
+    return at
+
+
+def read_table(path: Path) -> Spectrum:
+    """A CSV file period_s,sa_g; ValueError with file and line."""
+    try:
+        if path.stat().st_size > 1_000_000:
+            raise ValueError(f"{path}: is larger than 1 MB, too much for a spectrum")
+        reader = csv.reader(path.read_text("utf-8-sig").splitlines())
+    except OSError as error:
+        raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except UnicodeDecodeError:
+        raise ValueError(f"{path}: is not UTF-8 text; expected period_s,sa_g") from None
+    header = [word.strip() for word in next(reader, [])]
+    if header != ["period_s", "sa_g"]:
+        raise ValueError(f"{path}:1: header is {','.join(header)[:60]!r}, expected period_s,sa_g")
+    rows: list[tuple[float, float]] = []
+    for row in reader:
+        if not row:
+            continue
+        try:
+            period, value = (float(word) for word in row)
+        except ValueError:
+            raise ValueError(f"{path}:{reader.line_num}: expected two numbers, got {','.join(row)[:60]!r}") from None
+        if not (0.0 <= period < 100.0 and 0.0 < value < 100.0) or (rows and period <= rows[-1][0]):
+            raise ValueError(f"{path}:{reader.line_num}: expected ascending periods and accelerations above zero")
+        rows.append((period, value))
+    if len(rows) < 2:
+        raise ValueError(f"{path}: expected two rows or more")
+    period, value = np.array(rows).T
+    return tabulated(period, value * GRAVITY)

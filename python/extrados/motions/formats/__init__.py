@@ -1,0 +1,1 @@
+"""Readers of accelerogram files, told apart by content."""

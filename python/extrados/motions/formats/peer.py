@@ -1,0 +1,39 @@
+"""PEER strong-motion files: AT2 (acceleration in g), VT2 (cm/s), DT2 (cm), old and new headers."""
+
+import re
+
+from extrados.motions.formats.record import Lines, Record, unit_in
+
+HEADER = 12  # NPTS stands in the first lines, below any free text
+
+
+def recognises(text: Lines) -> bool:
+    return any("NPTS" in text[at].upper() for at in range(HEADER)) or "PEER " in text[0].upper()
+
+
+def read(text: Lines) -> list[Record]:
+    for at in range(HEADER):
+        line = text[at]
+        if "NPTS" not in line.upper():
+            continue
+        named = re.search(r"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*([^\s,]+)", line, re.I)
+        bare = re.match(r"\s*(\d+)\s+(\S+)\s+NPTS", line, re.I)
+        found = named or bare
+        if not found:
+            raise text.error(at, "no number of points and step here; expected 'NPTS= 4000, DT= .0100 SEC'")
+        count, step = text.integer(found[1], at), text.step(found[2].rstrip(","), at)
+        break
+    else:
+        raise text.error(0, "a PEER file without its line 'NPTS= 4000, DT= .0100 SEC'")
+    header = " ".join(text[k] for k in range(at + 1)).upper()
+    quantity = next((q for q in ("velocity", "displacement") if f"{q.upper()} TIME" in header), "acceleration")
+    rows, have = [], 0
+    for line, row in text.blanks(at + 1):
+        if have >= count and not re.match(r"[+-]?\.?\d", row[0]):
+            break  # words after the data, such as '*** End Data ***'
+        rows.append((line, row))
+        have += len(row)
+    values, notes = text.check_count(text.numbers(rows), count, at)
+    if count < 3:
+        raise text.error(at, f"NPTS is {count}; a record has at least three samples")
+    return [Record(text.path.stem, values, step, unit_in(header, quantity), quantity, notes=notes)]

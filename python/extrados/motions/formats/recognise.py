@@ -1,0 +1,49 @@
+"""Which reader a file needs, by its content alone."""
+
+from pathlib import Path
+
+from extrados.motions.formats import columns, cosmos, csmip, esm, knet, peer, seismology, smc
+from extrados.motions.formats.record import Lines, Record, RecordError, read_lines
+
+READERS = {"COSMOS": cosmos, "K-NET": knet, "ESM": esm, "SMC": smc, "CSMIP": csmip, "PEER": peer}
+
+
+def format_of(text: Lines) -> str:
+    """The name of the format: a key of READERS, or 'columns'."""
+    return next((name for name, reader in READERS.items() if reader.recognises(text)), "columns")
+
+
+def read_records(path: Path) -> list[Record]:
+    """Every channel and quantity of a file; RecordError says file, line and what was expected."""
+    if seismology.recognises(path):
+        return seismology.read(path)
+    text = read_lines(path)
+    name = format_of(text)
+    return (READERS[name].read if name in READERS else columns.read)(text)
+
+
+def read_record(path: Path, channel: str | int | None = None) -> Record:
+    """The acceleration record of a file, or the one of a channel: its number from 1 or a part of its name.
+
+    A file with several accelerations and no channel named is refused, with the names.
+    """
+    records = read_records(path)
+    wanted = [r for r in records if r.quantity == "acceleration"] or records[:1]
+    if isinstance(channel, int):
+        if not 1 <= channel <= len(wanted):
+            raise RecordError(f"{path}: has no channel {channel}; expected 1 to {len(wanted)}")
+        return wanted[channel - 1]
+    if channel is not None:
+        found = [r for r in wanted if channel.lower() in r.component.lower()]
+        if len(found) != 1:
+            raise RecordError(f"{path}: {len(found)} channels are called '{channel}'; there are {_names(wanted)}")
+        return found[0]
+    if len(wanted) > 1:
+        raise RecordError(
+            f"{path}: holds {len(wanted)} channels; name one with channel = 1 to {len(wanted)}: {_names(wanted)}"
+        )
+    return wanted[0]
+
+
+def _names(records: list[Record]) -> str:
+    return ", ".join(f"{k} '{r.component}'" for k, r in enumerate(records, start=1))

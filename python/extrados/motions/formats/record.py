@@ -1,0 +1,194 @@
+"""What a reader returns, and how a file is read with suspicion."""
+
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+LARGEST = 200_000_000  # bytes
+
+#: Units a file or a deck may name, in SI. gal is cm/s^2.
+ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254,
+                "mg": 9.80665e-3}  # fmt: skip
+VELOCITY = {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001, "in/s": 0.0254}
+DISPLACEMENT = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254}
+QUANTITIES = {"acceleration": ACCELERATION, "velocity": VELOCITY, "displacement": DISPLACEMENT}
+
+_NUMBER = re.compile(r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][+-]?\d{1,3})?\Z", re.ASCII)
+_PLAIN = re.compile(r"[0-9eE+\-. ]*\Z", re.ASCII)
+
+
+class RecordError(ValueError):
+    """A record cannot be read or used; the text begins with file and, where known, line."""
+
+
+@dataclass(frozen=True)
+class Record:
+    """Samples as in the file [unit of the file] at `step` [s]; step or unit None where the file has none.
+
+    component: the channel's own name or direction. notes: what was mended or ought to be known.
+    """
+
+    name: str
+    values: np.ndarray
+    step: float | None
+    unit: str | None
+    quantity: str = "acceleration"
+    component: str = ""
+    notes: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Lines:
+    """The lines of a file, counted from 0; complaints count from 1 as editors do."""
+
+    path: Path
+    lines: list[str]
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+    def __getitem__(self, at: int) -> str:
+        return self.lines[at] if at < len(self.lines) else ""
+
+    def error(self, at: int, what: str) -> RecordError:
+        """A complaint about line `at`."""
+        return RecordError(f"{self.path}:{min(at, max(len(self.lines) - 1, 0)) + 1}: {what}")
+
+    def cut(self, have: int, want: int) -> RecordError:
+        """The complaint of a file that ends too early."""
+        return self.error(
+            len(self.lines) - 1, f"ends after {have} of {want} values: the file is cut off or its header is wrong"
+        )
+
+    def number(self, token: str, at: int) -> float:
+        """A token as a finite number, no NaN, no decimal comma, no Python spelling."""
+        token = token.strip()
+        if not _NUMBER.match(token):
+            hint = "; the decimal sign is a point" if re.fullmatch(r"[+-]?\d*,\d+", token) else ""
+            raise self.error(at, f"'{token[:30]}' is not a number{hint}")
+        value = float(token.replace("d", "e").replace("D", "e"))
+        if not np.isfinite(value):
+            raise self.error(at, f"'{token[:30]}' is too large for a number")
+        return value
+
+    def integer(self, token: str, at: int) -> int:
+        """A token as a whole number."""
+        if not re.fullmatch(r"\s*[+-]?\d{1,12}\s*", token, re.ASCII):
+            raise self.error(at, f"'{token.strip()[:30]}' is not a whole number")
+        return int(token)
+
+    def step(self, token: str, at: int) -> float:
+        """A token as a time step [s]."""
+        value = self.number(token, at)
+        if not 1e-6 <= value <= 10.0:
+            raise self.error(at, f"the time step is {value:g} s, expected 0.000001 to 10 s")
+        return value
+
+    def numbers(self, rows: list[tuple[int, list[str]]]) -> np.ndarray:
+        """All tokens of (line, tokens) rows as one array; the first bad token is named with its line."""
+        tokens = [token for _, row in rows for token in row]
+        if all(map(_PLAIN.match, tokens)):
+            try:
+                values = np.array(tokens, dtype=float)
+                if np.isfinite(values).all():
+                    return values
+            except ValueError:
+                pass
+        return np.array([self.number(token, at) for at, row in rows for token in row])
+
+    def blanks(self, start: int, stop: int | None = None) -> list[tuple[int, list[str]]]:
+        """Rows of tokens between blanks; empty lines are left out."""
+        rows = ((at, self.lines[at].split()) for at in range(start, len(self.lines) if stop is None else stop))
+        return [(at, row) for at, row in rows if row]
+
+    def fixed(self, start: int, count: int, width: int, columns: int) -> tuple[np.ndarray, int]:
+        """`count` values in columns of fixed width (they may touch), and the line after them."""
+        rows: list[tuple[int, list[str]]] = []
+        have, at = 0, start
+        while have < count:
+            if at >= len(self.lines):
+                raise self.cut(have, count)
+            line = self.lines[at].rstrip()
+            row = [line[k : k + width] for k in range(0, min(len(line), width * columns), width)]
+            row = row[: count - have]
+            if len(row) < min(columns, count - have):
+                raise (
+                    self.cut(have + len(row), count)
+                    if at >= len(self.lines) - 1
+                    else self.error(
+                        at, f"{len(row)} values, expected {min(columns, count - have)} of {width} characters"
+                    )
+                )
+            if len(row[-1]) < width and at == len(self.lines) - 1 and have + len(row) == count and len(line) % width:
+                raise self.error(at, "the last value is cut off")
+            rows.append((at, row))
+            have += len(row)
+            at += 1
+        return self.numbers(rows), at
+
+    def check_count(self, values: np.ndarray, count: int, at: int) -> tuple[np.ndarray, list[str]]:
+        """The first `count` values; a few too many are cut with a note, too few are refused."""
+        if len(values) < count:
+            raise self.cut(len(values), count)
+        if len(values) == count:
+            return values, []
+        if len(values) - count > max(8, count // 100):
+            raise self.error(at, f"the header says {count} values but {len(values)} follow")
+        return values[:count], [
+            f"{self.path.name}: {len(values)} values where the header says {count}; the rest is left out"
+        ]
+
+
+def read_lines(path: Path) -> Lines:
+    """The lines of a record; refuses what is no plain text file of a sensible size, before reading it."""
+    try:
+        if not path.is_file():
+            raise RecordError(f"{path}: " + ("is not a plain file" if path.exists() else "no such file"))
+        size = path.stat().st_size
+        if size > LARGEST:
+            raise RecordError(f"{path}: is {size / 1e6:.0f} MB, a record has at most {LARGEST / 1e6:.0f} MB")
+        with path.open("rb") as file:
+            raw = file.read(LARGEST + 1)
+    except OSError as error:
+        raise RecordError(f"{path}: cannot be read: {error.strerror or error}") from None
+    except ValueError as error:
+        raise RecordError(f"{path!s}: is not a file name: {error}") from None
+    if not raw.strip():
+        raise RecordError(f"{path}: is empty; expected an accelerogram")
+    if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):
+        raise RecordError(f"{path}:1: is UTF-16 text; save it as UTF-8 or ASCII")
+    if b"\0" in raw:
+        line = raw[: raw.index(b"\0")].count(b"\n") + 1
+        raise RecordError(f"{path}:{line}: is a binary file; expected text")
+    text = raw.decode("utf-8-sig", errors="replace")
+    return Lines(path, re.split(r"\r\n|\n|\r", text.rstrip("\r\n \t\x1a")))
+
+
+def fortran_columns(text: str) -> tuple[int, int] | None:
+    """(columns, width) of a Fortran format such as (8F10.5), 8E10.4 or (10I8) in a text; None if there is none."""
+    found = re.search(r"\(\s*(\d{1,2})\s*[FEGDI]\s*(\d{1,2})(?:\.\d+)?\s*\)", text, re.I)
+    return (int(found[1]), int(found[2])) if found and int(found[1]) and int(found[2]) else None
+
+
+def unit_in(text: str, quantity: str = "acceleration") -> str | None:
+    """The unit that a header text names, or None."""
+    low = text.lower()
+    second = r"\s*/\s*(?:s(?:ec)?\s*(?:\^|\*\*)?\s*2|s(?:ec)?\s*[/*.]\s*s(?:ec)?|s²|sec\^?2)"
+    if quantity == "acceleration":
+        for length in ("cm", "mm", "in", "m"):
+            if re.search(rf"(?<![a-z]){length}{second}", low):
+                return f"{length}/s^2"
+        if re.search(r"(?<![a-z])gals?(?![a-z])", low):
+            return "gal"
+        if re.search(r"(?:\bunits?\b.{0,24}?|\bin\s+|[\(\[,;_]\s*)\(?\"?g\"?(?![a-z])", low):
+            return "g"
+        return None
+    units = QUANTITIES[quantity]
+    for unit in sorted(units, key=len, reverse=True):
+        length, _, per = unit.partition("/")
+        pattern = rf"(?<![a-z]){length}\s*/\s*s(?:ec)?" if per else rf"(?<![a-z]){length}(?![a-z/])"
+        if re.search(pattern, low):
+            return unit
+    return None

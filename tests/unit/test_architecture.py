@@ -1,0 +1,117 @@
+"""Who may import whom, and what the compiled core may not contain: the plan of CONTRIBUTING.md, kept true."""
+
+import ast
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from extrados import _core
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "python" / "extrados"
+
+#: room -> rooms it may import; a room may always import itself. "" is the package's own top level.
+MAY_IMPORT = {
+    "core": {"_core"},
+    "decks": set(),
+    "structures": {"decks"},
+    "limit": {"structures"},
+    "motions": {"decks", "core"},
+    "results": set(),
+    "analyses": {"decks", "structures", "motions", "limit", "core", "results"},
+    "plots": {"results"},
+    "session": {"analyses", "decks", "results", "plots", "_build_info"},
+    "cli": {"analyses", "decks", "results", "plots", "session", "_build_info"},
+    "": {"analyses", "decks", "results", "session"},
+}
+#: Fortran room -> rooms it may use
+MAY_USE = {
+    "common": set(),
+    "arch": {"common"},
+    "rocking": {"common", "arch"},
+    "sla": {"common"},
+    "dem": {"common"},
+    "motion": {"common"},
+}
+
+
+def room_of(path: Path) -> str:
+    parts = path.relative_to(PACKAGE).parts
+    return parts[0] if len(parts) > 1 else ("" if parts[0] == "__init__.py" else Path(parts[0]).stem)
+
+
+def imports(path: Path) -> set[str]:
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("extrados"):
+            rest = node.module.split(".")[1:]
+            found |= {rest[0]} if rest else {alias.name for alias in node.names}
+        elif isinstance(node, ast.Import):
+            found |= {a.name.split(".")[1] for a in node.names if a.name.startswith("extrados.")}
+    return found
+
+
+@pytest.mark.parametrize("path", sorted(PACKAGE.rglob("*.py")), ids=lambda p: str(p.relative_to(PACKAGE)))
+def test_python_rooms(path: Path) -> None:
+    room = room_of(path)
+    assert room in MAY_IMPORT, f"{room} is a new room: add it to the plan"
+    assert imports(path) - {room} <= MAY_IMPORT[room]
+
+
+@pytest.mark.parametrize(
+    "path", sorted((ROOT / "fortran").rglob("*.f90")), ids=lambda p: str(p.relative_to(ROOT / "fortran"))
+)
+def test_fortran_rooms(path: Path) -> None:
+    room, text = path.parent.name, path.read_text(encoding="utf-8")
+    module = re.search(r"^module (\w+)", text, re.M)[1]
+    assert module == (path.stem if room == "api" else f"{room}_{path.stem}"), "module name is the path"
+    used = {m.split("_")[0] for m in re.findall(r"^\s*use (?!, intrinsic)(\w+)", text, re.M)}
+    if room == "api":
+        assert len(used - {"common"}) <= 1, "a facade serves one room"
+    else:
+        assert used <= MAY_USE[room] | {room}
+    code = re.sub(r"!.*", "", text).lower()
+    for word in (
+        r"\bstop\b",
+        r"\bprint\b",
+        r"\bwrite\s*\(",
+        r"\bread\s*\(",
+        r"\bopen\s*\(",
+        r"\bsave\b",
+        r"\bcommon\s*/",
+    ):
+        assert not re.search(word, code), f"{path.name} must not {word}"
+
+
+def test_no_silent_float() -> None:
+    """f2py maps an unknown real kind to a C float without a word."""
+    for name in dir(_core):
+        module = getattr(_core, name)
+        for facade in dir(module):
+            text = getattr(getattr(module, facade), "__doc__", "") or ""
+            assert "array('f')" not in text, f"{name}.{facade}"
+
+
+def test_core_never_stops_the_process() -> None:
+    """No stop, no Fortran I/O and no unchecked allocation that would end the interpreter."""
+    symbols = subprocess.run(
+        ["nm", "-D", "--undefined-only", _core.__file__], capture_output=True, text=True, check=True
+    )
+    bad = re.findall(
+        r"\b(_gfortran_(?:stop|error_stop|st_write|st_read|st_open|exit)\w*|exit|abort|printf|system)\b", symbols.stdout
+    )
+    # numpy's own fortranobject.c refers to none of these either
+    assert not bad
+
+
+def test_no_evaluation_of_code() -> None:
+    """Decks and records are data."""
+    for path in PACKAGE.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                assert node.func.id not in {"eval", "exec", "compile", "__import__"}, path
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                names = {a.name for a in node.names} | {getattr(node, "module", "") or ""}
+                assert not names & {"pickle", "marshal", "shelve", "dill", "joblib"}, path

@@ -1,0 +1,170 @@
+"""Wrong decks: every complaint with its line, all at once, and never a traceback."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from extrados.decks import explain
+from extrados.decks.positions import key_lines
+from extrados.decks.quantities import parse
+from extrados.decks.reader import DeckError, make_deck, read_deck, read_text
+
+GOOD = """title = "t"
+[structure]
+kind = "arch"
+radius = 10.0
+thickness = "150 cm"
+embrace = 157.5
+voussoirs = 7
+[motion]
+kind = "step-pulse"
+amplitude = "1.0 g"
+duration = 0.20
+[[analysis]]
+kind = "tilt"
+[[analysis]]
+kind = "rocking"
+"""
+
+
+def complaints(text: str | bytes) -> list[str]:
+    with pytest.raises(DeckError) as error:
+        read_text(text if isinstance(text, bytes) else text.encode(), "deck.toml")
+    return error.value.complaints
+
+
+def test_good_deck() -> None:
+    deck = read_text(GOOD.encode())
+    assert deck.structure.thickness == pytest.approx(1.5, rel=1e-15)
+    assert deck.motion.amplitude == pytest.approx(9.80665)
+    assert [a.kind for a in deck.analyses] == ["tilt", "rocking"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line", "words"),
+    [
+        ("radius = 10.0", "radus = 10.0", 4, ["radus", "did you mean 'radius'"]),
+        ("radius = 10.0", "radius = -10.0", 4, ["greater than 0", "m"]),
+        ('"150 cm"', '"0 cm"', 5, ["thickness", "greater than 0"]),
+        ('"150 cm"', '"1,5 m"', 5, ["not a quantity", "decimal sign is a point"]),
+        ('"150 cm"', '"1.5 s"', 5, ["'s' is not a unit of m"]),
+        ('"150 cm"', '"1.5 parsnip"', 5, ["unknown unit 'parsnip'"]),
+        ('"150 cm"', '"2*3 m"', 5, ["not a quantity"]),
+        ('"150 cm"', '"9**9**9 m"', 5, ["not a quantity"]),
+        ('"150 cm"', '"1 m**9**9**9"', 5, ["not a quantity"]),
+        ('"150 cm"', '"nan m"', 5, ["not a quantity"]),
+        ('"150 cm"', "nan", 5, ["finite"]),
+        ('"150 cm"', "1e400", 5, ["finite"]),
+        ('"150 cm"', "true", 5, ["expected a number in m"]),
+        ('"150 cm"', "12.0", 2, ["not below the radius"]),
+        ("voussoirs = 7", "voussoirs = 3", 7, ["greater than or equal to 4"]),
+        ("voussoirs = 7", "voussoirs = 7.5", 7, ["voussoirs"]),
+        ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
+        ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),
+        ('kind = "step-pulse"', 'kind = "step-puls"', 9, ["did you mean 'step-pulse'"]),
+        ('kind = "tilt"', 'kind = "tlit"', 13, ["did you mean 'tilt'"]),
+        ('kind = "tilt"', "", 12, ["kind is missing"]),
+        ("[structure]", "[struture]", 2, ["struture", "did you mean 'structure'"]),
+        ("duration = 0.20", "duration = 0,20", 11, ["decimal sign is a point"]),
+        ("duration = 0.20", "duration = 0.20\nduration = 0.3", 12, ["duration"]),
+    ],
+)  # fmt: skip
+def test_complaint(old: str, new: str, line: int, words: list[str]) -> None:
+    found = complaints(GOOD.replace(old, new, 1))
+    assert any(c.startswith(f"deck.toml:{line}:") and all(w in c for w in words) for c in found), found
+
+
+def test_all_complaints_at_once() -> None:
+    text = GOOD.replace("radius = 10.0", "radus = 1").replace('"1.0 g"', '"1 kg"').replace('"rocking"', '"rockin"')
+    found = complaints(text)
+    lines = {int(c.split(":")[1]) for c in found}
+    assert {4, 10, 15} <= lines
+
+
+def test_missing_motion_and_structure() -> None:
+    assert any(
+        "needs a [motion]" in c for c in complaints(GOOD[: GOOD.index("[motion]")] + '[analysis]\nkind = "rocking"')
+    )
+    assert any("needs a [structure]" in c for c in complaints('[analysis]\nkind = "tilt"'))
+    assert any("no [analysis]" in c for c in complaints('title = "x"'))
+
+
+def test_hostile_files(tmp_path) -> None:
+    assert "not UTF-8" in complaints(b"title = 'x'\n\xff\xfe\x00")[0]
+    assert complaints(b"\x00\x01\x02")[0].startswith("deck.toml:1:")
+    assert "nested too deeply" in complaints("x = " + "[" * 100000)[0]
+    big = tmp_path / "big.toml"
+    big.write_bytes(b"# " + b"x" * 5_000_000)
+    for path, words in ((big, "5.0 MB"), (tmp_path, "is not a file"), (tmp_path / "no.toml", "no such file")):
+        with pytest.raises(DeckError, match=words):
+            read_deck(path)
+
+
+def test_empty_deck() -> None:
+    assert "no [analysis]" in complaints("")[0]
+
+
+@given(st.data())
+@settings(max_examples=300, deadline=None)
+def test_mutated_decks_never_break_the_reader(data) -> None:
+    """Any edit of a deck gives a deck or complaints."""
+    text = list(GOOD)
+    for _ in range(data.draw(st.integers(1, 6))):
+        at = data.draw(st.integers(0, len(text) - 1))
+        text[at : at + data.draw(st.integers(0, 9))] = data.draw(st.text(max_size=6))
+    try:
+        read_text("".join(text).encode("utf-8", "surrogatepass"))
+    except DeckError as error:
+        assert error.complaints
+
+
+@given(st.text(max_size=40))
+@settings(max_examples=500, deadline=None)
+def test_quantity_grammar(text: str) -> None:
+    try:
+        parse(text, "m")
+    except ValueError:
+        return
+    assert any(c.isdigit() for c in text)
+
+
+@pytest.mark.parametrize(
+    ("text", "si", "value"),
+    [("20 cm", "m", 0.2), ("0.5 g", "m/s^2", 4.903325), ("55.6 kN", "N", 55600.0), ("3 N/mm^2", "Pa", 3e6),
+     ("2.7 rad", "deg", 154.69860468), ("1.92e-5 N/mm^3", "N/m^3", 19200.0), ("300 cm/s**2", "m/s^2", 3.0)],
+)  # fmt: skip
+def test_quantities(text: str, si: str, value: float) -> None:
+    assert parse(text, si) == pytest.approx(value, rel=1e-10)
+
+
+def test_lines_of_nested_keys() -> None:
+    text = 'a = [\n 1,\n "x]", # ]\n]\nb.c = """\n[no]\n"""\n[[t]]\nk = 1\n[[t]]\nk = 2\n[t.u]\nv = 3\n'
+    lines = key_lines(text)
+    assert lines["a",] == 1 and lines["b", "c"] == 5
+    assert lines["t", 0, "k"] == 9 and lines["t", 1, "k"] == 11 and lines["t", 1, "u", "v"] == 13
+
+
+def test_explain_schema_and_starters() -> None:
+    import tomllib
+
+    from extrados.decks.kinds import SECTIONS
+
+    schema = explain.json_schema()
+    assert "arch" in str(schema["$defs"]["structure-arch"]["properties"]["kind"])
+    assert "R_A" in explain.explain("radius") and "thesis" in explain.explain("restitution")
+    with pytest.raises(KeyError, match="radius"):
+        explain.explain("raduis")
+    for kind in SECTIONS["analysis"]:
+        assert tomllib.loads(explain.starter(kind))["analysis"][0]["kind"] == kind
+    assert "`radius`" in explain.manual()
+
+
+def test_starter_decks_are_valid() -> None:
+    for kind in ("tilt", "rocking", "failure-domain", "assessment", "arch"):
+        read_text(explain.starter(kind).encode())
+
+
+def test_decks_from_python() -> None:
+    deck = make_deck({"structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9},
+                      "analysis": {"kind": "tilt"}})  # fmt: skip
+    assert deck.analyses[0].kind == "tilt"
