@@ -62,8 +62,9 @@ contains
       real(wp) :: phase
       rate = 0.0_wp
       phase = (t - it%start) / it%duration
-      if (phase > 0.0_wp .and. phase < 1.0_wp) &
-         rate = it%shift / it%duration * (1.0_wp - cos(2.0_wp * pi * phase))
+      if (phase > 0.0_wp .and. phase < 1.0_wp) then
+        rate = it%shift / it%duration * (1.0_wp - cos(2.0_wp * pi * phase))
+      end if
    end function move_rate
 
    !> When ground and supports have come to rest [s]

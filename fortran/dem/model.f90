@@ -1,10 +1,12 @@
 !> A discrete-element model in motion: bodies, contacts and laws, advanced by leap-frog steps.
 module dem_model
    use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body, body_set, body_turn
    use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
    use dem_law, only : joint_law, act
    use dem_loading, only : loading, mean_acceleration, move_rate
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: model, advance, critical_step
@@ -232,15 +234,19 @@ contains
 
    !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 below the greatest
    !> eigenvalue of any body on its springs, twice as stiff where the neighbour moves too [s]
-   function critical_step(it) result(step)
+   subroutine critical_step(it, step, status)
       type(model), intent(in) :: it
-      real(wp) :: step
+      real(wp), intent(out) :: step          !! [s]
+      integer(c_int), intent(out) :: status
       real(wp), allocatable :: k(:, :)
-      integer :: n, i, side
+      integer :: n, i, side, failed
       type(overlap) :: now
       real(wp) :: stiff_n, stiff_s, length, share, greatest
 
-      allocate (k(6, size(it%set%item)))
+      step = 0.0_wp
+      allocate (k(6, size(it%set%item)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
       k = 0.0_wp
       do n = 1, it%contacts%pairs
          associate (pair => it%contacts%pair(n), a => it%set%item(it%contacts%pair(n)%bodies(1)), &
@@ -278,7 +284,7 @@ contains
          greatest = max(greatest, greatest_eigenvalue(k(:, n)))
       end do
       step = 2.0_wp / sqrt(max(greatest, tiny(1.0_wp)))
-   end function critical_step
+   end subroutine critical_step
 
    !> Add a spring along (dx, dy) at a point to the mass-scaled 3 x 3 stiffness of a body
    pure subroutine add(k, b, dx, dy, x, y, stiffness)

@@ -68,7 +68,8 @@ contains
       it%contacts%skin = 0.02_wp * it%set%size
       call search(it%set, it%contacts, .true., status)
       if (status /= status_ok) return
-      record%critical = critical_step(it)
+      call critical_step(it, record%critical, status)
+      if (status /= status_ok) return
       it%step = options%step
       if (.not. it%step > 0.0_wp) it%step = options%fraction * record%critical
       record%least_step = it%step
@@ -228,7 +229,8 @@ contains
          record%searches = record%searches + 1
          record%most_pairs = max(record%most_pairs, it%contacts%pairs)
          ! New contacts may be stiffer than those of the start.
-         critical = critical_step(it)
+         call critical_step(it, critical, status)
+         if (status /= status_ok) return
          if (it%step > 0.9_wp * critical) it%step = 0.5_wp * critical
          record%least_step = min(record%least_step, it%step)
       end do

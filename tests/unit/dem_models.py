@@ -13,9 +13,7 @@ def rectangle(left: float, right: float, bottom: float, top: float) -> np.ndarra
     return np.array([[left, bottom], [right, bottom], [right, top], [left, top]])
 
 
-def model(
-    blocks: list[np.ndarray], supports: list[np.ndarray], law: dem.Law, density: float = 2000.0
-) -> dem.Bodies:
+def model(blocks: list[np.ndarray], supports: list[np.ndarray], law: dem.Law, density: float = 2000.0) -> dem.Bodies:
     """Bodies from rectangles: blocks first, supports after them."""
     shapes = [*blocks, *supports]
     centroid = np.array([s.mean(axis=0) for s in shapes])

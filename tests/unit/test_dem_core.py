@@ -120,9 +120,7 @@ def test_rocking_block_follows_housner() -> None:
 
 def test_moving_base_equals_body_force() -> None:
     bodies = block_on_floor(1.0, 4.0, STIFF)
-    runs = [
-        dem.run(bodies, dem.Options(1.5, 0.05, moving_base=base), cosine(0.5 * G, 10.88)) for base in (False, True)
-    ]
+    runs = [dem.run(bodies, dem.Options(1.5, 0.05, moving_base=base), cosine(0.5 * G, 10.88)) for base in (False, True)]
     assert np.abs(runs[0].place[:, 0] - runs[1].place[:, 0]).max() < 1e-7
     assert runs[1].residual < 0.01
 

@@ -32,7 +32,9 @@ class Law:
 
     def __post_init__(self) -> None:
         if not (self.normal_stiffness > 0.0 and self.shear_stiffness > 0.0):
-            raise ValueError(f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0")
+            raise ValueError(
+                f"joint stiffnesses are {self.normal_stiffness:g} and {self.shear_stiffness:g} Pa/m, expected above 0"
+            )
         if min(self.friction, self.cohesion, self.tension, self.damping) < 0.0:
             raise ValueError("friction, cohesion, tension and damping of a joint must not be negative")
 

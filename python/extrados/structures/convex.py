@@ -60,7 +60,9 @@ def crossing_edges(polygon: np.ndarray) -> tuple[int, int] | None:
     start, end = polygon, np.roll(polygon, -1, axis=0)
 
     def side(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-        return np.sign((b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0]))
+        return np.sign(
+            (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
+        )
 
     for i in range(n):
         j = np.arange(i + 2, n if i else n - 1)

@@ -6,7 +6,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.structures.assembly import GROUND, Assembly
-from extrados.structures.convex import area, clean, convex_parts, crossing_edges, hull, is_convex, overlap_depth, rounded
+from extrados.structures.convex import (
+    area,
+    clean,
+    convex_parts,
+    crossing_edges,
+    hull,
+    is_convex,
+    overlap_depth,
+    rounded,
+)
 
 #: An outline is taken for its hull where that is bigger by no more than this, and no joint lies inside the hull:
 #: the concave arc of a voussoir's intrados touches nothing.
@@ -122,7 +131,9 @@ def _block_parts(assembly: Assembly, i: int) -> list[tuple[np.ndarray, np.ndarra
         raise BadShape(f"{name}: its area is zero")
     crossing = crossing_edges(outline)
     if crossing is not None:
-        raise BadShape(f"{name}: its outline crosses itself (edges from vertices {crossing[0] + 1} and {crossing[1] + 1})")
+        raise BadShape(
+            f"{name}: its outline crosses itself (edges from vertices {crossing[0] + 1} and {crossing[1] + 1})"
+        )
     outline = clean(outline)
     if is_convex(outline):
         return [(outline, np.ones(len(outline), dtype=bool))]
@@ -217,5 +228,10 @@ def _floor(assembly: Assembly, level: float) -> np.ndarray:
     middle, extent = 0.5 * (points[:, 0].min() + points[:, 0].max()), float(np.ptp(points, axis=0).max())
     half = 4.0 * extent
     return np.array(
-        [[middle - half, level - 0.25 * extent], [middle + half, level - 0.25 * extent], [middle + half, level], [middle - half, level]]
+        [
+            [middle - half, level - 0.25 * extent],
+            [middle + half, level - 0.25 * extent],
+            [middle + half, level],
+            [middle - half, level],
+        ]
     )
