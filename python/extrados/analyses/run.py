@@ -23,6 +23,9 @@ DRIVERS = {
     "rocking": "extrados.analyses.rocking",
     "failure-domain": "extrados.analyses.failure_domain",
     "assessment": "extrados.analyses.assessment",
+    "dem": "extrados.analyses.dem",
+    "dem-domain": "extrados.analyses.dem_domain",
+    "dem-parameters": "extrados.analyses.dem_parameters",
 }
 
 

@@ -1,9 +1,9 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, motion_analyses, motions, structures
+from extrados.decks import analyses, block, dem, masonry, motion_analyses, motions, structures
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block)
+STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block, masonry.Column, masonry.BrickWall)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
@@ -23,6 +23,9 @@ ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Assessment,
     motion_analyses.MotionStudy,
     motion_analyses.ShakeTable,
+    dem.Dem,
+    dem.DemDomain,
+    dem.DemParameters,
 )
 
 

@@ -16,6 +16,9 @@ DRAWERS = {
     "rocking": "extrados.plots.arch:draw_rocking",
     "failure-domain": "extrados.plots.arch:draw_failure_domain",
     "assessment": "extrados.plots.arch:draw_assessment",
+    "dem": "extrados.plots.dem:draw_dem",
+    "dem-domain": "extrados.plots.dem:draw_domain",
+    "dem-parameters": "extrados.plots.dem:draw_parameters",
 }
 
 TEMPLATE = """<!doctype html>
