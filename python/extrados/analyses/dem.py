@@ -33,6 +33,11 @@ def run(context: Context, options: Dem) -> Result:
     return _motion(context, options, model)
 
 
+def collapse_limit(options: Dem, model: Model) -> float:
+    """Displacement that counts as collapse [m]."""
+    return options.collapse_displacement or 0.2 * model.size
+
+
 def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
     """Options of the core for a run of this deck."""
     outline = np.concatenate(model.assembly.outlines)
@@ -40,13 +45,12 @@ def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
     low, high = outline.min(axis=0) - reach, outline.max(axis=0) + reach
     moved = [m.start + m.duration for m in options.support_movements]
     quiet = max([context.motion.end if context.deck.motion else 0.0, *moved])
-    limit = options.collapse_displacement or 0.2 * model.size
     return dem.Options(
         end_time=options.end_time or quiet + dem_model.settle_time(model),
         output_step=options.output_step,
         step=options.time_step or 0.0,
         fraction=options.fraction,
-        collapse=limit if options.stop_at_collapse else 0.0,
+        collapse=collapse_limit(options, model) if options.stop_at_collapse else 0.0,
         domain=(low[0], high[0], low[1], high[1]),
         stop_at_rest=options.end_time is None,
         moving_base=options.base == "moving",
@@ -93,6 +97,7 @@ class Trial:
     def __init__(self, context: Context, options: Dem, model: Model):
         self.model = model
         self.options = core_options(context, options, model)
+        self.limit = collapse_limit(options, model)
         self.ground: Ground | None = context.motion.ground if context.deck.motion else None
         self.moves = _moves(model, options)
         self.shift = _start(context, model)
@@ -141,18 +146,43 @@ def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.nda
     return gap_p, gap_q, slip
 
 
-def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray) -> np.ndarray:
-    """State of each joint (time, joint): 0 closed, -1 hinged at p (intrados), 1 at q (extrados), 2 open."""
+def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray, slip: np.ndarray) -> np.ndarray:
+    """State of each joint (time, joint): 0 closed, -1 hinged at p (intrados), 1 at q (extrados), 2 apart."""
     small = OPEN * model.assembly.length
     open_p, open_q = np.nan_to_num(gap_p) > small, np.nan_to_num(gap_q) > small
-    return np.where(open_p & open_q, 2, np.where(open_p, 1, np.where(open_q, -1, 0)))
+    apart = (open_p & open_q) | (np.abs(np.nan_to_num(slip)) > 0.5 * model.assembly.length)
+    return np.where(apart, 2, np.where(open_p, 1, np.where(open_q, -1, 0)))
 
 
-def outcome(run: dem.Run, state: np.ndarray) -> str:
-    """no-hinging, recovery or collapse."""
-    if run.reason in ("collapse", "left"):
+def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
+    """Greatest slip of joints that still touch [m]."""
+    return float(np.nanmax(np.abs(np.where(state == 2, 0.0, slip)), initial=0.0))
+
+
+def displacements(model: Model, run: dem.Run) -> np.ndarray:
+    """How far each body is from its settled place (time, body) [m]."""
+    mobile = slice(0, model.rigid.count)
+    return np.hypot(*(run.place[:, mobile, :2] - run.settled[mobile, :2]).transpose(2, 0, 1))
+
+
+def outcome(run: dem.Run, state: np.ndarray, farthest: float, limit: float) -> str:
+    """no-hinging, recovery or collapse: a block moved farther than the limit [m] at some time."""
+    if run.reason in ("collapse", "left") or farthest > limit:
         return "collapse"
     return "recovery" if (state != 0).any() else "no-hinging"
+
+
+def _collapse_time(run: dem.Run, far: np.ndarray, limit: float) -> float | None:
+    """When a block first moved farther than the limit [s]."""
+    if (far > limit).any():
+        return float(run.time[np.argmax(far > limit)])
+    return run.stop_time if run.reason in ("collapse", "left") else None
+
+
+def _moving(run: dem.Run) -> bool:
+    """Is there motion worth the name at the end?"""
+    kinetic = run.energy["kinetic"]
+    return bool(len(kinetic) and kinetic[-1] > 1e-3 * kinetic.max())
 
 
 def restitution(run: dem.Run) -> float | None:
@@ -185,25 +215,28 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
     single = model.rigid.count == 1
     found = trial.run(output_step=min(options.output_step, 0.002)) if single else trial.run()
     gap_p, gap_q, slip = openings(model, found)
-    state = hinges(model, gap_p, gap_q)
+    state = hinges(model, gap_p, gap_q, slip)
     body = model.rigid.body_of_block
     tracked = _tracked(model, options, found)
     rotation = -(found.place[:, body, 2] - found.settled[body, 2])
     peak = np.abs(rotation).argmax(axis=0)
     mobile = slice(0, model.rigid.count)
-    moved = np.hypot(*(found.place[:, mobile, :2] - found.settled[mobile, :2]).transpose(2, 0, 1))
-    sliding = np.nanmax(np.abs(np.where(state == 2, 0.0, slip)), initial=0.0)
+    far = displacements(model, found).max(axis=1, initial=0.0)
+    farthest = float(far.max(initial=0.0))
+    sliding = peak_slip(state, slip)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     result.reason = f"interrupted at {found.stop_time:.3f} s" if found.interrupted else ""
     names = model.assembly.block_names
     result.results = {
-        "outcome": outcome(found, state),
+        "outcome": outcome(found, state, farthest, trial.limit),
+        "collapse_time_s": _collapse_time(found, far, trial.limit),
         "stopped": found.reason,
         "stopped_by": [model.rigid.names[k] for k in found.blamed],
         "stop_time_s": found.stop_time,
+        "still_moving": found.reason == "end" and _moving(found),
         "peak_rotation_rad": {names[i]: float(rotation[peak[i], i]) for i in tracked},
-        "peak_displacement_m": float(moved.max(initial=0.0)),
-        "peak_slip_m": float(sliding),
+        "peak_displacement_m": farthest,
+        "peak_slip_m": sliding,
         "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
@@ -271,6 +304,8 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
         )
+    if result.results["still_moving"]:
+        result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     _vary(context, options, trial, result)
     if options.find_friction:
         result.results["friction_threshold"] = friction_threshold(trial, model, options.slip)
@@ -361,7 +396,8 @@ def _vary(context: Context, options: Dem, trial: Trial, result: Result) -> None:
     rows = []
     for (what, factor, v), run in zip(cases, runs, strict=True):
         gap_p, gap_q, slip = openings(trial.model, run)
-        state = hinges(trial.model, gap_p, gap_q)
+        state = hinges(trial.model, gap_p, gap_q, slip)
+        farthest = float(displacements(trial.model, run).max(initial=0.0))
         ratio = v.ratios()
         body = trial.model.rigid.body_of_block
         turn = run.place[:, body, 2] - run.settled[body, 2]
@@ -370,11 +406,11 @@ def _vary(context: Context, options: Dem, trial: Trial, result: Result) -> None:
                 "varied": what, "value": factor, "beta_s": v.beta, "stiffness_Pa_per_m": float(v.stiffness.max()),
                 "friction": float(v.friction.max()), "damping_ratio_rotation": ratio["rotation"],
                 "damping_ratio_edge": ratio["edge"],
-                "outcome": outcome(run, state) if run.reason in ("end", "rest", "collapse", "left") else run.reason,
+                "outcome": outcome(run, state, farthest, trial.limit) if run.reason in ("end", "rest", "collapse", "left") else run.reason,
                 "peak_rotation_rad": float(np.abs(turn).max(initial=0.0)),
                 "bounces": int(run.bounces[: trial.model.rigid.count].sum()),
                 "airborne_time_s": float(run.airborne[: trial.model.rigid.count].max(initial=0.0)),
-                "peak_slip_m": float(np.nanmax(np.abs(np.where(state == 2, 0.0, slip)), initial=0.0)),
+                "peak_slip_m": peak_slip(state, slip),
                 "energy_residual_ratio": run.residual,
             }
         )  # fmt: skip
@@ -398,8 +434,7 @@ def friction_threshold(trial: Trial, model: Model, slip: float, accuracy: float 
         if run.reason == "unsettled":
             return True
         gap_p, gap_q, moved = openings(model, run)
-        state = hinges(model, gap_p, gap_q)
-        return bool(np.nanmax(np.abs(np.where(state == 2, 0.0, moved)), initial=0.0) > slip)
+        return peak_slip(hinges(model, gap_p, gap_q, moved), moved) > slip
 
     low, high = 0.0, 2.0
     if slides(high):
@@ -442,18 +477,9 @@ def _tilt(context: Context, options: Dem, model: Model) -> Result:
         context.progress(done, total, "tilt test")
     collapse = 0.5 * (low + high) / GRAVITY
     gap_p, gap_q, slip = openings(model, last)
-    state = hinges(model, gap_p, gap_q)
-    at = min(
-        int(
-            np.searchsorted(
-                np.hypot(
-                    *(last.place[:, : model.rigid.count, :2] - last.settled[: model.rigid.count, :2]).transpose(2, 0, 1)
-                ).max(axis=1),
-                0.005 * model.size,
-            )
-        ),
-        len(last.time) - 1,
-    )
+    state = hinges(model, gap_p, gap_q, slip)
+    begun = np.searchsorted(displacements(model, last).max(axis=1), 0.005 * model.size)
+    at = min(int(begun), len(last.time) - 1)
     found_hinges = [
         {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] < 0 else "extrados"}
         for j in np.flatnonzero(np.abs(state[at]) == 1)
@@ -496,7 +522,7 @@ def _answer(context: Context, r: dict, model: Model) -> str:
     )
     if r["outcome"] == "collapse":
         who = f" ({r['stopped_by'][0]} is the first to go)" if r["stopped_by"] else ""
-        first = f"It collapses{who} at {r['stop_time_s']:.2f} s"
+        first = f"It collapses{who} at {r['collapse_time_s']:.2f} s"
     elif r["outcome"] == "no-hinging":
         first = "No joint opens"
     else:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from extrados.plots import style
@@ -24,40 +25,62 @@ def _supports(run: Stored, name: str) -> list[np.ndarray]:
     return [vertices[a:b] for a, b in itertools.pairwise(start)]
 
 
-def _window(run: Stored, name: str) -> tuple[float, float, float, float]:
-    """Limits of the drawings: the structure with some room around it."""
+def _window(run: Stored, name: str, picks: list[int]) -> tuple[float, float, float, float]:
+    """Limits of the drawings: the structure and where its blocks are at the outputs drawn, within reason."""
     points = run.array(name, "outline")
     low, high = points.min(axis=0), points.max(axis=0)
-    room = 0.22 * float((high - low).max())
-    return low[0] - room, high[0] + room, low[1] - 0.5 * room, high[1] + room
+    size = float((high - low).max())
+    places = run.array(name, "place")[picks][..., :2].reshape(-1, 2)
+    near = places[(places > low - 1.5 * size).all(axis=1) & (places < high + 1.5 * size).all(axis=1)]
+    shape = float(np.median([np.ptp(o, axis=0).max() for o in outlines(run, name)]))
+    if len(near):
+        low, high = np.minimum(low, near.min(axis=0) - 0.5 * shape), np.maximum(high, near.max(axis=0) + 0.5 * shape)
+    room = 0.12 * size
+    return low[0] - room, high[0] + room, low[1] - room, high[1] + room
 
 
-def _draw_state(ax: Axes, run: Stored, name: str, k: int, blocks: list[np.ndarray], arrows: float) -> None:
-    """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
-    place, rate, centroid = run.array(name, "place")[k], run.array(name, "rate")[k], run.array(name, "centroid")
-    left, right, bottom, top = _window(run, name)
-    for support in _supports(run, name):
-        ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
-    style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, place, strict=True)])
-    hinge = run.array(name, "hinge")[k]
-    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
-    owner = _block_of_joint(run, name)
-    points = []
-    for j in np.flatnonzero(np.abs(hinge) == 1):
-        if owner[j] >= 0:
-            point = p[j] if hinge[j] < 0 else q[j]
-            points.append(moved(point[None], centroid[owner[j]], place[owner[j]])[0])
-    if points and len(points) <= 60:
-        style.draw_hinges(ax, np.array(points))
-    if arrows > 0.0:
-        ax.quiver(
-            place[:, 0], place[:, 1], rate[:, 0] * arrows, rate[:, 1] * arrows, angles="xy", scale_units="xy", scale=1.0,
-            color=style.THRUST, width=0.005, zorder=6,
-        )  # fmt: skip
-    ax.set_xlim(left, right)
-    ax.set_ylim(bottom, top)
-    ax.set_aspect("equal")
-    ax.grid(False)
+class _Scene:
+    """What stays the same from one picture of a run to the next."""
+
+    def __init__(self, run: Stored, name: str, picks: list[int]):
+        get = run.arrays[name]
+        self.blocks, self.supports = outlines(run, name), _supports(run, name)
+        self.centroid, self.place, self.rate = (get[k].data for k in ("centroid", "place", "rate"))
+        self.p, self.q, self.hinge = (get[k].data for k in ("joint_p", "joint_q", "hinge"))
+        self.owner = _block_of_joint(run, name)
+        self.window = _window(run, name, picks)
+
+    @property
+    def aspect(self) -> float:
+        left, right, bottom, top = self.window
+        return (top - bottom) / (right - left)
+
+    def draw(self, ax: Axes, k: int, arrows: float) -> None:
+        """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
+        place, rate = self.place[k], self.rate[k]
+        left, right, bottom, top = self.window
+        for support in self.supports:
+            ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
+        shapes = [moved(o, c, p) for o, c, p in zip(self.blocks, self.centroid, place, strict=True)]
+        ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
+        points = []
+        for j in np.flatnonzero(np.abs(self.hinge[k]) == 1):
+            if self.owner[j] >= 0:
+                point = self.p[j] if self.hinge[k, j] < 0 else self.q[j]
+                points.append(moved(point[None], self.centroid[self.owner[j]], place[self.owner[j]])[0])
+        if points and len(points) <= 40:
+            style.draw_hinges(ax, np.array(points))
+        if arrows > 0.0:
+            ax.quiver(
+                place[:, 0], place[:, 1], rate[:, 0] * arrows, rate[:, 1] * arrows, angles="xy", scale_units="xy",
+                scale=1.0, color=style.THRUST, width=0.005, zorder=6,
+            )  # fmt: skip
+        ax.set_xlim(left, right)
+        ax.set_ylim(bottom, top)
+        ax.set_aspect("equal")
+        ax.grid(False)
+        ax.set_xticks([])
+        ax.set_yticks([])
 
 
 def _block_of_joint(run: Stored, name: str) -> np.ndarray:
@@ -93,21 +116,21 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     times = run.array(name, "snapshot_time")
-    blocks = outlines(run, name)
     columns = min(3, len(times))
     rows = -(-len(times) // columns)
     rate = run.array(name, "rate")
     picks = [_at(run, name, t) for t in times]
+    scene = _Scene(run, name, picks)
     fastest = max((float(np.hypot(*rate[k, :, :2].T).max()) for k in picks), default=0.0)
-    left, right, bottom, top = _window(run, name)
-    arrows = 0.18 * max(right - left, top - bottom) / fastest if fastest > 1e-6 else 0.0
-    height = 3.0 * rows * min(1.6, max(0.5, (top - bottom) / (right - left))) + 0.4
-    with style.figure(9.5, height, rows=rows, columns=columns) as (fig, axes):
+    left, right, bottom, top = scene.window
+    arrows = 0.15 * max(right - left, top - bottom) / fastest if fastest > 1e-6 else 0.0
+    with style.figure(9.5, 3.1 * rows * min(1.6, max(0.4, scene.aspect)) + 0.4, rows=rows, columns=columns) as (
+        fig,
+        axes,
+    ):
         for ax, k in zip(axes, picks, strict=False):
-            _draw_state(ax, run, name, k, blocks, arrows)
+            scene.draw(ax, k, arrows)
             ax.set_title(f"{run.array(name, 'time')[k]:.3f} s")
-            ax.set_xticks([])
-            ax.set_yticks([])
         for ax in axes[len(times) :]:
             ax.axis("off")
         saved = style.save(fig, folder, f"{name}-snapshots")
@@ -261,17 +284,16 @@ def _animation(run: Stored, name: str, folder: Path) -> None:
     from matplotlib.animation import FFMpegWriter, PillowWriter
 
     time = run.array(name, "time")
-    rate = 20
-    frames = [_at(run, name, t) for t in np.arange(time[0], time[-1], max(1.0 / rate, (time[-1] - time[0]) / 400.0))]
-    writer = PillowWriter(fps=rate) if kind == "gif" else FFMpegWriter(fps=rate)
-    blocks = outlines(run, name)
-    left, right, bottom, top = _window(run, name)
-    height = 5.0 * min(1.6, max(0.5, (top - bottom) / (right - left)))
-    with style.figure(5.0, height) as (fig, (ax,)):
+    # Real time, but never more frames than draw in a few tens of seconds
+    step = max(1.0 / 15.0, (time[-1] - time[0]) / 150.0)
+    frames = [_at(run, name, t) for t in np.arange(time[0], time[-1], step)]
+    writer = (PillowWriter if kind == "gif" else FFMpegWriter)(fps=round(1.0 / step))
+    scene = _Scene(run, name, frames)
+    with style.figure(5.0, 5.0 * min(1.6, max(0.4, scene.aspect))) as (fig, (ax,)):
         fig.set_layout_engine("none")  # frames must not wobble
         with writer.saving(fig, str(folder / "figures" / f"{name}.{kind}"), dpi=80):
             for k in frames:
                 ax.clear()
-                _draw_state(ax, run, name, k, blocks, 0.0)
+                scene.draw(ax, k, 0.0)
                 ax.set_title(f"{time[k]:.2f} s")
                 writer.grab_frame()
