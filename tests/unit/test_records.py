@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extrados.motions.records import RecordError, locate, read_record, record_motion
+from extrados.motions.records import RecordError, Treatment, locate, read_record, record_motion
 
 AT2 = """PEER STRONG MOTION DATABASE RECORD
 SOME QUAKE, SOME STATION, 180
@@ -70,16 +70,16 @@ def test_truncation_at_every_byte(tmp_path) -> None:
 def test_units_and_steps_are_asked_for(tmp_path) -> None:
     bare = read_record(write(tmp_path, "0.01\n-0.2\n0.03\n0.0\n"))
     with pytest.raises(RecordError, match="no time step"):
-        record_motion(bare, unit="g")
+        record_motion(bare, Treatment(unit="g"))
     with pytest.raises(RecordError, match="no unit"):
-        record_motion(bare, time_step=0.01)
-    motion = record_motion(bare, time_step=0.01, unit="g", scale=2.0, time_scale=3.0)
+        record_motion(bare, Treatment(time_step=0.01))
+    motion = record_motion(bare, Treatment(time_step=0.01, unit="g", scale=2.0, time_scale=3.0))
     assert motion.peak == pytest.approx(0.4 * 9.80665) and motion.ground.step == pytest.approx(0.03)
     with pytest.raises(RecordError, match="above 5 g"):
-        record_motion(read_record(write(tmp_path, "1\n-341.7\n3\n")), time_step=0.02, unit="m/s^2")
+        record_motion(read_record(write(tmp_path, "1\n-341.7\n3\n")), Treatment(time_step=0.02, unit="m/s^2"))
     at2 = read_record(write(tmp_path, AT2))
     with pytest.raises(RecordError, match=r"the deck 0\.02"):
-        record_motion(at2, time_step=0.02)
+        record_motion(at2, Treatment(time_step=0.02))
 
 
 def test_paths_stay_in_the_folder(tmp_path) -> None:

@@ -210,8 +210,18 @@ def run(context: Context, options: FailureDomain) -> Result:
             "mode_II_durations_s": [None if np.isnan(t) else t for t in found[1]],
         }
     result.tables["failure_domain"] = TableData(
-        {"duration": durations, **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()}},
-        {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g"},
+        {
+            "duration": durations,
+            # Eq. 5.7: arches of other sizes and the same proportions fail at the same values of this
+            "duration_over_sqrt_radius": durations / np.sqrt(model.arch.radius),
+            **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
+        },
+        {
+            "duration": "s",
+            "duration_over_sqrt_radius": "s/m^0.5",
+            "mode_I_amplitude": "g",
+            "mode_II_amplitude": "g",
+        },
     )
     result.arrays = {
         "duration": Array(durations, ("duration",), "s", "t_p of the step pulse or T_p of the sine"),

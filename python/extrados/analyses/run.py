@@ -11,18 +11,27 @@ from typing import Any
 
 from extrados.core.errors import Cancelled, CoreError
 from extrados.decks.reader import Deck
+from extrados.limit.solver import NoAnswer
 from extrados.motions.from_deck import make_motion
 from extrados.motions.motion import Motion
 from extrados.motions.records import RecordError
 from extrados.results.model import Result
+from extrados.structures.builder import BadGeometry
 from extrados.structures.from_deck import make_structure
 
 #: Analysis kind -> module with run(context, options) -> Result
 DRIVERS = {
     "tilt": "extrados.analyses.tilt",
+    "thrust": "extrados.analyses.thrust",
+    "sweep": "extrados.analyses.sweep",
+    "survey": "extrados.analyses.survey",
+    "supports": "extrados.analyses.supports",
+    "moving-load": "extrados.analyses.moving_load",
     "rocking": "extrados.analyses.rocking",
     "failure-domain": "extrados.analyses.failure_domain",
     "assessment": "extrados.analyses.assessment",
+    "motion": "extrados.analyses.motion_study",
+    "shake-table": "extrados.analyses.shake_table",
     "dem": "extrados.analyses.dem",
     "dem-domain": "extrados.analyses.dem_domain",
     "dem-parameters": "extrados.analyses.dem_parameters",
@@ -47,8 +56,11 @@ class Context:
 
     @cached_property
     def structure(self) -> Any:
-        """The structure of the deck as blocks and joints, or as a mesh."""
-        return make_structure(self.deck.structure, self.deck.folder)
+        """The structure of the deck as blocks and joints, or as a mesh; Refused where it cannot be built."""
+        try:
+            return make_structure(self.deck.structure, self.deck.folder)
+        except BadGeometry as error:
+            raise Refused(str(error)) from None
 
     @cached_property
     def motion(self) -> Motion:
@@ -83,7 +95,7 @@ def run_analyses(context: Context) -> list[Result]:
             result = Result(options.kind, "interrupted", "interrupted before it had a result")
         except MemoryError as error:
             result = Result(options.kind, "failed", str(error) or "not enough memory")
-        except CoreError as error:
+        except (CoreError, NoAnswer) as error:
             result = Result(options.kind, "failed", str(error))
         result.seconds = time.perf_counter() - begin
         stopped = result.status == "interrupted"

@@ -127,6 +127,8 @@ def history(
         check(status, "rocking response")
     found = min(events, room)
     state = state[:, :points]
+    if not (np.isfinite(state).all() and np.isfinite(summary).all() and np.isfinite([work, loss]).all()):
+        check(status_code("not_finite"), "rocking response")
     return Response(
         OUTCOMES[outcome[0]],
         int(outcome[1]),
@@ -204,6 +206,8 @@ def ensemble(
     cancelled = status_code("cancelled")
     if status != cancelled:
         check(status, "rocking ensemble")
+    if not (np.isfinite(peak).all() and np.isfinite(stop_time).all()):
+        check(status_code("not_finite"), "rocking ensemble")
     bad = run_status != 0
     failed = {int(k): status_list()[int(run_status[k])][1] for k in np.flatnonzero(bad & (run_status != cancelled))}
     gone = np.where(bad, np.nan, 1.0)

@@ -1,4 +1,4 @@
-"""Analysis kinds of the arch: tilt, rocking, failure domain, assessment."""
+"""Analysis kinds of the arch: rocking, failure domain, assessment."""
 
 from typing import ClassVar, Literal
 
@@ -6,16 +6,6 @@ from extrados.decks.quantities import Acceleration, Time
 from extrados.decks.table import Analysis, key
 
 STANDARD_GRAVITY = 9.80665
-
-
-class Tilt(Analysis):
-    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
-
-    kind: Literal["tilt"]
-    structures: ClassVar = ("arch",)
-    friction: float | None = key(
-        None, "coefficient of friction of the joints; without it sliding is excluded", gt=0, le=10
-    )
 
 
 class Rocking(Analysis):

@@ -1,9 +1,19 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, dem, masonry, motion_analyses, motions, structures
+from extrados.decks import analyses, block, dem, limit, masonry, motion_analyses, motions, structures, vaults
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block, masonry.Column, masonry.BrickWall)
+STRUCTURES: tuple[type[Structure], ...] = (
+    structures.Arch,
+    block.Block,
+    vaults.Vault,
+    vaults.AisledVault,
+    vaults.PointedArch,
+    vaults.EllipticalArch,
+    vaults.Blocks,
+    masonry.Column,
+    masonry.BrickWall,
+)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
@@ -17,7 +27,12 @@ MOTIONS: tuple[type[Motion], ...] = (
     motions.Compatible,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
-    analyses.Tilt,
+    limit.Tilt,
+    limit.Thrust,
+    limit.Sweep,
+    limit.Survey,
+    limit.Supports,
+    limit.MovingLoad,
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,

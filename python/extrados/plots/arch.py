@@ -1,4 +1,4 @@
-"""Figures of the arch: tilt, rocking, failure domain, assessment."""
+"""Figures of the arch: rocking, failure domain, assessment."""
 
 import itertools
 from pathlib import Path
@@ -21,60 +21,6 @@ def moved(outline: np.ndarray, centroid: np.ndarray, pose: np.ndarray) -> np.nda
     """An outline carried to a pose x, y, rotation of its centroid."""
     c, s = np.cos(pose[2]), np.sin(pose[2])
     return (outline - centroid) @ np.array([[c, s], [-s, c]]) + pose[:2]
-
-
-def _hinge_points(run: Stored, name: str) -> tuple[np.ndarray, list[str]]:
-    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
-    hinges = run[name]["hinges"]
-    points = np.array([(p if h["side"] == "intrados" else q)[h["joint"]] for h in hinges]).reshape(-1, 2)
-    return points, [f"{letter} (joint {h['joint']})" for letter, h in zip("ABCDEFGH", hinges, strict=False)]
-
-
-def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Thrust line and mechanism at collapse, and the thrust lines upright."""
-    r = run[name]
-    blocks, centroid, velocity = outlines(run, name), run.array(name, "centroid"), run.array(name, "velocity")
-    with style.figure(9.0, 4.2, columns=2) as (fig, (left, right)):
-        style.draw_blocks(left, blocks)
-        left.plot(*run.array(name, "collapse_point").T, color=style.THRUST, label="thrust line at collapse")
-        points, labels = _hinge_points(run, name)
-        style.draw_hinges(left, points, labels)
-        left.set_title(f"Collapse at {r['collapse_acceleration_g']:.4f} g to +x (tilt {r['tilt_angle_deg']:.2f} deg)")
-        left.legend(loc="lower center")
-        style.draw_blocks(right, blocks, facecolor="none", linestyle=":", linewidth=0.5)
-        # Small enough a turn to show the mechanism without stretching the blocks
-        amount = 0.06 / max(np.abs(velocity[:, 2]).max(), 1e-300)
-        style.draw_blocks(
-            right,
-            [
-                moved(o, c, np.array([*(c + amount * v[:2]), amount * v[2]]))
-                for o, c, v in zip(blocks, centroid, velocity, strict=True)
-            ],
-        )
-        right.set_title("Mechanism")
-        for ax in (left, right):
-            style.section_axes(ax)
-        tilt = style.save(fig, folder, f"{name}-collapse")
-    with style.figure(6.0, 4.0) as (fig, (ax,)):
-        style.draw_blocks(ax, blocks)
-        ax.plot(
-            *run.array(name, "least_point").T,
-            color=style.THRUST,
-            label=f"least thrust {r['thrust_min_N'] / 1e3:.4g} kN",
-        )
-        ax.plot(
-            *run.array(name, "most_point").T,
-            color=style.HINGE,
-            label=f"greatest thrust {r['thrust_max_N'] / 1e3:.4g} kN",
-        )
-        ax.legend(loc="lower center")
-        ax.set_title("Thrust lines upright")
-        style.section_axes(ax)
-        upright = style.save(fig, folder, f"{name}-upright")
-    return [
-        (tilt, "Thrust line, hinges and mechanism under the greatest constant acceleration."),
-        (upright, "Thrust lines of least and greatest horizontal thrust under self-weight."),
-    ]
 
 
 def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -121,6 +67,9 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 f"Ground motion, rotation of {r.get('rotation_of', 'link AB')} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
             )
         )
+    moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
+    if moving.any():
+        found.append(_draw_friction(run, name, folder, t, moving))
     times = run.arrays[name].get("snapshot_time")
     if times is not None and len(times.data):
         blocks, centroid = outlines(run, name), run.array(name, "centroid")
@@ -147,6 +96,29 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 )
             )
     return found
+
+
+def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: np.ndarray) -> tuple[str, str]:
+    """Friction needed along the arch over time, and its greatest value at each joint."""
+    friction = run.array(name, "required_friction")
+    first, last = np.flatnonzero(moving)[[0, -1]]
+    part = slice(max(first - 1, 0), last + 2)
+    shown = np.where(moving[part, None], np.minimum(friction[part], 1.0), np.nan)
+    with style.figure(8.0, 3.6, columns=2, width_ratios=[2.4, 1]) as (fig, (over_time, along)):
+        joints = np.arange(friction.shape[1])
+        mesh = over_time.pcolormesh(
+            t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True
+        )
+        fig.colorbar(mesh, ax=over_time, label="coefficient of friction needed (1 and above)")
+        over_time.set_xlabel("time [s]")
+        over_time.set_ylabel("joint, 0 at the left springing")
+        over_time.grid(False)
+        along.plot(np.minimum(friction[moving].max(axis=0), 2.0), joints, "o-", color=style.HINGE, markersize=3)
+        along.set_xlabel("greatest friction needed")
+        along.set_ylabel("joint")
+        return style.save(
+            fig, folder, f"{name}-friction"
+        ), "Friction needed along the arch while it rocks (white: at rest)."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

@@ -6,8 +6,11 @@ from typing import Any
 from extrados.decks import block as block_models
 from extrados.decks import masonry
 from extrados.decks import structures as models
+from extrados.decks import vaults
 from extrados.decks.table import Structure
+from extrados.structures import from_vaults
 from extrados.structures.arch import make_arch
+from extrados.structures.arches import make_elliptical_arch, make_pointed_arch
 from extrados.structures.block import make_block
 from extrados.structures.masonry import make_column, make_wall
 
@@ -27,6 +30,20 @@ def make_structure(model: Structure | None, folder: Path) -> Any:
                 model.voussoirs,
                 model.density,
                 model.depth,
+            )
+        case vaults.Vault():
+            return from_vaults.vault(model)
+        case vaults.AisledVault():
+            return from_vaults.church(model)
+        case vaults.Blocks():
+            return from_vaults.blocks(model, folder)
+        case vaults.PointedArch():
+            return make_pointed_arch(
+                model.span, model.radius, model.thickness, model.voussoirs, model.density, model.depth
+            )
+        case vaults.EllipticalArch():
+            return make_elliptical_arch(
+                model.span, model.rise, model.thickness, model.voussoirs, model.density, model.depth
             )
         case block_models.Block():
             return make_block(**model.model_dump(include=BLOCK_KEYS))

@@ -1,0 +1,60 @@
+"""Write docs/verification.md: every row of every case with what was found, grouped by kind of proof."""
+
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "tests" / "cases"))
+
+from expectations import KINDS, Row, load_cases, pick, results_of  # noqa: E402
+
+TITLES = {
+    "exact": "Verification: exact solutions",
+    "peer": "Verification: independent programs",
+    "thesis": "Reproduction of the dissertation",
+    "experiment": "Validation: experiments",
+    "regression": "Regression: unchanged numbers",
+}
+
+
+def shown(value: object) -> str:
+    """A value in a table cell."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def line(case: str, row: Row, found: object) -> str:
+    """One row of a table."""
+    change = ", ".join(f"{k} = {v}" for k, v in row.change)
+    verdict = "" if row.fits(found) else " **differs**"
+    allowed = "" if isinstance(row.value, str) else f" ± {row.allowed:.2g}"
+    note = f" ({row.note})" if row.note else ""
+    return (
+        f"| {case} | {change} | `{row.quantity}` | {shown(row.value)}{allowed} | {shown(found)}{verdict} "
+        f"| {row.source}{note} |"
+    )
+
+
+def main() -> int:
+    """Run all cases; the number of rows that differ."""
+    tables: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    wrong = 0
+    for case in load_cases():
+        for change in dict.fromkeys(row.change for row in case.rows):
+            results = results_of(case, change)
+            for row in (r for r in case.rows if r.change == change):
+                found = pick(results, row.quantity)
+                wrong += not row.fits(found)
+                tables[row.kind].append(line(case.name, row, found))
+        print(case.name, flush=True)
+    parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", ""]
+    for kind, title in TITLES.items():
+        if tables[kind]:
+            head = "| case | change | quantity | expected | found | source |\n|---|---|---|---|---|---|"
+            parts += [f"## {title}", "", f"{len(tables[kind])} rows.", "", head, *tables[kind], ""]
+    (ROOT / "docs" / "verification.md").write_text("\n".join(parts), encoding="utf-8")
+    print(f"docs/verification.md: {sum(map(len, tables.values()))} rows, {wrong} differ")
+    return wrong
+
+
+if __name__ == "__main__":
+    sys.exit(min(main(), 1))
