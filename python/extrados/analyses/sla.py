@@ -87,7 +87,7 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "external_work_J": float(events.external[-1]) if len(events) else None,
         "stored_energy_J": float(events.stored[-1]) if len(events) else None,
         "dissipated_energy_J": float(events.dissipated[-1]) if len(events) else None,
-        "crack_energy_J": float(events.crack[-1]) if len(events) else None,
+        "crack_energy_J": events.crack_total,
         "residual_ratio": float(events.residual.max()) if len(events) else None,
         "guard_checks": events.guard[0],
         "guard_resolutions": events.guard[1],
