@@ -105,7 +105,8 @@ contains
    !> Many runs without histories; run_status tells each member's fate
    subroutine ensemble(nbody, np, kind, bodies, nmotion, channels, terms, npoint, nbreak, sampled, first, segments, &
                        start, step, samples, breaks, linear, harmonic, nrun, run_body, run_motion, run_scale, &
-                       end_time, start_q, tolerance, stop_when_safe, threads, outcome, peak, stop_time, run_status, status)
+                       end_time, start_q, tolerance, stop_when_safe, threads, outcome, peak, stop_time, &
+                       run_status, status)
       use rocking_ensemble, only : run_ensemble, motion_set
       use rocking_response, only : response, response_options
       use common_status, only : status_out_of_memory

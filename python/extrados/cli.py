@@ -80,6 +80,7 @@ def run(
     out: Annotated[Path | None, typer.Option(help="results folder; default results/<deck name>")] = None,
     threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
     resume: Annotated[bool, typer.Option(help="go on from the checkpoint of an interrupted run")] = False,
+    scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the sweeps")] = "",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no answer")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
@@ -97,7 +98,7 @@ def run(
         checked = [read_deck(path) for path in decks]
         for deck in checked:
             progress = _Progress(quiet or as_json)
-            context = Context(deck, threads or default_threads(), progress, resume=resume)
+            context = Context(deck, threads or default_threads(), progress, resume=resume, scheduler=scheduler)
             try:
                 folder, results = run_deck(context, out, figures)
             finally:
@@ -131,6 +132,64 @@ def _tell(deck, results, folder: Path, figures: bool) -> None:
         out_console.print(f"Figures: {folder / 'figures'}", markup=False)
     else:
         out_console.print(f"Results: {folder}", markup=False)
+
+
+@app.command()
+def motion(
+    file: Annotated[str, typer.Argument(help="a record, or extrados:el-centro-1940")],
+    out: Annotated[Path | None, typer.Option(help="results folder; default results/<file name>")] = None,
+    time_step: Annotated[float | None, typer.Option(help="sampling step [s] where the file has none")] = None,
+    unit: Annotated[str | None, typer.Option(help="unit where the file has none: g, m/s^2, cm/s^2 ...")] = None,
+    channel: Annotated[
+        str | None, typer.Option(help="channel of a file with several: number or part of its name")
+    ] = None,
+    baseline: Annotated[str, typer.Option(help="none, mean, linear, quadratic or cubic")] = "none",
+    figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
+    as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
+) -> None:
+    """What a ground motion is, on one page, without a deck."""
+    from extrados.analyses.run import Context, default_threads
+    from extrados.decks.reader import make_deck
+    from extrados.session import run_deck
+
+    record = {
+        "kind": "record",
+        "file": file if file.startswith("extrados:") else str(Path(file).absolute()),
+        "baseline": baseline,
+    }
+    record |= {k: v for k, v in {"time_step": time_step, "unit": unit}.items() if v is not None}
+    if channel is not None:
+        record["channel"] = int(channel) if channel.isdigit() else channel
+    with _errors(as_json):
+        deck = make_deck({"title": Path(file).name, "motion": record, "analysis": {"kind": "motion"}})
+        folder = out or Path("results") / Path(file.removeprefix("extrados:")).stem
+        folder, results = run_deck(Context(deck, default_threads()), folder, figures)
+        if as_json:
+            out_console.print_json((folder / "summary.json").read_text(encoding="utf-8"))
+        else:
+            _motion_page(results[0])
+            _tell(deck, results, folder, figures)
+    raise typer.Exit(0 if results[0].status == "ok" else NOT_DONE)
+
+
+def _motion_page(result) -> None:
+    """The numbers of one motion as a table."""
+    from rich.table import Table
+
+    if result.status != "ok":
+        return
+    table = Table(show_header=False, box=None, pad_edge=False)
+    for key, value in result.results.items():
+        if isinstance(value, dict | list):
+            continue
+        table.add_row(key, f"{value:.5g}" if isinstance(value, float) else str(value))
+    for k, impulse in enumerate(result.results["impulses"], start=1):
+        table.add_row(
+            f"impulse {k}",
+            f"{impulse['amplitude_g']:+.4g} g over {impulse['period_s']:.4g} s from {impulse['start_s']:.3f} s, "
+            f"goodness {impulse['goodness_of_fit']:.2f}",
+        )
+    out_console.print(table)
 
 
 @app.command()

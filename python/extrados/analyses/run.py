@@ -11,19 +11,37 @@ from typing import Any
 
 from extrados.core.errors import Cancelled, CoreError
 from extrados.decks.reader import Deck
+from extrados.limit.solver import NoAnswer
 from extrados.motions.from_deck import make_motion
 from extrados.motions.motion import Motion
 from extrados.motions.records import RecordError
+from extrados.results.checkpoint import Checkpoint
 from extrados.results.model import Result
+from extrados.structures.builder import BadGeometry
 from extrados.structures.from_deck import make_structure
 
 #: Analysis kind -> module with run(context, options) -> Result
 DRIVERS = {
     "tilt": "extrados.analyses.tilt",
+    "thrust": "extrados.analyses.thrust",
+    "sweep": "extrados.analyses.sweep",
+    "survey": "extrados.analyses.survey",
+    "supports": "extrados.analyses.supports",
+    "moving-load": "extrados.analyses.moving_load",
     "rocking": "extrados.analyses.rocking",
     "failure-domain": "extrados.analyses.failure_domain",
     "assessment": "extrados.analyses.assessment",
+    "fragility": "extrados.analyses.fragility",
+    "resonance": "extrados.analyses.resonance",
+    "rocking-spectrum": "extrados.analyses.rocking_spectrum",
+    "harmonic-map": "extrados.analyses.harmonic_map",
+    "code-checks": "extrados.analyses.code_checks",
+    "motion": "extrados.analyses.motion_study",
+    "shake-table": "extrados.analyses.shake_table",
     "sla": "extrados.analyses.sla",
+    "dem": "extrados.analyses.dem",
+    "dem-domain": "extrados.analyses.dem_domain",
+    "dem-parameters": "extrados.analyses.dem_parameters",
 }
 
 
@@ -34,19 +52,29 @@ class Refused(Exception):
 @dataclass
 class Context:
     """What every driver is given. `progress(done, total, text)` may be called often; `out` is the results
-    folder of the run, `resume` asks to go on from a checkpoint there."""
+    folder of the run, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
+    dask.distributed scheduler for sweeps."""
 
     deck: Deck
     threads: int = 1
     progress: Callable[[float, float, str], None] = lambda done, total, text: None
     out: Path | None = None
     resume: bool = False
+    scheduler: str = ""
     warnings: list[str] = field(default_factory=list)
 
     @cached_property
     def structure(self) -> Any:
-        """The structure of the deck as blocks and joints, or as a mesh."""
-        return make_structure(self.deck.structure, self.deck.folder)
+        """The structure of the deck as blocks and joints, or as a mesh; Refused where it cannot be built."""
+        try:
+            return make_structure(self.deck.structure, self.deck.folder)
+        except BadGeometry as error:
+            raise Refused(str(error)) from None
+
+    @cached_property
+    def checkpoint(self) -> Checkpoint | None:
+        """Where sweeps keep finished batches; None without a results folder."""
+        return None if self.out is None else Checkpoint(self.out, self.deck.identity, self.resume)
 
     @cached_property
     def motion(self) -> Motion:
@@ -81,7 +109,7 @@ def run_analyses(context: Context) -> list[Result]:
             result = Result(options.kind, "interrupted", "interrupted before it had a result")
         except MemoryError as error:
             result = Result(options.kind, "failed", str(error) or "not enough memory")
-        except CoreError as error:
+        except (CoreError, NoAnswer) as error:
             result = Result(options.kind, "failed", str(error))
         result.seconds = time.perf_counter() - begin
         stopped = result.status == "interrupted"

@@ -1,89 +1,164 @@
-"""tilt: the horizontal acceleration at which the arch becomes a mechanism (thesis 3.3)."""
+"""tilt: the horizontal acceleration at which a structure becomes a mechanism (thesis chapter 3)."""
 
 import numpy as np
 
-from extrados.analyses.arch_model import ArchModel
+from extrados.analyses.limit_common import (
+    answer_of, fracture_of, geometry_arrays, graphic_arrays, hinge_rows, reaction_rows, state_arrays,
+)  # fmt: skip
 from extrados.analyses.run import Context
-from extrados.decks.analyses import Tilt
-from extrados.limit.programme import LimitAnalysis, State
+from extrados.decks.limit import Tilt
+from extrados.limit.answer import Answer
+from extrados.limit.fracture import Fracture
+from extrados.limit.motion import finite_motion
+from extrados.limit.programme import NoEquilibrium
 from extrados.results.model import Array, Result
 from extrados.structures.assembly import Assembly
 
-
-def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
-    """What every picture of the structure needs."""
-    outlines = [np.asarray(o) for o in assembly.outlines]
-    return {
-        "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first ends of the joints (intrados)"),
-        "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second ends of the joints (extrados)"),
-        "outline": Array(
-            np.concatenate(outlines), ("vertex", "axis"), "m", "outlines of the blocks, one after the other"
-        ),
-        "outline_start": Array(
-            np.cumsum([0, *map(len, outlines)]),
-            ("block_edge",),
-            "",
-            "first vertex of each block, and the end",
-        ),
-        "centroid": Array(assembly.centroid, ("block", "axis"), "m", "centroids of the blocks"),
-    }
+__all__ = ["geometry_arrays", "run", "state_arrays"]
 
 
-def state_arrays(assembly: Assembly, name: str, state: State, about: str) -> dict[str, Array]:
-    """A thrust line and its forces under names that begin with `name`."""
-    return {
-        f"{name}_point": Array(state.points(assembly), ("joint", "axis"), "m", f"thrust line {about}"),
-        f"{name}_normal": Array(state.normal, ("joint",), "N", f"compression across the joints {about}"),
-        f"{name}_shear": Array(state.shear, ("joint",), "N", f"shear along the joints {about}"),
-        f"{name}_friction": Array(state.friction, ("joint",), "", f"coefficient of friction needed {about}"),
-    }
+def degrees(gamma: float) -> float:
+    """Tilt of the ground at which gravity has a sideways part of gamma (thesis Eq. 3.1)."""
+    return float(np.degrees(np.arctan(gamma)))
 
 
 def run(context: Context, options: Tilt) -> Result:
     """Capacity both ways, hinges, mechanism, thrust line at collapse, least and greatest thrust upright."""
-    model = ArchModel(context.structure)
-    arch = model.arch
-    _ = model.collapse  # refuses an arch that cannot stand, with the minimum thickness
-    limit = model.limit if options.friction is None else LimitAnalysis(arch, options.friction)
-    if options.friction is not None and not limit.stands():
-        from extrados.analyses.run import Refused
-
-        raise Refused(
-            f"with a coefficient of friction of {options.friction:g} the arch slides apart under its own weight; "
-            f"without sliding it needs {model.limit.thrust(0)[0].friction.max():.3f} at the least thrust"
-        )
-    state, mechanism = limit.collapse(1)
-    back, _ = limit.collapse(-1)
-    least, most = limit.thrust(0)
-    tilt = float(np.degrees(np.arctan(state.gamma)))
-    hinges = [{"joint": j, "side": side} for j, side in mechanism.hinges]
+    assembly: Assembly = context.structure
+    answer = answer_of(assembly, options)
+    state, mechanism = answer.collapse_state, answer.mechanism
+    hinges = hinge_rows(assembly, mechanism.hinges, mechanism.pivot)
     result = Result("tilt")
     result.results = {
         "collapse_acceleration_g": state.gamma,
-        "collapse_acceleration_opposite_g": -back.gamma,
-        "tilt_angle_deg": tilt,
+        "collapse_acceleration_opposite_g": -answer.back_state.gamma,
+        "tilt_angle_deg": degrees(state.gamma),
+        "tilt_angle_opposite_deg": degrees(-answer.back_state.gamma),
         "load_direction": "+x",
         "hinges": hinges,
         "sliding_joints": mechanism.sliding,
+        "hinges_opposite": hinge_rows(assembly, answer.back_mechanism.hinges, answer.back_mechanism.pivot),
+        "touching_joints": answer.touching,
         "required_friction": float(state.friction.max()),
         "required_friction_joint": int(state.friction.argmax()),
-        "thrust_min_N": limit.horizontal(least, 0),
-        "thrust_max_N": limit.horizontal(most, 0),
-        "weight_N": limit.forces.weight,
-        "duality_gap": abs(state.gamma - mechanism.upper_bound),
+        "geometric_safety_factor": answer.safety,
+        "weight_N": answer.loads.scale,
+        "depth_m": assembly.depth,
+        "reactions": reaction_rows(answer, state),
+        **_thrusts(answer),
+        **assembly.measures,
+        "duality_gap": answer.gap,
     }
     result.arrays = {
-        **geometry_arrays(arch),
-        **state_arrays(arch, "collapse", state, "at collapse, load to +x"),
-        **state_arrays(arch, "least", least, "of least thrust, upright"),
-        **state_arrays(arch, "most", most, "of greatest thrust, upright"),
+        **geometry_arrays(assembly),
+        **state_arrays(assembly, "collapse", state, "at collapse, load to +x"),
+        **graphic_arrays(answer, "collapse", state, "at collapse, load to +x"),
         "velocity": Array(mechanism.velocity, ("block", "component"), "m, m, rad", "mechanism: x, y, rotation"),
-    }
-    where = ", ".join(f"{h['side']} at joint {h['joint']}" for h in hinges)
-    slides = f"; joints {', '.join(map(str, mechanism.sliding))} slide" if mechanism.sliding else ""
-    result.answer = (
-        f"The arch becomes a mechanism at a constant horizontal acceleration of {state.gamma:.4f} g, "
-        f"or when its base is tilted by {tilt:.2f} degrees. Pushed to +x it hinges at the {where}{slides} "
-        f"(joint 0 is the left springing). Friction of {result.results['required_friction']:.2f} is needed."
-    )
+        "mechanism_pose": Array(
+            finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad",
+            "the mechanism carried on: places of the centroids, rotations",
+        ),
+    }  # fmt: skip
+    if assembly.chains:
+        first = next(iter(assembly.chains))
+        for word, state_of in (("least", answer.least[first]), ("most", answer.most[first])):
+            about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
+            result.arrays.update(state_arrays(assembly, word, state_of, about))
+            result.arrays.update(graphic_arrays(answer, word, state_of, about))
+    if options.fracture:
+        _fracture(assembly, options, answer, result)
+    result.answer = _words(assembly, answer, hinges, result)
+    if getattr(context.deck.structure, "preset", None):
+        result.warnings.append(
+            f'the sizes of preset "{context.deck.structure.preset}" are inferred or guessed, not taken from a survey'
+        )
     return result
+
+
+def _thrusts(answer: Answer) -> dict[str, object]:
+    """Least and greatest horizontal thrust upright of each chain [N]; the first also by the common names."""
+
+    def horizontal(name: str, state) -> float:
+        return abs(float(state.force(answer.assembly)[answer.assembly.chains[name][0], 0]))
+
+    table = {
+        name: {"min_N": horizontal(name, answer.least[name]), "max_N": horizontal(name, answer.most[name])}
+        for name in answer.assembly.chains
+    }
+    if not table:
+        return {}
+    first = next(iter(table.values()))
+    return {"thrust_min_N": first["min_N"], "thrust_max_N": first["max_N"], "thrusts": table}
+
+
+def _fracture(assembly: Assembly, options: Tilt, answer: Answer, result: Result) -> None:
+    """Add the capacity with a cracked buttress beside the monolithic one."""
+    block = assembly.buttresses[-1] if assembly.buttresses else None
+    try:
+        found: Fracture | None = fracture_of(assembly, options)
+    except NoEquilibrium:
+        result.results["fracture"] = {"stands": False}
+        result.warnings.append("with its leeward buttress cracked the structure cannot stand at any tilt to +x")
+        return
+    if found is None:
+        result.results["fracture"] = {"cracks": False, "collapse_acceleration_g": answer.gamma, "ratio": 1.0}
+        return
+    result.results["fracture"] = {
+        "cracks": True,
+        "buttress": assembly.block_names[block],
+        "collapse_acceleration_g": found.gamma,
+        "tilt_angle_deg": degrees(found.gamma),
+        "ratio": found.gamma / answer.gamma,
+        "crack_height_m": found.height,
+        "crack_height_ratio": found.height_ratio,
+        "resultant_from_outer_face_ratio": found.section_ratio,
+        "hinges": hinge_rows(found.assembly, found.mechanism.hinges, found.mechanism.pivot),
+    }
+    outlines = found.assembly.outlines
+    result.arrays.update(
+        {
+            "crack": Array(found.line, ("crack_end", "axis"), "m", "fracture line: inner face, outer toe"),
+            "crack_pose": Array(
+                finite_motion(found.assembly, found.mechanism), ("block", "component"), "m, m, rad",
+                "the mechanism with the buttress cracked, carried on",
+            ),
+            "crack_centroid": Array(found.assembly.centroid, ("block", "axis"), "m", "centroids of the cracked blocks"),
+            "crack_outline": Array(
+                np.concatenate(outlines), ("crack_vertex", "axis"), "m", "outlines of the blocks, the buttress cracked"
+            ),
+            "crack_outline_start": Array(
+                np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"
+            ),
+            "crack_point": Array(found.state.points(found.assembly), ("joint", "axis"), "m", "thrust line, cracked"),
+        }
+    )  # fmt: skip
+
+
+def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Result) -> str:
+    gamma, back = answer.gamma, -answer.back_state.gamma
+    what = {"arch": "arch", "vault": "vault on its buttresses", "nave": "church section"}.get(
+        next(iter(assembly.chains), ""), "structure"
+    )
+    where = ", ".join(f"{h['side']} of {h['name']}" for h in hinges)
+    slides = ", ".join(assembly.joint_names[j] for j in answer.mechanism.sliding)
+    text = (
+        f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
+        f"tilted by {degrees(gamma):.2f} degrees. Pushed to +x it hinges at the {where or 'none of its joints'}"
+        f"{'; sliding or parting: ' + slides if slides else ''}. "
+    )
+    if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
+        text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
+    text += (
+        f"Friction of {result.results['required_friction']:.2f} is needed; upright the geometric safety factor is "
+        f"{answer.safety:.2f}."
+    )
+    fracture = result.results.get("fracture", {})
+    if fracture.get("cracks"):
+        text += (
+            f" With the leeward buttress cracked from {fracture['crack_height_m']:.2f} m above its base down to the toe it "
+            f"bears only {fracture['collapse_acceleration_g']:.4f} g ({fracture['tilt_angle_deg']:.2f} degrees), "
+            f"{fracture['ratio']:.2f} of that."
+        )
+    elif fracture.get("cracks") is False:
+        text += " The leeward buttress does not crack before that."
+    return text

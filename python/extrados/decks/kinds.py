@@ -1,9 +1,34 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, motion_analyses, motions, sla, structures, walls
+from extrados.decks import (
+    analyses,
+    block,
+    dem,
+    limit,
+    masonry,
+    motion_analyses,
+    motions,
+    sla,
+    statistics,
+    structures,
+    vaults,
+    walls,
+)
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
-STRUCTURES: tuple[type[Structure], ...] = (structures.Arch, block.Block, walls.Panel, walls.Mesh)
+STRUCTURES: tuple[type[Structure], ...] = (
+    structures.Arch,
+    block.Block,
+    vaults.Vault,
+    vaults.AisledVault,
+    vaults.PointedArch,
+    vaults.EllipticalArch,
+    vaults.Blocks,
+    walls.Panel,
+    walls.Mesh,
+    masonry.Column,
+    masonry.BrickWall,
+)
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
     motions.StepPulse,
@@ -17,13 +42,26 @@ MOTIONS: tuple[type[Motion], ...] = (
     motions.Compatible,
 )
 ANALYSES: tuple[type[Analysis], ...] = (
-    analyses.Tilt,
+    limit.Tilt,
+    limit.Thrust,
+    limit.Sweep,
+    limit.Survey,
+    limit.Supports,
+    limit.MovingLoad,
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,
     sla.Sla,
     motion_analyses.MotionStudy,
     motion_analyses.ShakeTable,
+    statistics.Fragility,
+    statistics.Resonance,
+    statistics.RockingSpectrum,
+    statistics.HarmonicMap,
+    statistics.CodeChecks,
+    dem.Dem,
+    dem.DemDomain,
+    dem.DemParameters,
 )
 
 

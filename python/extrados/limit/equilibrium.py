@@ -9,13 +9,74 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.limit.loads import Loads
 from extrados.structures.assembly import GROUND, Assembly
-
-GRAVITY = 9.80665
 
 
 class Disconnected(ValueError):
     """A block hangs on no joint that leads to the ground."""
+
+
+@dataclass(frozen=True)
+class Tree:
+    """A spanning tree of the blocks, rooted at the ground.
+
+    parent_joint[block] is the joint that carries it; `order` lists the blocks from the ground outward,
+    `preorder` depth first, so that what hangs on the block at place i are places i .. i + subtree[i] - 1.
+    """
+
+    parent_joint: np.ndarray
+    order: list[int]
+    preorder: np.ndarray
+    subtree: np.ndarray
+
+    def loops(self, joints: int) -> np.ndarray:
+        """The joints that close a loop."""
+        closing = np.ones(joints, dtype=bool)
+        closing[self.parent_joint] = False
+        return np.flatnonzero(closing)
+
+
+def spanning_tree(assembly: Assembly) -> Tree:
+    """Breadth first from the ground, which keeps the chains short and the numbers well conditioned."""
+    blocks = len(assembly.mass)
+    touching: list[list[tuple[int, int]]] = [[] for _ in range(blocks + 1)]
+    for j, (a, b) in enumerate(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True)):
+        touching[a].append((j, b))  # GROUND = -1 is the last list
+        touching[b].append((j, a))
+    parent = [-1] * blocks
+    children: list[list[int]] = [[] for _ in range(blocks + 1)]
+    order: list[int] = []
+    front = [GROUND]
+    while front:
+        reached = []
+        for here in front:
+            for j, block in touching[here]:
+                if block != GROUND and parent[block] < 0:
+                    parent[block] = j
+                    children[here].append(block)
+                    reached.append(block)
+        order += reached
+        front = reached
+    if len(order) < blocks:
+        lost = [assembly.block_names[i] for i in range(blocks) if parent[i] < 0]
+        more = f" and {len(lost) - 5} more" if len(lost) > 5 else ""
+        raise Disconnected(f"not connected to the ground by any joint: {', '.join(lost[:5])}{more}")
+    size = [1] * blocks
+    joint_a, joint_b = assembly.a.tolist(), assembly.b.tolist()
+    for block in reversed(order):
+        j = parent[block]
+        below = joint_b[j] if joint_a[j] == block else joint_a[j]
+        if below != GROUND:
+            size[below] += size[block]
+    preorder: list[int] = []
+    stack = children[GROUND][::-1]
+    while stack:
+        block = stack.pop()
+        preorder.append(block)
+        stack += children[block][::-1]
+    pre = np.array(preorder)
+    return Tree(np.array(parent), order, pre, np.array(size)[pre])
 
 
 @dataclass(frozen=True)
@@ -24,14 +85,12 @@ class JointForces:
 
     Each is `rows @ x`, x = (redundants..., gamma, 1), forces divided by `weight` and redundant moments by
     weight times `size`, so that the numbers stay near one. rows has shape (joints, 3, len(x)).
-    `parent_joint[block]`, `order`: the tree that carries each block, from the ground outward.
     """
 
     rows: np.ndarray
     weight: float
     size: float
-    parent_joint: np.ndarray
-    order: list[int]
+    tree: Tree
 
     @property
     def unknowns(self) -> int:
@@ -39,85 +98,48 @@ class JointForces:
         return self.rows.shape[2] - 1
 
 
-def _tree(assembly: Assembly) -> tuple[np.ndarray, list[int]]:
-    """Parent joint of each block and the blocks in breadth-first order from the ground."""
-    touching: list[list[tuple[int, int]]] = [[] for _ in assembly.mass]
-    grounded: list[tuple[int, int]] = []
-    for j, (a, b) in enumerate(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True)):
-        for here, other in ((a, b), (b, a)):
-            if here == GROUND:
-                grounded.append((j, other))
-            else:
-                touching[here].append((j, other))
-    parent = np.full(len(assembly.mass), -1)
-    order: list[int] = []
-    front = grounded
-    while front:
-        reached = []
-        for j, block in front:
-            if block != GROUND and parent[block] < 0:
-                parent[block] = j
-                order.append(block)
-                reached.append(block)
-        front = [(j, other) for block in reached for j, other in touching[block]]
-    if len(order) < len(parent):
-        lost = [assembly.block_names[i] for i in np.flatnonzero(parent < 0)[:5]]
-        raise Disconnected(f"not connected to the ground: {', '.join(lost)}")
-    return parent, order
-
-
-def joint_forces(assembly: Assembly) -> JointForces:
-    """Corner forces of all joints under gravity and gamma times gravity to +x."""
-    parent, order = _tree(assembly)
+def joint_forces(assembly: Assembly, loads: Loads, tree: Tree) -> JointForces:
+    """Corner forces of all joints under the dead loads and gamma times the live loads."""
+    parent = tree.parent_joint
     n_joint = len(assembly.a)
-    in_tree = np.zeros(n_joint, dtype=bool)
-    in_tree[parent] = True
-    loops = np.flatnonzero(~in_tree)
+    loops = tree.loops(n_joint)
     columns = 3 * len(loops) + 2
-    weights = assembly.mass * GRAVITY
-    weight = float(weights.sum())
-    size = float(np.ptp(np.concatenate([assembly.p, assembly.q]), axis=0).max())
+    weight, size = loads.scale, assembly.size
+    unit = weight * np.array([1.0, 1.0, size])
 
     # Resultant on block a of each joint: force x, force y, moment about the origin.
     resultant = np.zeros((n_joint, 3, columns))
-    for k, j in enumerate(loops):
-        middle = 0.5 * (assembly.p[j] + assembly.q[j]) / size
-        resultant[j, 0, 3 * k] = resultant[j, 1, 3 * k + 1] = resultant[j, 2, 3 * k + 2] = 1.0
-        resultant[j, 2, 3 * k] = -middle[1]  # the redundant moment is taken about the joint's middle
-        resultant[j, 2, 3 * k + 1] = middle[0]
-    # What each block still has to hand to its parent joint.
-    load = np.zeros((len(weights), 3, columns))
-    w = weights / weight
-    x, y = assembly.centroid.T / size
-    load[:, 0, -2] = w
-    load[:, 2, -2] = -y * w
-    load[:, 1, -1] = -w
-    load[:, 2, -1] = -x * w
-    for j in loops:
-        if assembly.a[j] != GROUND:
-            load[assembly.a[j]] += resultant[j]
-        if assembly.b[j] != GROUND:
-            load[assembly.b[j]] -= resultant[j]
-    for block in reversed(order):
-        j = parent[block]
-        on_block = -load[block]
-        is_a = assembly.a[j] == block
-        resultant[j] = on_block if is_a else -on_block
-        other = assembly.b[j] if is_a else assembly.a[j]
-        if other != GROUND:
-            load[other] -= on_block
+    load = np.zeros((len(assembly.mass), 3, columns))
+    load[:, :, -2] = loads.live / unit
+    load[:, :, -1] = loads.dead / unit
+    if len(loops):
+        k = 3 * np.arange(len(loops))
+        middle = assembly.middle[loops] / size
+        resultant[loops, 0, k] = resultant[loops, 1, k + 1] = resultant[loops, 2, k + 2] = 1.0
+        resultant[loops, 2, k] = -middle[:, 1]  # the redundant moment is taken about the joint's middle
+        resultant[loops, 2, k + 1] = middle[:, 0]
+        for ends, sign in ((assembly.a[loops], 1.0), (assembly.b[loops], -1.0)):
+            held = ends != GROUND
+            np.add.at(load, ends[held], sign * resultant[loops[held]])
+    # A parent joint hands on all that hangs on it: a difference of running sums along the preorder.
+    running = np.cumsum(load[tree.preorder], axis=0)
+    place = np.arange(len(parent))
+    carried = running[place + tree.subtree - 1]
+    carried[1:] -= running[:-1]
+    joints = parent[tree.preorder]
+    on_a = assembly.a[joints] == tree.preorder
+    resultant[joints] = carried * np.where(on_a, -1.0, 1.0)[:, None, None]
 
     p, q = assembly.p / size, assembly.q / size
     length = assembly.length / size
     normal, tangent = assembly.normal, assembly.tangent
-    chi = tangent[:, 0] * normal[:, 1] - tangent[:, 1] * normal[:, 0]
-    force = resultant[:, :2]
+    chi = (tangent[:, 0] * normal[:, 1] - tangent[:, 1] * normal[:, 0]) / length
 
     def moment_about(point: np.ndarray) -> np.ndarray:
-        return resultant[:, 2] - (point[:, 0, None] * force[:, 1] - point[:, 1, None] * force[:, 0])
+        return resultant[:, 2] - (point[:, 0, None] * resultant[:, 1] - point[:, 1, None] * resultant[:, 0])
 
     rows = np.empty((n_joint, 3, columns))
-    rows[:, 0] = -(chi / length)[:, None] * moment_about(q)
-    rows[:, 1] = (chi / length)[:, None] * moment_about(p)
-    rows[:, 2] = np.einsum("ij,ijk->ik", tangent, force)
-    return JointForces(rows, weight, size, parent, order)
+    rows[:, 0] = -chi[:, None] * moment_about(q)
+    rows[:, 1] = chi[:, None] * moment_about(p)
+    rows[:, 2] = tangent[:, 0, None] * resultant[:, 0] + tangent[:, 1, None] * resultant[:, 1]
+    return JointForces(rows, weight, size, tree)

@@ -1,200 +1,244 @@
-"""The linear programmes of limit analysis, solved by HiGHS; its options and tolerances are set here only."""
+"""The questions of limit analysis put to an assembly: collapse, standing, thrust, safety (thesis chapter 3)."""
 
-from dataclasses import dataclass
-
-import highspy
 import numpy as np
 
-from extrados.limit.equilibrium import JointForces, joint_forces
-from extrados.structures.assembly import GROUND, Assembly
+from extrados.limit.equilibrium import spanning_tree
+from extrados.limit.loads import Loads, tilt_loads
+from extrados.limit.solver import BOUND, NoAnswer, NoEquilibrium, Programme, Solution
+from extrados.limit.states import Mechanism, State, read_mechanism, read_state
+from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
+from extrados.structures.assembly import Assembly
 
-FEASIBILITY = 1e-9
-BOUND = 1e4  # of the scaled unknowns; reached only where the structure cannot be moved at all
+__all__ = ["LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
 
-
-class NoEquilibrium(ValueError):
-    """No admissible thrust line exists for the loads asked for."""
-
-
-@dataclass(frozen=True)
-class State:
-    """One admissible state of the joints: forces in N, positions as fractions of the joints.
-
-    normal, shear (joints); position 0 at p (intrados), 1 at q (extrados); gamma load multiplier.
-    """
-
-    gamma: float
-    normal: np.ndarray
-    shear: np.ndarray
-    position: np.ndarray
-
-    @property
-    def friction(self) -> np.ndarray:
-        """Coefficient of friction needed at each joint."""
-        return np.abs(self.shear) / np.maximum(self.normal, 1e-12 * self.normal.max())
-
-    def points(self, assembly: Assembly) -> np.ndarray:
-        """Where the thrust line meets the joints (joints, 2) [m]."""
-        return assembly.p + self.position[:, None] * (assembly.q - assembly.p)
-
-
-@dataclass(frozen=True)
-class Mechanism:
-    """Velocities of the blocks at collapse (nb, 3): x, y [m/s], spin [rad/s], scaled to unit live-load work.
-
-    hinges: (joint, "intrados" | "extrados"); sliding: joints that slide; opening_p, opening_q, slip of the
-    joints. upper_bound is gamma by the work of these velocities, `defect` the misfit of the loops.
-    """
-
-    velocity: np.ndarray
-    hinges: list[tuple[int, str]]
-    sliding: list[int]
-    opening_p: np.ndarray
-    opening_q: np.ndarray
-    slip: np.ndarray
-    upper_bound: float
-    defect: float
+# Of the total load: how far crushing and dry friction may be from their laws when iteration ends.
+LAW = 1e-9
+ROUNDS = 300
 
 
 class LimitAnalysis:
     """All programmes of one assembly; successive solves start from the last basis."""
 
-    def __init__(self, assembly: Assembly, friction: float | None = None):
-        """`friction`: coefficient of all joints with associated (dilatant) sliding; None forbids sliding."""
+    def __init__(
+        self,
+        assembly: Assembly,
+        friction: float | np.ndarray | None = None,
+        *,
+        strength: float | None = None,
+        associated: bool = True,
+        loads: Loads | None = None,
+        form: str | None = None,
+    ):
+        """`friction`: coefficient of all joints, or one each; None forbids sliding.
+
+        strength: compressive [Pa], a rectangular stress block; associated: sliding dilates by the friction
+        angle (an upper bound), else it is found by iteration without dilatancy; loads: gravity and the same
+        turned to +x unless given; form: "reduced" or "sparse", by the number of loops unless given.
+        """
         self.assembly = assembly
-        self.friction = friction
-        self.forces: JointForces = joint_forces(assembly)
-        rows = self.forces.rows
-        parts = [rows[:, 0], rows[:, 1]]
+        self.friction, self.strength = friction, strength
+        self.associated = associated or friction is None
+        self.loads = tilt_loads(assembly) if loads is None else loads
+        tree = spanning_tree(assembly)
+        loops = len(assembly.a) - len(assembly.mass)
+        if form is None:
+            form = "reduced" if loops <= LOOPS_REDUCED else "sparse"
+        self.system = (Reduced if form == "reduced" else Sparse)(assembly, self.loads, tree)
+        m = len(assembly.a)
+        self._joints = np.arange(m)
+        self._base = self._rows(self._joints, (1.0, 0.0, 0.0)) + self._rows(self._joints, (0.0, 1.0, 0.0))
+        self._cone = None
         if friction is not None:
-            cone = friction * (rows[:, 0] + rows[:, 1])
-            parts += [cone - rows[:, 2], cone + rows[:, 2]]
-        self._rows = np.concatenate(parts)
-        n = self.forces.unknowns
-        solver = highspy.Highs()
-        for option, value in (
-            ("output_flag", False), ("threads", 1), ("presolve", "off"), ("solver", "simplex"),
-            ("primal_feasibility_tolerance", FEASIBILITY), ("dual_feasibility_tolerance", FEASIBILITY),
-        ):  # fmt: skip
-            solver.setOptionValue(option, value)
-        model = highspy.HighsLp()
-        model.num_col_, model.num_row_ = n, len(self._rows)
-        model.col_cost_ = np.zeros(n)
-        model.col_lower_, model.col_upper_ = np.full(n, -BOUND), np.full(n, BOUND)
-        model.row_lower_ = -self._rows[:, -1]
-        model.row_upper_ = np.full(len(self._rows), highspy.kHighsInf)
-        matrix = self._rows[:, :-1]
-        row, column = np.nonzero(matrix)
-        model.a_matrix_.format_ = highspy.MatrixFormat.kRowwise
-        model.a_matrix_.start_ = np.append(0, np.cumsum(np.bincount(row, minlength=len(matrix))))
-        model.a_matrix_.index_ = column
-        model.a_matrix_.value_ = matrix[row, column]
-        solver.passModel(model)
-        self._solver = solver
-        self._columns = np.arange(n, dtype=np.int32)
+            self._mu = np.broadcast_to(np.asarray(friction, dtype=float), m)
+            self._cone = self._sliding(self._mu, np.zeros(m))
+        self._crush = None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
+        self._cuts: Constraints | None = None
+        self._programme: Programme | None = None
 
-    def _solve(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
-        """Minimise cost @ x with gamma in the given range; solution and row duals."""
-        n = self.forces.unknowns
-        self._solver.changeColsCost(n, self._columns, cost)
-        self._solver.changeColBounds(n - 1, *gamma)
-        self._solver.run()
-        status = self._solver.getModelStatus()
-        if status != highspy.HighsModelStatus.kOptimal:
-            raise NoEquilibrium(self._solver.modelStatusToString(status))
-        solution = self._solver.getSolution()
-        return np.array(solution.col_value), np.array(solution.row_dual)
+    @staticmethod
+    def _rows(joint: np.ndarray, coefficient: tuple[float, float, float]) -> Constraints:
+        k = len(joint)
+        return Constraints(joint, np.tile(coefficient, (k, 1)), np.zeros(k))
 
-    def _state(self, x: np.ndarray) -> State:
-        corner = self.forces.rows @ np.append(x, 1.0) * self.forces.weight
-        n_p, n_q = np.maximum(corner[:, 0], 0.0), np.maximum(corner[:, 1], 0.0)
-        normal = n_p + n_q
-        return State(float(x[-1]), normal, corner[:, 2], n_q / np.maximum(normal, 1e-300))
+    def _sliding(self, slope: np.ndarray, reserve: np.ndarray) -> Constraints:
+        """|s| <= slope (n_p + n_q) + reserve."""
+        one = np.ones(len(slope))
+        return Constraints(
+            np.tile(self._joints, 2),
+            np.concatenate([np.column_stack([slope, slope, -one]), np.column_stack([slope, slope, one])]),
+            -np.tile(reserve, 2),
+        )
+
+    def _whole(self, cone: Constraints | None = None) -> Constraints:
+        whole = self._base
+        for part in (cone if cone is not None else self._cone, self._cuts):
+            whole = whole if part is None else whole + part
+        return whole
+
+    def optimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[Solution, Constraints, np.ndarray]:
+        """Minimise under all laws of the joints: solution, the rows it obeys, and the scaled corner forces."""
+        if self.associated:
+            if self._programme is None:
+                self._programme = Programme(self.system, self._whole())
+            return self._crushing(cost, gamma, None)
+        return self._without_dilatancy(cost, gamma)
+
+    def _crushing(
+        self, cost: np.ndarray, gamma: tuple[float, float], cone: Constraints | None
+    ) -> tuple[Solution, Constraints, np.ndarray]:
+        """Tangent planes of min(n_p, n_q) >= N^2 / (2 f L), added where the last solution breaks it."""
+        programme = self._programme if cone is None else Programme(self.system, self._whole(cone))
+        for _ in range(ROUNDS):
+            solution = programme.minimise(cost, gamma)
+            corners = self.system.corners(solution.x)
+            if self._crush is None:
+                return solution, programme.constraints, corners
+            normal = corners[:, 0] + corners[:, 1]
+            need = self._crush * normal**2
+            weak = np.flatnonzero(need - corners[:, :2].min(axis=1) > LAW)
+            if not len(weak):
+                return solution, programme.constraints, corners
+            slope, lower = 2.0 * (self._crush * normal)[weak], -need[weak]
+            zero = np.zeros(len(weak))
+            cuts = Constraints(weak, np.column_stack([1.0 - slope, -slope, zero]), lower) + Constraints(
+                weak, np.column_stack([-slope, 1.0 - slope, zero]), lower
+            )
+            self._cuts = cuts if self._cuts is None else self._cuts + cuts
+            programme = Programme(self.system, self._whole(cone))
+            if cone is None:
+                self._programme = programme
+        raise NoAnswer("the crushing of the joints did not settle")
+
+    def _without_dilatancy(
+        self, cost: np.ndarray, gamma: tuple[float, float]
+    ) -> tuple[Solution, Constraints, np.ndarray]:
+        """Dry friction by iteration after Gilbert, Casapulla and Ahmed (2006).
+
+        Each round holds |s| <= (1 + a) mu N0 - a mu N, whose slope hardly dilates, and moves N0 to the
+        normal forces found; `a` shrinks while the load factor still jumps.
+        """
+        _, _, corners = self._crushing(cost, gamma, self._cone)
+        held = corners[:, 0] + corners[:, 1]
+        dilatancy, last = 0.3, np.inf
+        for _ in range(ROUNDS):
+            cone = self._sliding(-dilatancy * self._mu, (1.0 + dilatancy) * self._mu * held)
+            solution, rows, corners = self._crushing(cost, gamma, cone)
+            normal = corners[:, 0] + corners[:, 1]
+            broken = (np.abs(corners[:, 2]) - self._mu * normal).max()
+            change = abs(solution.value - last)
+            if broken < LAW and change < LAW:
+                return solution, rows, corners
+            if change > 0.1 * abs(solution.value):
+                dilatancy *= 0.7
+            held, last = 0.6 * held + 0.4 * normal, solution.value
+        raise NoAnswer("friction without dilatancy did not settle")
+
+    def _gamma_cost(self, value: float) -> np.ndarray:
+        cost = np.zeros(self.system.unknowns)
+        cost[-1] = value
+        return cost
+
+    def _state(self, solution: Solution, corners: np.ndarray) -> State:
+        return read_state(float(solution.x[self.system.unknowns - 1]), corners, self.loads.scale)
 
     def collapse(self, direction: int = 1) -> tuple[State, Mechanism]:
         """Greatest gamma for the load gamma W to +x (direction 1) or -x (-1), and the mechanism.
 
         gamma is negative where the structure cannot stand upright and needs support from that side.
         """
-        cost = np.zeros(self.forces.unknowns)
-        cost[-1] = -float(direction)
-        x, dual = self._solve(cost, (-BOUND, BOUND))
-        if abs(x[-1]) > 0.99 * BOUND:
-            raise NoEquilibrium("no horizontal load brings it down: the joints hold it from all sides")
-        return self._state(x), self._mechanism(dual, direction)
+        solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
+        if abs(solution.value) > 0.99 * BOUND:
+            raise NoEquilibrium("no such load brings it down: the joints hold it from all sides")
+        motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
+        if isinstance(self.system, Reduced):
+            twist, defect = self.system.velocities(motion)
+        else:
+            twist, defect = self.system.velocities(motion, solution.equations)
+        mechanism = read_mechanism(
+            self.assembly, self.loads, rows, np.maximum(solution.rows, 0.0), motion, twist, defect
+        )
+        return self._state(solution, corners), mechanism
 
-    def stands(self) -> bool:
-        """True where an admissible thrust line exists upright."""
+    def stands(self, gamma: float = 0.0) -> bool:
+        """True where an admissible thrust line exists, upright or at a given gamma."""
         try:
-            self._solve(np.zeros(self.forces.unknowns), (0.0, 0.0))
+            self.optimise(np.zeros(self.system.unknowns), (gamma, gamma))
         except NoEquilibrium:
             return False
         return True
 
     def thrust(self, joint: int, gamma: float = 0.0) -> tuple[State, State]:
         """States of least and greatest horizontal force across `joint` at a fixed gamma."""
-        direction = self.assembly.normal[joint, 0] * (self.forces.rows[joint, 0] + self.forces.rows[joint, 1])
-        direction = direction + self.assembly.tangent[joint, 0] * self.forces.rows[joint, 2]
-        sign = 1.0 if self.assembly.normal[joint, 0] >= 0.0 else -1.0
-        states = [self._state(self._solve(s * sign * direction[:-1], (gamma, gamma))[0]) for s in (1.0, -1.0)]
-        return states[0], states[1]
+        a = self.assembly
+        corner_cost = np.zeros((len(a.a), 3))
+        corner_cost[joint] = a.normal[joint, 0], a.normal[joint, 0], a.tangent[joint, 0]
+        cost = self.system.cost(corner_cost * (1.0 if a.normal[joint, 0] >= 0.0 else -1.0))
+        found = [self.optimise(sign * cost, (gamma, gamma)) for sign in (1.0, -1.0)]
+        least, greatest = (self._state(solution, corners) for solution, _, corners in found)
+        return least, greatest
 
     def horizontal(self, state: State, joint: int) -> float:
         """Horizontal force across a joint in a state [N]."""
-        a = self.assembly
-        return abs(float(a.normal[joint, 0] * state.normal[joint] + a.tangent[joint, 0] * state.shear[joint]))
+        return abs(float(state.force(self.assembly)[joint, 0]))
 
-    def _mechanism(self, dual: np.ndarray, direction: int) -> Mechanism:
-        a, m = self.assembly, len(self.assembly.a)
-        opening_p, opening_q = np.maximum(dual[:m], 0.0), np.maximum(dual[m : 2 * m], 0.0)
-        slip = np.zeros(m)
-        if self.friction is not None:
-            one, two = np.maximum(dual[2 * m : 3 * m], 0.0), np.maximum(dual[3 * m :], 0.0)
-            opening_p = opening_p + self.friction * (one + two)
-            opening_q = opening_q + self.friction * (one + two)
-            slip = two - one
-        # Motion of block a relative to block b at each joint, as a twist about the origin.
-        length = a.length / self.forces.size
-        chi = a.tangent[:, 0] * a.normal[:, 1] - a.tangent[:, 1] * a.normal[:, 0]
-        spin = chi * (opening_q - opening_p) / length
-        at_p = opening_p[:, None] * a.normal + slip[:, None] * a.tangent
-        p = a.p / self.forces.size
-        origin = at_p - spin[:, None] * np.stack([-p[:, 1], p[:, 0]], axis=1)
-        relative = np.column_stack([origin, spin])
-        twist = np.zeros((len(a.mass), 3))
-        for block in self.forces.order:
-            j = self.forces.parent_joint[block]
-            first = a.a[j] == block
-            other = a.b[j] if first else a.a[j]
-            base = twist[other] if other != GROUND else 0.0
-            twist[block] = base + (relative[j] if first else -relative[j])
-        ends = [np.where((e != GROUND)[:, None], twist[e], 0.0) for e in (a.a, a.b)]
-        scale = np.abs(twist).max()
-        defect = float(np.abs(ends[0] - ends[1] - relative).max() / scale)
-        c = a.centroid / self.forces.size
-        velocity = np.column_stack(
-            [twist[:, 0] - twist[:, 2] * c[:, 1], twist[:, 1] + twist[:, 2] * c[:, 0], twist[:, 2]]
-        )
-        w = a.mass / a.mass.sum()
-        live = float(w @ velocity[:, 0])
-        upper = float(w @ velocity[:, 1]) / live
+    def central(self, gamma: float = 0.0, start: list[State] | None = None) -> tuple[State, float]:
+        """The most central state at a given gamma, and the least part of the joints' length that holds it.
 
-        size = self.forces.size
-        small = 1e-4
-        at = np.hypot(*(velocity[:, :2]).T).max()
-        hinges, sliding = [], []
-        for j in range(m):
-            speed_p, speed_q = np.hypot(opening_p[j], slip[j]), np.hypot(opening_q[j], slip[j])
-            if max(speed_p, speed_q) < 1e-7 * at:
-                continue
-            if speed_p < small * speed_q:
-                hinges.append((j, "intrados"))
-            elif speed_q < small * speed_p:
-                hinges.append((j, "extrados"))
-            else:
-                sliding.append(j)
-        unit = 1.0 / (abs(live) * size)
-        return Mechanism(
-            velocity * np.array([size, size, 1.0]) * unit, hinges, sliding,
-            opening_p * size * unit, opening_q * size * unit, slip * size * unit, upper, defect,
-        )  # fmt: skip
+        The part is measured about the middle of each joint; its inverse is the geometric safety factor, and
+        above one it says by how much the joints would have to grow. Dinkelbach's iteration on
+        max |n_q - n_p| / N, from the mean of admissible states where some are given. Without crushing.
+        """
+        m = len(self.assembly.a)
+        cost = np.zeros(self.system.unknowns + 1)
+        cost[-1] = -1.0
+        fixed = self._rows(self._joints, (1.0, 1.0, 0.0))
+        if self._cone is not None:
+            fixed = fixed + self._cone
+        part, share = 1.0, np.ones(m)
+        if start:
+            share = np.maximum(sum(s.normal for s in start) / len(start) / self.loads.scale, 1e-12)
+            lean = sum(s.normal * (2.0 * s.position - 1.0) for s in start) / len(start) / self.loads.scale
+            part = float((np.abs(lean) / share).max())
+        for _ in range(50):
+            rows = (
+                self._rows(self._joints, (part + 1.0, part - 1.0, 0.0))
+                + self._rows(self._joints, (part - 1.0, part + 1.0, 0.0))
+                + fixed
+            )
+            slack = np.concatenate([share, share, np.zeros(len(fixed.lower))])
+            solution = Programme(self.system, rows, slack).minimise(cost, (gamma, gamma))
+            corners = self.system.corners(solution.x[:-1])
+            normal = np.maximum(corners[:, 0] + corners[:, 1], 1e-12)
+            new = float((np.abs(corners[:, 1] - corners[:, 0]) / normal).max())
+            if abs(part - new) < 1e-10:
+                return self._unclipped(solution, corners), new
+            part, share = new, normal
+        raise NoAnswer("the most central thrust line did not settle")
+
+    def _unclipped(self, solution: Solution, corners: np.ndarray) -> State:
+        """State whose line may leave the joints: positions below 0 or above 1."""
+        normal = (corners[:, 0] + corners[:, 1]) * self.loads.scale
+        position = corners[:, 1] * self.loads.scale / np.maximum(normal, 1e-300)
+        return State(float(solution.x[self.system.unknowns - 1]), normal, corners[:, 2] * self.loads.scale, position)
+
+    def recentred(self, state: State, moving: list[int]) -> State:
+        """A collapse state with the joints that do not move as far from their ends as may be.
+
+        With one loop, or where stone crushes or slides without dilatancy, the state is left as it is.
+        """
+        loops = len(self.assembly.a) - len(self.assembly.mass)
+        if loops < 2 or self._crush is not None or not self.associated or not moving:
+            return state
+        m = len(self.assembly.a)
+        rows = self._whole()
+        slack = np.zeros(len(rows.lower))
+        still = np.setdiff1d(self._joints, moving)
+        share = np.maximum(state.normal[still] / self.loads.scale, 1e-9)
+        slack[still] = slack[m + still] = share
+        cost = np.zeros(self.system.unknowns + 1)
+        cost[-1] = -1.0
+        # The capacity was found to rounding: the line must be allowed as much.
+        room = 1e-10 * max(1.0, abs(state.gamma))
+        solution = Programme(self.system, rows, slack).minimise(cost, (state.gamma - room, state.gamma + room))
+        found = self._state(solution, self.system.corners(solution.x[:-1]))
+        return State(state.gamma, found.normal, found.shear, found.position)

@@ -20,7 +20,7 @@ from extrados.motions.generated import envelope_parameters
 
 _COARSE_ROUNDS, _FINE_ROUNDS = 12, 40
 _DRAWS = 5  # sets of phases tried for one motion
-_PER_DECADE = 60  # periods at which the spectrum is matched; checked between them too
+_PER_DAMPING = 3.0  # matched periods per decade are this over the damping: resonance peaks are that narrow
 
 
 class NotMatched(ArithmeticError):
@@ -42,6 +42,7 @@ class CompatibleSet:
     envelope: str = "trapezoid"
     rise: float | None = None
     decay: float | None = None
+    known_to: float = np.inf  # longest period at which the target may be asked [s]
 
     @property
     def points(self) -> int:
@@ -49,6 +50,16 @@ class CompatibleSet:
 
     def _periods(self, per_decade: int) -> np.ndarray:
         return np.geomspace(self.shortest, self.longest, int(per_decade * np.log10(self.longest / self.shortest)) + 2)
+
+    @property
+    def _per_decade(self) -> int:
+        return round(_PER_DAMPING / min(self.damping, 0.05))
+
+    def _wide_periods(self) -> np.ndarray:
+        """The band and as much again beyond its long end, so that no strong long waves are left there."""
+        step = 10.0 ** (1.0 / self._per_decade)
+        beyond = [t for t in self.longest * step ** np.arange(1.0, 0.4 * self._per_decade) if t <= self.known_to]
+        return np.concatenate([self._periods(self._per_decade), beyond])
 
     def motion(self, k: int) -> np.ndarray:
         """Motion k (points) [m/s^2]; NotMatched where no draw of phases comes within the tolerance."""
@@ -64,7 +75,7 @@ class CompatibleSet:
         )
 
     def _matched(self, k: int, draw: int) -> np.ndarray:
-        periods, between = self._periods(_PER_DECADE), self._periods(4 * _PER_DECADE)
+        periods, between = self._wide_periods(), self._periods(8 * self._per_decade)
         wanted = self.target(periods)
         motion = best = self._level(self._first(k, draw))
         least = np.inf
@@ -74,12 +85,17 @@ class CompatibleSet:
             if off < least:
                 best, least = motion, off
             motion = self._level(self._filtered(motion, periods, wanted / psa))
-        motion = best
+        motion, trail = best, []
         for _ in range(_FINE_ROUNDS):
-            if self.misfit(motion, between) <= 0.97 * self.tolerance:
+            off = self.misfit(motion, between)
+            trail.append(off)
+            if off <= min(trail):
+                best = motion
+            # done, or no better than eight rounds ago: another draw is cheaper
+            if off <= 0.95 * self.tolerance or (len(trail) > 8 and min(trail[-8:]) > 0.95 * min(trail[:-8])):
                 break
             motion = self._level(self._with_wavelets(motion, periods, wanted))
-        return motion
+        return best
 
     def motions(self, count: int, first: int = 0) -> Iterator[np.ndarray]:
         """Motions first .. first + count - 1, one at a time."""
@@ -92,7 +108,7 @@ class CompatibleSet:
 
     def misfit(self, motion: np.ndarray, periods: np.ndarray | None = None) -> float:
         """Largest relative deviation of the spectrum from the target over the band."""
-        periods = self._periods(4 * _PER_DECADE) if periods is None else periods
+        periods = self._periods(8 * self._per_decade) if periods is None else periods
         psa = core.response_spectra(motion, self.step, periods, [self.damping]).psa[0]
         return float(np.max(np.abs(psa / self.target(periods) - 1.0)))
 
@@ -114,7 +130,7 @@ class CompatibleSet:
         damping = self.damping / (1.0 - np.exp(-2.0 * self.damping * w * strong))
         crossings = np.maximum(w * strong / (2.0 * np.pi), 1.5)
         factor = np.sqrt(2.0 * np.log(2.8 * crossings))
-        psa = self.target(np.clip(2.0 * np.pi / w, 0.0, self.longest))
+        psa = self.target(np.clip(2.0 * np.pi / w, 0.0, min(2.5 * self.longest, max(self.known_to, self.longest))))
         spread = np.maximum(np.pi / (4.0 * damping) - 1.0, 1.0)
         density, below = np.zeros_like(w), 0.0
         step = np.gradient(w)
@@ -129,7 +145,7 @@ class CompatibleSet:
     def _first(self, k: int, draw: int) -> np.ndarray:
         length = self._length()
         frequency = np.arange(length // 2 + 1) / (length * self.step)
-        inside = (frequency >= 0.5 / self.longest) & (frequency <= min(1.5 / self.shortest, 0.45 / self.step))
+        inside = (frequency >= 0.4 / self.longest) & (frequency <= min(1.5 / self.shortest, 0.45 / self.step))
         w = 2.0 * np.pi * frequency[inside]
         amplitude = np.sqrt(2.0 * self._density(w) * (w[1] - w[0]))
         transform = np.zeros(length // 2 + 1, dtype=complex)
@@ -143,13 +159,16 @@ class CompatibleSet:
         return core.fourier_inverse(core.fourier(motion, length) * factor, length)[: self.points]
 
     def _level(self, motion: np.ndarray) -> np.ndarray:
-        """Ends brought to zero over 2 % of the motion, velocity and displacement brought back near zero."""
+        """Waves far longer than the band taken out, ends faded over 2 % of the motion, at rest at the end."""
+        long = self._length()
+        frequency = np.arange(long // 2 + 1) / (long * self.step) * self.longest
+        kept = 0.5 - 0.5 * np.cos(np.pi * np.clip((frequency - 0.15) / 0.2, 0.0, 1.0))
+        out = core.fourier_inverse(core.fourier(motion, long) * kept, long)[: self.points]
         ends = max(2, self.points // 50)
         ramp = 0.5 - 0.5 * np.cos(np.pi * np.arange(ends) / ends)
-        out = motion.copy()
         out[:ends] *= ramp
         out[-ends:] *= ramp[::-1]
-        return processing.baseline(out, self.step, "quadratic")
+        return processing.at_rest(out, self.step)
 
     def _with_wavelets(self, motion: np.ndarray, periods: np.ndarray, wanted: np.ndarray) -> np.ndarray:
         w = 2.0 * np.pi / periods

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from extrados.core.rocking import Ground
 from extrados.decks import motions as models
 from extrados.decks.table import Motion as Model
@@ -94,6 +96,7 @@ def compatible_set(model: models.Compatible, folder: Path) -> CompatibleSet:
         return CompatibleSet(
             target_of(model, folder), model.damping, model.shortest, model.longest, model.tolerance, model.duration,
             model.time_step, model.seed, model.envelope, model.rise, model.decay,
+            model.longest if model.code == "table" else np.inf,
         )  # fmt: skip
     except ValueError as error:
         raise RecordError(f"[motion] compatible: {error}") from None

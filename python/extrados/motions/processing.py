@@ -31,6 +31,14 @@ def baseline(acceleration: np.ndarray, step: float, kind: str) -> np.ndarray:
     return out.reshape(acceleration.shape)
 
 
+def at_rest(acceleration: np.ndarray, step: float) -> np.ndarray:
+    """Motion (points) less two smooth humps over its whole length, so that velocity and displacement end at zero."""
+    x = np.linspace(0.0, 1.0, len(acceleration))
+    humps = np.stack([np.sin(np.pi * x) ** 2, np.sin(np.pi * x) ** 2 * (x - 0.5)])
+    ends = np.array([[part[-1] for part in core.kinematics(row, step)] for row in (acceleration, *humps)])
+    return acceleration - np.linalg.solve(ends[1:].T, ends[0]) @ humps
+
+
 def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: float | None) -> np.ndarray:
     """Zero-phase Butterworth filter of order 4, run forth and back over zero-padded ends; corners in Hz."""
     nyquist = 0.5 / step

@@ -1,4 +1,4 @@
-"""Figures of the arch: tilt, rocking, failure domain, assessment."""
+"""Figures of the arch: rocking, failure domain, assessment."""
 
 import itertools
 from pathlib import Path
@@ -21,60 +21,6 @@ def moved(outline: np.ndarray, centroid: np.ndarray, pose: np.ndarray) -> np.nda
     """An outline carried to a pose x, y, rotation of its centroid."""
     c, s = np.cos(pose[2]), np.sin(pose[2])
     return (outline - centroid) @ np.array([[c, s], [-s, c]]) + pose[:2]
-
-
-def _hinge_points(run: Stored, name: str) -> tuple[np.ndarray, list[str]]:
-    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
-    hinges = run[name]["hinges"]
-    points = np.array([(p if h["side"] == "intrados" else q)[h["joint"]] for h in hinges]).reshape(-1, 2)
-    return points, [f"{letter} (joint {h['joint']})" for letter, h in zip("ABCDEFGH", hinges, strict=False)]
-
-
-def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Thrust line and mechanism at collapse, and the thrust lines upright."""
-    r = run[name]
-    blocks, centroid, velocity = outlines(run, name), run.array(name, "centroid"), run.array(name, "velocity")
-    with style.figure(9.0, 4.2, columns=2) as (fig, (left, right)):
-        style.draw_blocks(left, blocks)
-        left.plot(*run.array(name, "collapse_point").T, color=style.THRUST, label="thrust line at collapse")
-        points, labels = _hinge_points(run, name)
-        style.draw_hinges(left, points, labels)
-        left.set_title(f"Collapse at {r['collapse_acceleration_g']:.4f} g to +x (tilt {r['tilt_angle_deg']:.2f} deg)")
-        left.legend(loc="lower center")
-        style.draw_blocks(right, blocks, facecolor="none", linestyle=":", linewidth=0.5)
-        # Small enough a turn to show the mechanism without stretching the blocks
-        amount = 0.06 / max(np.abs(velocity[:, 2]).max(), 1e-300)
-        style.draw_blocks(
-            right,
-            [
-                moved(o, c, np.array([*(c + amount * v[:2]), amount * v[2]]))
-                for o, c, v in zip(blocks, centroid, velocity, strict=True)
-            ],
-        )
-        right.set_title("Mechanism")
-        for ax in (left, right):
-            style.section_axes(ax)
-        tilt = style.save(fig, folder, f"{name}-collapse")
-    with style.figure(6.0, 4.0) as (fig, (ax,)):
-        style.draw_blocks(ax, blocks)
-        ax.plot(
-            *run.array(name, "least_point").T,
-            color=style.THRUST,
-            label=f"least thrust {r['thrust_min_N'] / 1e3:.4g} kN",
-        )
-        ax.plot(
-            *run.array(name, "most_point").T,
-            color=style.HINGE,
-            label=f"greatest thrust {r['thrust_max_N'] / 1e3:.4g} kN",
-        )
-        ax.legend(loc="lower center")
-        ax.set_title("Thrust lines upright")
-        style.section_axes(ax)
-        upright = style.save(fig, folder, f"{name}-upright")
-    return [
-        (tilt, "Thrust line, hinges and mechanism under the greatest constant acceleration."),
-        (upright, "Thrust lines of least and greatest horizontal thrust under self-weight."),
-    ]
 
 
 def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -143,6 +89,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 ax.set_ylim(high[0] - 0.05 * span, high[1] + 0.15 * span)
                 ax.set_title(f"{when:.3f} s")
                 style.section_axes(ax)
+                ax.locator_params(axis="x", nbins=3 if span > high[0] and low[1] - low[0] < span else 9)
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),
@@ -199,13 +146,13 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
             ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
         ):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
-        ax.set_xlabel("duration t_p of the first part [s]" if r["pulse"] == "step" else "period T_p [s]")
+        ax.set_xlabel({"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r["pulse"], "period T_p [s]"))
         ax.set_ylabel("amplitude [g]")
         ax.set_ylim(0.0, a[-1])
         ax.set_xlim(d[0], d[-1])
         ax.legend(loc="upper right", frameon=True)
         ax.grid(False)
-        title = f"Failure domain of {'step' if r['pulse'] == 'step' else 'sine'} pulses"
+        title = f"Failure domain of {r['pulse']} pulses"
         ax.set_title(title)
         return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest failing amplitudes.")]
 

@@ -12,11 +12,26 @@ from extrados.results.store import Stored, StoreError, read, reason
 
 #: Analysis kind -> "module:function" that draws its figures: (run, analysis name, folder) -> [(figure, caption)]
 DRAWERS = {
-    "tilt": "extrados.plots.arch:draw_tilt",
+    "tilt": "extrados.plots.limit:draw_tilt",
+    "thrust": "extrados.plots.limit:draw_thrust",
+    "sweep": "extrados.plots.limit:draw_sweep",
+    "survey": "extrados.plots.limit:draw_survey",
+    "supports": "extrados.plots.limit:draw_supports",
+    "moving-load": "extrados.plots.limit:draw_moving_load",
     "rocking": "extrados.plots.arch:draw_rocking",
     "failure-domain": "extrados.plots.arch:draw_failure_domain",
     "assessment": "extrados.plots.arch:draw_assessment",
+    "fragility": "extrados.plots.statistics:draw_fragility",
+    "resonance": "extrados.plots.statistics:draw_resonance",
+    "rocking-spectrum": "extrados.plots.statistics:draw_rocking_spectrum",
+    "harmonic-map": "extrados.plots.statistics:draw_harmonic_map",
+    "code-checks": "extrados.plots.statistics:draw_code_checks",
+    "motion": "extrados.plots.motion:draw_motion",
+    "shake-table": "extrados.plots.motion:draw_shake_table",
     "sla": "extrados.plots.sla:draw_sla",
+    "dem": "extrados.plots.dem:draw_dem",
+    "dem-domain": "extrados.plots.dem:draw_domain",
+    "dem-parameters": "extrados.plots.dem:draw_parameters",
 }
 
 TEMPLATE = """<!doctype html>

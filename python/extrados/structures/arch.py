@@ -45,6 +45,15 @@ def ring_sector(inner: float, outer: float, angle: float) -> tuple[float, float,
     return area, centre, polar
 
 
+def sector_outlines(centre: np.ndarray, inner: float, outer: float, angle: np.ndarray) -> np.ndarray:
+    """Counter-clockwise outlines (n, 14, 2) of ring sectors between the joint angles, which fall from left to right."""
+    share = np.linspace(0.0, 1.0, 7)
+    first, step = angle[:-1, None], np.diff(angle)[:, None]
+    along = first + step * share
+    up = np.stack([np.cos(along), np.sin(along)], axis=-1)
+    return np.concatenate([centre + inner * up, centre + outer * up[:, ::-1]], axis=1)
+
+
 def make_arch(
     radius: float,
     thickness: float,
@@ -69,14 +78,9 @@ def make_arch(
     def at(r: float, angle: np.ndarray) -> np.ndarray:
         return r * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
 
-    arc = np.linspace(0.0, 1.0, 7)
-    outlines = [
-        np.concatenate([at(inner, joint[i] - delta * arc), at(outer, joint[i + 1] + delta * arc)])[::-1]
-        for i in range(voussoirs)
-    ]
     n = voussoirs
     return Arch(
-        outlines=[o if _area(o) > 0.0 else o[::-1] for o in outlines],
+        outlines=list(sector_outlines(np.zeros(2), inner, outer, joint)),
         mass=np.full(n, area * density * depth),
         centroid=at(centre, middle),
         inertia=np.full(n, polar * density * depth),
@@ -90,9 +94,6 @@ def make_arch(
         radius=radius,
         thickness=thickness,
         embrace=beta,
+        inward=np.full(n + 1, -1),
+        chains={"arch": list(range(n + 1))},
     )
-
-
-def _area(outline: np.ndarray) -> float:
-    x, y = outline.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

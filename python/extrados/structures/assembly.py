@@ -1,6 +1,7 @@
 """The one block-and-joint model of any plane assembly, shared by limit analysis, rocking and discrete elements."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -14,6 +15,13 @@ class Assembly:
     outlines: vertices of each block, counter-clockwise [m]; mass (nb) [kg]; centroid (nb, 2) [m];
     inertia (nb) about the centroids [kg m^2]. Joint j runs from p[j] to q[j] [m] (for arches p is the
     intrados end, q the extrados end) between blocks a[j] and b[j], GROUND for the ground.
+    What drivers and pictures know of its parts: `chains`, name -> joints of an arch from springing to
+    springing; `buttresses`, blocks that stand on the ground at the sides, from left to right, and may
+    crack when tilted; `fill` (nb, 3), mass [kg] that rests on each block and its place x, y [m];
+    `measures`, derived lengths worth telling, by names that end in their unit.
+
+    `inward` (nj) is +1 where the left side of p -> q lies in block a, -1 where the right side does; None
+    lets the centroids decide, which is right for every block that is convex near its joints.
     """
 
     outlines: list[np.ndarray]
@@ -27,26 +35,49 @@ class Assembly:
     depth: float
     block_names: list[str]
     joint_names: list[str]
+    inward: np.ndarray | None = field(default=None, kw_only=True)
+    chains: dict[str, list[int]] = field(default_factory=dict, kw_only=True)
+    buttresses: list[int] = field(default_factory=list, kw_only=True)
+    fill: np.ndarray | None = field(default=None, kw_only=True)
+    measures: dict[str, float] = field(default_factory=dict, kw_only=True)
 
-    @property
+    @cached_property
     def length(self) -> np.ndarray:
         """Length of each joint [m]."""
         return np.hypot(*(self.q - self.p).T)
 
-    @property
+    @cached_property
     def tangent(self) -> np.ndarray:
         """Unit vector of each joint from p to q."""
         return (self.q - self.p) / self.length[:, None]
 
-    @property
+    @cached_property
     def normal(self) -> np.ndarray:
         """Unit normal of each joint, pointing into block a.
 
         Taken from the position of block a itself relative to the joint: the direction between the two
         centroids turns the wrong way where a tall pier meets a flat arch.
         """
-        n = np.stack([-self.tangent[:, 1], self.tangent[:, 0]], axis=1)
-        inner = np.where(self.a != GROUND, self.a, self.b)
-        side = np.einsum("ij,ij->i", self.centroid[inner] - 0.5 * (self.p + self.q), n)
-        side = np.where(self.a != GROUND, side, -side)
-        return n * np.sign(side)[:, None]
+        tangent = self.tangent
+        n = np.column_stack([-tangent[:, 1], tangent[:, 0]])
+        if self.inward is not None:
+            return n * np.asarray(self.inward, dtype=float)[:, None]
+        on_a = self.a != GROUND
+        inner = np.where(on_a, self.a, self.b)
+        side = ((self.centroid[inner] - 0.5 * (self.p + self.q)) * n).sum(axis=1)
+        return n * np.where(np.where(on_a, side, -side) >= 0.0, 1.0, -1.0)[:, None]
+
+    @cached_property
+    def middle(self) -> np.ndarray:
+        """Midpoint of each joint (nj, 2) [m]."""
+        return 0.5 * (self.p + self.q)
+
+    @cached_property
+    def size(self) -> float:
+        """Greatest extent of the joints [m], the scale of lengths."""
+        ends = np.concatenate([self.p, self.q])
+        return float((ends.max(axis=0) - ends.min(axis=0)).max())
+
+    def joints_of(self, block: int) -> np.ndarray:
+        """Joints that bound a block."""
+        return np.flatnonzero((self.a == block) | (self.b == block))

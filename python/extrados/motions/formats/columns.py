@@ -18,35 +18,35 @@ def read(text: Lines) -> list[Record]:
     if not rows:
         raise text.error(0, "holds no numbers; expected acceleration, or time and acceleration, in columns")
     _refuse_decimal_commas(text, [at for at, _ in rows])
-    widths = {len(row) for _, row in rows}
-    values = text.numbers(rows)
+    width = len(rows[0][1])
+    odd = next((at for at, row in rows[:-1] if len(row) != width), None)
+    if odd is not None:
+        raise text.error(odd, f"{len(text[odd].split())} columns where {width} stood before")
+    short = len(rows[-1][1]) != width  # the last row of a path file may be
+    table = text.numbers(rows[:-1] if short else rows).reshape(-1, width)
     said = " \n".join(header)
     unit = unit_in(said)
+    if width > 1 and (width == 2 or _is_time(table[:, 0])):
+        if short:
+            raise text.error(rows[-1][0], f"{len(rows[-1][1])} columns where {width} stood before: the file is cut off")
+        step = _step(text, rows, table[:, 0])
+        names = _names(header, width)
+        return [
+            Record(
+                text.path.stem,
+                table[:, k].copy(),
+                step,
+                unit_in(names[k]) or unit,
+                component=names[k] if width > 2 else "",
+            )
+            for k in range(1, width)
+        ]
+    values = np.append(table.ravel(), text.numbers(rows[-1:])) if short else table.ravel()
     steps = re.search(
         r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d*\.?\d+)\s*s",
         said,
         re.I,
     )
-    if len(widths) == 1 and (width := widths.pop()) > 1:
-        table = values.reshape(-1, width)
-        time = table[:, 0]
-        ascends = len(time) > 2 and bool(np.all(np.diff(time) > 0.0))
-        if width == 2 or (ascends and _even(time)):
-            step = _step(text, rows, time)
-            names = _names(header, width)
-            return [
-                Record(
-                    text.path.stem,
-                    table[:, k].copy(),
-                    step,
-                    unit_in(names[k]) or unit,
-                    component=names[k] if width > 2 else "",
-                )
-                for k in range(1, width)
-            ]
-    elif any(len(row) != len(rows[0][1]) for _, row in rows[:-1]):
-        at = next(at for at, row in rows if len(row) != len(rows[0][1]))
-        raise text.error(at, f"{len(text[at].split())} columns where {len(rows[0][1])} stood before")
     step = text.step(steps[1], 0) if steps else None
     return [Record(text.path.stem, values, step, unit)]
 
@@ -86,9 +86,12 @@ def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:
         raise text.error(lines[0], f"'{sample[0].strip()[:40]}' holds decimal commas; the decimal sign is a point")
 
 
-def _even(time: np.ndarray) -> bool:
-    steps = np.diff(time)
-    return bool(np.all(np.abs(steps - np.median(steps)) <= 0.02 * np.median(steps)))
+def _is_time(column: np.ndarray) -> bool:
+    """True for a column that ascends in equal steps."""
+    steps = np.diff(column)
+    return len(column) > 2 and bool(
+        np.all(steps > 0.0) and np.all(np.abs(steps - np.median(steps)) <= 0.02 * np.median(steps))
+    )
 
 
 def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray) -> float:

@@ -143,6 +143,8 @@ class Lines:
 
 def read_lines(path: Path) -> Lines:
     """The lines of a record; refuses what is no plain text file of a sensible size, before reading it."""
+    if "\0" in str(path):
+        raise RecordError(f"{str(path)!r}: a file name cannot hold a zero byte")
     try:
         if not path.is_file():
             raise RecordError(f"{path}: " + ("is not a plain file" if path.exists() else "no such file"))
@@ -153,8 +155,6 @@ def read_lines(path: Path) -> Lines:
             raw = file.read(LARGEST + 1)
     except OSError as error:
         raise RecordError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except ValueError as error:
-        raise RecordError(f"{path!s}: is not a file name: {error}") from None
     if not raw.strip():
         raise RecordError(f"{path}: is empty; expected an accelerogram")
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):

@@ -1,0 +1,166 @@
+"""The whole answer of limit analysis about an assembly from one call."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.limit.graphic import force_polygon, funicular, pier_line
+from extrados.limit.loads import Loads
+from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.structures.assembly import GROUND, Assembly
+
+TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
+
+
+class CannotStand(ValueError):
+    """No admissible thrust line exists upright; the text says where it fails and by how much."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Collapse to +x and to -x, and the states upright.
+
+    collapse_state is the state at collapse with the free part of the line at its most central; least and
+    most are the states of least and greatest thrust of each chain; central the most central upright line,
+    held by `part` of the joints' length. touching: joints whose end the line touches without a hinge.
+    """
+
+    assembly: Assembly
+    loads: Loads
+    collapse_state: State
+    mechanism: Mechanism
+    back_state: State
+    back_mechanism: Mechanism
+    least: dict[str, State]
+    most: dict[str, State]
+    central: State
+    part: float
+
+    @property
+    def gamma(self) -> float:
+        return self.collapse_state.gamma
+
+    @property
+    def gap(self) -> float:
+        """Greatest difference between the bounds from equilibrium and from the mechanism, both ways."""
+        return max(
+            abs(self.collapse_state.gamma - self.mechanism.upper_bound),
+            abs(self.back_state.gamma - self.back_mechanism.upper_bound),
+        )
+
+    @property
+    def safety(self) -> float:
+        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line."""
+        return 1.0 / self.part
+
+    @property
+    def touching(self) -> list[int]:
+        moving = {j for j, _ in self.mechanism.hinges} | set(self.mechanism.sliding)
+        edge = np.minimum(self.collapse_state.position, 1.0 - self.collapse_state.position) < TOUCH
+        return [j for j in np.flatnonzero(edge).tolist() if j not in moving]
+
+    def polygons(self, state: State) -> dict[str, np.ndarray]:
+        """Force polygon of each chain [N]."""
+        return {name: force_polygon(self.assembly, state, joints) for name, joints in self.assembly.chains.items()}
+
+    def funiculars(self, state: State) -> dict[str, np.ndarray]:
+        """Funicular polygon of each chain [m]."""
+        return {name: funicular(self.assembly, self.loads, state, j) for name, j in self.assembly.chains.items()}
+
+    def lines(self, state: State) -> dict[str, np.ndarray]:
+        """Thrust lines (k, 2) [m]: along each chain, and down each block that stands on the ground."""
+        points = state.points(self.assembly)
+        lines = {name: points[joints] for name, joints in self.assembly.chains.items()}
+        standing = {
+            int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)
+        }
+        for block in sorted(standing - {b for j in self.assembly.chains.values() for b in self._inner(j)}):
+            line = pier_line(self.assembly, self.loads, state, block)
+            if len(line):
+                lines[self.assembly.block_names[block]] = line
+        return lines
+
+    def _inner(self, joints: list[int]) -> set[int]:
+        """Voussoirs of a chain: blocks between two of its joints."""
+        ends = [{int(self.assembly.a[j]), int(self.assembly.b[j])} for j in joints]
+        return {b for one, two in zip(ends[:-1], ends[1:], strict=True) for b in one & two}
+
+    def reactions(self, state: State) -> dict[int, np.ndarray]:
+        """Force (2) [N] of the ground on the block of each joint on the ground."""
+        force = state.force(self.assembly)
+        on_b = self.assembly.a == GROUND
+        grounded = np.flatnonzero(on_b | (self.assembly.b == GROUND))
+        return {int(j): -force[j] if on_b[j] else force[j] for j in grounded}
+
+
+def assess(
+    assembly: Assembly,
+    friction: float | np.ndarray | None = None,
+    *,
+    strength: float | None = None,
+    associated: bool = True,
+    loads: Loads | None = None,
+    limit: LimitAnalysis | None = None,
+) -> Answer:
+    """Everything limit analysis has to say; CannotStand where no line is admissible upright."""
+    limit = limit or LimitAnalysis(assembly, friction, strength=strength, associated=associated, loads=loads)
+    try:
+        ends = {name: limit.thrust(joints[0]) for name, joints in assembly.chains.items()}
+        if not ends and not limit.stands():
+            raise NoEquilibrium
+    except NoEquilibrium:
+        raise CannotStand(why_not(limit)) from None
+    state, mechanism = limit.collapse(1)
+    back, back_mechanism = limit.collapse(-1)
+    moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
+    drawn = limit.recentred(state, moving)
+    central, part = limit.central(start=[state for pair in ends.values() for state in pair])
+    return Answer(
+        assembly, limit.loads, drawn, mechanism, back, back_mechanism,
+        {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()}, central, part,
+    )  # fmt: skip
+
+
+def why_not(limit: LimitAnalysis) -> str:
+    """Why no thrust line is admissible upright: the joints it leaves, and by how much."""
+    assembly = limit.assembly
+    try:
+        interval = sorted(limit.collapse(d)[0].gamma for d in (1, -1))
+    except NoEquilibrium:
+        interval = []
+    if interval and (interval[0] > 0.0 or interval[1] < 0.0):
+        return (
+            f"it stands only when pushed sideways by {interval[0]:.4f} to {interval[1]:.4f} g "
+            f"(tilted by {np.degrees(np.arctan(interval[0])):.2f} to {np.degrees(np.arctan(interval[1])):.2f} degrees)"
+        )
+    try:
+        state, part = limit.central()
+    except NoEquilibrium:
+        if limit.friction is not None:
+            return _slides(limit)
+        return "some block hangs: its joint would have to pull"
+    if part < 1.0 and limit.strength is not None:
+        return f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
+    if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
+        return _slides(limit)
+    off = 2.0 * np.abs(state.position - 0.5)
+    worst = [assembly.joint_names[j] for j in np.flatnonzero(off > part * (1.0 - 1e-6))]
+    return (
+        f"no thrust line stays inside it: the joints would have to be {part:.4f} times as long about their middles, "
+        f"the line leaves first at {', '.join(worst[:6])}"
+    )
+
+
+def _slides(limit: LimitAnalysis) -> str:
+    """The friction that would hold it, by bisection on one coefficient for all joints."""
+
+    def stands(friction: float) -> bool:
+        return LimitAnalysis(limit.assembly, friction, loads=limit.loads).stands()
+
+    low, high = 0.0, 10.0
+    if not stands(high):
+        return "some block hangs: its joint would have to pull"
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if stands(middle) else (middle, high)
+    return f"it slides apart: a coefficient of friction of at least {high:.3f} is needed"

@@ -1,0 +1,51 @@
+"""Loads on the blocks of an assembly: weight, fill and point loads at rest, and what the multiplier gamma scales."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.structures.assembly import Assembly
+
+GRAVITY = 9.80665
+
+
+@dataclass(frozen=True)
+class Loads:
+    """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block."""
+
+    dead: np.ndarray
+    live: np.ndarray
+
+    @property
+    def scale(self) -> float:
+        """The force by which the programmes are scaled [N]."""
+        return float(np.abs(self.dead[:, :2]).sum())
+
+    def with_dead(self, extra: np.ndarray) -> "Loads":
+        return Loads(self.dead + extra, self.live)
+
+
+def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, float]) -> np.ndarray:
+    """One force [N] at a point [m] of one of `count` blocks, as (count, 3)."""
+    load = np.zeros((count, 3))
+    load[block] = force[0], force[1], point[0] * force[1] - point[1] * force[0]
+    return load
+
+
+def tilt_loads(assembly: Assembly, fill_sways: bool = True) -> Loads:
+    """Weight at rest; the live load is weight turned to +x, so that gamma is an acceleration in g.
+
+    The fill of the assembly rests on its blocks; where fill_sways it is accelerated with them.
+    """
+    x, y = assembly.centroid.T
+    weight = assembly.mass * GRAVITY
+    nothing = np.zeros_like(weight)
+    dead = np.column_stack([nothing, -weight, -x * weight])
+    live = np.column_stack([weight, nothing, -y * weight])
+    if assembly.fill is not None:
+        mass, x, y = assembly.fill.T
+        weight = mass * GRAVITY
+        dead = dead + np.column_stack([nothing, -weight, -x * weight])
+        if fill_sways:
+            live = live + np.column_stack([weight, nothing, -y * weight])
+    return Loads(dead, live)

@@ -1,0 +1,121 @@
+"""A collapse mechanism carried through finite rotations, so that drawn blocks keep their shape."""
+
+import numpy as np
+
+from extrados.limit.states import Mechanism
+from extrados.structures.assembly import GROUND, Assembly
+
+STEPS = 12
+SHOWN = 0.06  # of the size of the assembly: the greatest displacement of the drawn mechanism
+TURN = 0.2  # rad: and the greatest rotation
+
+
+def rigid_parts(assembly: Assembly, mechanism: Mechanism) -> np.ndarray:
+    """Number of the rigid part each block moves with; 0 is what stays with the ground."""
+    moving = {j for j, _ in mechanism.hinges} | set(mechanism.sliding)
+    count = len(assembly.mass)
+    leader = list(range(count + 1))  # the last is the ground
+
+    def find(i: int) -> int:
+        while leader[i] != i:
+            leader[i] = leader[leader[i]]
+            i = leader[i]
+        return i
+
+    for j, (a, b) in enumerate(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True)):
+        if j not in moving:
+            leader[find(a if a != GROUND else count)] = find(b if b != GROUND else count)
+    roots = [find(i) for i in range(count + 1)]
+    number = {roots[count]: 0}
+    for root in roots:
+        number.setdefault(root, len(number))
+    return np.array([number[root] for root in roots[:count]])
+
+
+def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None = None) -> np.ndarray:
+    """Poses (nb, 3) of the blocks, x, y of the centroids [m] and rotation [rad], as the mechanism moves on.
+
+    amount: greatest displacement of a centroid on the straight path [m]. The hinges stay closed: Newton's
+    method on their coincidence, the rotation of the fastest part being prescribed. A mechanism that locks
+    before is carried as far as it goes.
+    """
+    part = rigid_parts(assembly, mechanism)
+    parts = int(part.max()) + 1
+    velocity = np.zeros((parts, 3))  # of each part's point at the origin
+    x, y = assembly.centroid.T
+    v = mechanism.velocity
+    at_origin = np.column_stack([v[:, 0] + v[:, 2] * y, v[:, 1] - v[:, 2] * x, v[:, 2]])
+    for k in range(1, parts):
+        velocity[k] = at_origin[part == k].mean(axis=0)
+    fastest = np.hypot(v[:, 0], v[:, 1]).max()
+    total = amount / fastest if amount is not None else SHOWN * assembly.size / fastest
+    if amount is None:
+        total = min(total, TURN / max(float(np.abs(v[:, 2]).max()), 1e-300))
+    number = np.append(part, 0)  # GROUND = -1
+    a, b = number[assembly.a], number[assembly.b]
+    pivot = mechanism.pivot
+    hinges = [(a[j], b[j], assembly.p[j] + pivot[j] * (assembly.q[j] - assembly.p[j])) for j, _ in mechanism.hinges]
+    slides = [(a[j], b[j], assembly.middle[j]) for j in mechanism.sliding]
+    driver = int(np.abs(velocity[:, 2]).argmax())
+    turns = abs(velocity[driver, 2]) * assembly.size > 1e-9 * fastest
+    pose = np.zeros((parts, 3))
+    for step in range(1, STEPS + 1):
+        start = pose
+        pose = pose + velocity * total / STEPS
+        target = velocity * total * step / STEPS
+        for _ in range(20):
+            change = _correct(pose, target, hinges, slides, driver if turns else None, assembly.size)
+            pose = pose + change
+            if np.abs(change).max() < 1e-12 * assembly.size:
+                break
+        else:
+            pose = start
+            break
+    c, s = np.cos(pose[part, 2]), np.sin(pose[part, 2])
+    return np.column_stack([pose[part, 0] + c * x - s * y, pose[part, 1] + s * x + c * y, pose[part, 2]])
+
+
+def _correct(pose, target, hinges, slides, driver, size) -> np.ndarray:
+    """One Newton step, of least size, towards closed hinges and the prescribed rotation."""
+    rows, right = [], []
+
+    def place(k: int, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        c, s = np.cos(pose[k, 2]), np.sin(pose[k, 2])
+        turned = np.array([c * point[0] - s * point[1], s * point[0] + c * point[1]])
+        return pose[k, :2] + turned, np.array([-turned[1], turned[0]])
+
+    def equation(one: int, two: int, parts_one: np.ndarray, parts_two: np.ndarray, error: float) -> None:
+        row = np.zeros(pose.shape)
+        if one:
+            row[one] += parts_one
+        if two:
+            row[two] -= parts_two
+        rows.append(row.ravel())
+        right.append(error)
+
+    for one, two, point in hinges:
+        (at_one, spin_one), (at_two, spin_two) = place(one, point), place(two, point)
+        for axis in (0, 1):
+            unit = np.eye(3)[axis]
+            equation(
+                one, two, unit + [0.0, 0.0, spin_one[axis]], unit + [0.0, 0.0, spin_two[axis]],
+                at_two[axis] - at_one[axis],
+            )  # fmt: skip
+    for one, two, point in slides:
+        (at_one, spin_one), (at_two, spin_two) = place(one, point), place(two, point)
+        wanted = target[one] - target[two]
+        shift = wanted[:2] + wanted[2] * np.array([-point[1], point[0]])
+        for axis in (0, 1):
+            unit = np.eye(3)[axis]
+            equation(
+                one, two, unit + [0.0, 0.0, spin_one[axis]], unit + [0.0, 0.0, spin_two[axis]],
+                shift[axis] + at_two[axis] - at_one[axis],
+            )  # fmt: skip
+    if driver is not None:
+        equation(driver, 0, np.array([0.0, 0.0, size]), np.zeros(3), size * (target[driver, 2] - pose[driver, 2]))
+    if not rows:
+        return np.zeros(pose.shape)
+    scale = np.array([1.0, 1.0, 1.0 / size])  # rotations count as displacements at the size of the assembly
+    matrix = np.array(rows).reshape(-1, *pose.shape) * scale
+    change = np.linalg.lstsq(matrix.reshape(len(rows), -1), np.array(right), rcond=1e-10)[0]
+    return change.reshape(pose.shape) * scale

@@ -1,0 +1,109 @@
+"""What limit analysis says of an assembly: admissible states and collapse mechanisms."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.limit.loads import Loads
+from extrados.limit.systems import Constraints
+from extrados.structures.assembly import Assembly
+
+# A joint whose motion at one end is this much smaller than at the other turns about the former.
+HINGE = 1e-4
+# Joints that move less than this part of the fastest block are at rest.
+AT_REST = 1e-7
+
+
+@dataclass(frozen=True)
+class State:
+    """One admissible state of the joints: forces in N, positions as fractions of the joints.
+
+    normal, shear (joints); position 0 at p (intrados), 1 at q (extrados); gamma load multiplier.
+    """
+
+    gamma: float
+    normal: np.ndarray
+    shear: np.ndarray
+    position: np.ndarray
+
+    @property
+    def friction(self) -> np.ndarray:
+        """Coefficient of friction needed at each joint."""
+        return np.abs(self.shear) / np.maximum(self.normal, 1e-12 * self.normal.max())
+
+    def points(self, assembly: Assembly) -> np.ndarray:
+        """Where the thrust line meets the joints (joints, 2) [m]."""
+        return assembly.p + self.position[:, None] * (assembly.q - assembly.p)
+
+    def force(self, assembly: Assembly) -> np.ndarray:
+        """Force on block a of each joint (joints, 2) [N]."""
+        return self.normal[:, None] * assembly.normal + self.shear[:, None] * assembly.tangent
+
+
+@dataclass(frozen=True)
+class Mechanism:
+    """Velocities of the blocks at collapse (nb, 3): x, y [m/s], spin [rad/s], scaled to unit live-load work.
+
+    hinges: (joint, "intrados" | "extrados"); sliding: joints that slide or part; opening_p, opening_q, slip
+    of the joints. upper_bound is gamma by the work of these velocities, `defect` the misfit of the loops.
+    """
+
+    velocity: np.ndarray
+    hinges: list[tuple[int, str]]
+    sliding: list[int]
+    opening_p: np.ndarray
+    opening_q: np.ndarray
+    slip: np.ndarray
+    upper_bound: float
+    defect: float
+
+    @property
+    def pivot(self) -> np.ndarray:
+        """Place on each joint about which it turns, 0 at p to 1 at q; inside it where the stone crushes."""
+        turn = self.opening_p - self.opening_q
+        return np.divide(self.opening_p, turn, out=np.full_like(turn, np.nan), where=turn != 0.0)
+
+
+def read_state(gamma: float, corners: np.ndarray, scale: float) -> State:
+    """State from scaled corner forces (joints, 3); what is negative by rounding is taken as zero."""
+    n_p, n_q = np.maximum(corners[:, :2].T * scale, 0.0)
+    normal = n_p + n_q
+    return State(gamma, normal, corners[:, 2] * scale, n_q / np.maximum(normal, 1e-300))
+
+
+def read_mechanism(
+    assembly: Assembly,
+    loads: Loads,
+    constraints: Constraints,
+    dual: np.ndarray,
+    motion: np.ndarray,
+    twist: np.ndarray,
+    defect: float,
+) -> Mechanism:
+    """Mechanism from the scaled twists about the origin and the duals of the constraints.
+
+    Virtual work gives the bound: -(dead . u + sum dual * lower) / (live . u).
+    """
+    size = assembly.size
+    unit = loads.scale * np.array([1.0, 1.0, size])
+    live = float((loads.live / unit * twist).sum())
+    dead = float((loads.dead / unit * twist).sum())
+    upper = -(dead + float(dual @ constraints.lower)) / live
+    x, y = (assembly.centroid / size).T
+    velocity = np.column_stack([twist[:, 0] - twist[:, 2] * y, twist[:, 1] + twist[:, 2] * x, twist[:, 2]])
+
+    fastest = np.hypot(velocity[:, 0], velocity[:, 1]).max()
+    opening_p, opening_q, slip = motion.T
+    speed_p, speed_q = np.hypot(opening_p, slip), np.hypot(opening_q, slip)
+    moves = np.maximum(speed_p, speed_q) > AT_REST * fastest
+    # A negative opening is crushing: the joint turns about a place inside it.
+    turns = (np.minimum(speed_p, speed_q) < HINGE * np.maximum(speed_p, speed_q)) | (opening_p * opening_q < 0.0)
+    hinges = [
+        (j, "intrados" if abs(opening_p[j]) < abs(opening_q[j]) else "extrados")
+        for j in np.flatnonzero(moves & turns).tolist()
+    ]
+    scale = 1.0 / (abs(live) * size)
+    return Mechanism(
+        velocity * np.array([size, size, 1.0]) * scale, hinges, np.flatnonzero(moves & ~turns).tolist(),
+        opening_p * size * scale, opening_q * size * scale, slip * size * scale, upper, defect,
+    )  # fmt: skip

@@ -1,0 +1,325 @@
+"""Figures of limit analysis: section, thrust lines, hinges, mechanisms, force polygons, capacity curves."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+
+from extrados.plots import style
+from extrados.results.store import Stored
+
+HATCH = "#cfc6b2"
+CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
+
+
+def paths(run: Stored, name: str, what: str) -> dict[str, np.ndarray]:
+    """Packed paths by their names; points of one path together."""
+    points, start, names = (run.array(name, what + end) for end in ("", "_start", "_of"))
+    return {str(n): points[a:b] for n, a, b in zip(names, start[:-1], start[1:], strict=True)}
+
+
+def outlines(run: Stored, name: str, what: str = "outline") -> list[np.ndarray]:
+    """Outlines of the blocks of an analysis."""
+    vertices, start = run.array(name, what), run.array(name, what + "_start")
+    return [vertices[a:b] for a, b in zip(start[:-1], start[1:], strict=True)]
+
+
+def carried(blocks: list[np.ndarray], centroid: np.ndarray, pose: np.ndarray) -> list[np.ndarray]:
+    """Outlines carried to poses x, y, rotation of their centroids."""
+    found = []
+    for outline, c, (x, y, turn) in zip(blocks, centroid, pose, strict=True):
+        cos, sin = np.cos(turn), np.sin(turn)
+        found.append((outline - c) @ np.array([[cos, sin], [-sin, cos]]) + (x, y))
+    return found
+
+
+def stone(ax: Axes, blocks: list[np.ndarray], *, ghost: bool = False) -> None:
+    """Blocks as hatched stone, or as dotted outlines where only their former place is meant."""
+    if ghost:
+        ax.add_collection(PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=0.4, linestyles=":"))
+    else:
+        ax.add_collection(
+            PolyCollection(blocks, facecolors=style.STONE, edgecolors=HATCH, hatch="////", linewidths=0.0, zorder=1)
+        )
+        width = 0.6 if len(blocks) < 200 else 0.25
+        ax.add_collection(PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=width, zorder=1.5))
+    ax.autoscale_view()
+
+
+def ground(ax: Axes, run: Stored, name: str, joints: list[int]) -> None:
+    """The supports: a stroke under each joint on the ground."""
+    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
+    for j in joints:
+        ax.plot(*np.array([p[j], q[j]]).T, color=style.EDGE, linewidth=2.2, solid_capstyle="butt", zorder=2)
+
+
+def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text: str) -> None:
+    """A dimension line with arrows at both ends and its length beside it."""
+    ax.annotate("", one, two, arrowprops={"arrowstyle": "<->", "linewidth": 0.7, "color": style.EDGE, "shrinkA": 0, "shrinkB": 0})
+    upright = abs(one[0] - two[0]) < abs(one[1] - two[1])
+    ax.annotate(
+        text, (0.5 * (one[0] + two[0]), 0.5 * (one[1] + two[1])), textcoords="offset points",
+        xytext=(-5, 0) if upright else (0, 3), ha="right" if upright else "center", va="center" if upright else "bottom",
+        fontsize=7, color=style.EDGE, rotation=90 if upright else 0,
+    )  # fmt: skip
+
+
+def overall_dimensions(ax: Axes, blocks: list[np.ndarray]) -> None:
+    """Width below and height beside a section."""
+    points = np.concatenate(blocks)
+    (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
+    away = 0.07 * max(right - left, high - low)
+    dimension(ax, (left, low - away), (right, low - away), f"{right - left:.2f} m")
+    dimension(ax, (left - away, low), (left - away, high), f"{high - low:.2f} m")
+    ax.set_xlim(left - 2.6 * away, right + 1.2 * away)
+    ax.set_ylim(low - 2.0 * away, high + 1.2 * away)
+
+
+def thrust_lines(ax: Axes, lines: dict[str, np.ndarray], colour: str | None = None, label: str = "", **options) -> None:
+    """Thrust lines of all chains and piers."""
+    for i, line in enumerate(lines.values()):
+        ax.plot(*line.T, color=colour or style.THRUST, label=label if i == 0 else "_", zorder=3, **options)
+
+
+def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] = CHAIN_COLOURS) -> None:
+    """Force polygons, one colour each: rays from the common pole and load lines."""
+    for i, (name, rays) in enumerate(polygons.items()):
+        colour = colours[i % len(colours)]
+        tips = rays / 1e3
+        for tip in tips[:: max(1, len(tips) // 40)]:
+            ax.plot([0.0, tip[0]], [0.0, tip[1]], color=colour, linewidth=0.4, alpha=0.7)
+        ax.plot(*tips.T, color=colour, linewidth=1.5, marker=".", markersize=2.5, label=name)
+    ax.plot(0.0, 0.0, "o", color="black", markersize=3)
+    ax.annotate("pole", (0.0, 0.0), textcoords="offset points", xytext=(-4, -9), ha="right", fontsize=7)
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.set_xlabel("horizontal [kN/m]")
+    ax.set_ylabel("vertical [kN/m]")
+    ax.legend(loc="best")
+
+
+def hinge_marks(ax: Axes, hinges: list[dict]) -> None:
+    """Hinges as circles with letters."""
+    points = np.array([[h["x_m"], h["y_m"]] for h in hinges]).reshape(-1, 2)
+    style.draw_hinges(ax, points, [chr(65 + i) for i in range(min(len(points), 26))])
+
+
+def _standing(run: Stored, name: str) -> list[int]:
+    return [r["joint"] for r in run[name].get("reactions", [])]
+
+
+def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Section at collapse, mechanism, force polygon; thrust upright; monolithic beside fractured."""
+    r = run[name]
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
+    points = np.concatenate(blocks)
+    tall = float(np.ptp(points[:, 1]) / max(np.ptp(points[:, 0]), 1e-9))
+    height = float(np.clip(3.4 * tall + 1.2, 3.6, 7.0))
+    with_lines = "collapse_line" in run.arrays[name] and len(run.array(name, "collapse_line"))
+    polygons = paths(run, name, "collapse_polygon") if with_lines else {}
+    with style.figure(12.5 if polygons else 9.0, height, columns=3 if polygons else 2) as (fig, axes):
+        stone(axes[0], blocks)
+        ground(axes[0], run, name, _standing(run, name))
+        if with_lines:
+            thrust_lines(axes[0], paths(run, name, "collapse_line"))
+        else:
+            axes[0].plot(*run.array(name, "collapse_point").T, ".", color=style.THRUST, markersize=3, zorder=3)
+        hinge_marks(axes[0], r["hinges"])
+        overall_dimensions(axes[0], blocks)
+        axes[0].set_title(f"Collapse at {r['collapse_acceleration_g']:.4f} g to +x (tilt {r['tilt_angle_deg']:.2f} deg)")
+        stone(axes[1], blocks, ghost=True)
+        stone(axes[1], carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        axes[1].set_title("Mechanism (finite rotations)")
+        for ax in axes[:2]:
+            style.section_axes(ax)
+        if polygons:
+            polygon(axes[2], polygons)
+            axes[2].set_title("Force polygon at collapse")
+        found = [(style.save(fig, folder, f"{name}-collapse"), _caption(r))]
+    if "least_line" in run.arrays[name]:
+        with style.figure(10.0, height, columns=2, width_ratios=[1.3, 1]) as (fig, (ax, forces)):
+            stone(ax, blocks)
+            ground(ax, run, name, _standing(run, name))
+            thrust_lines(ax, paths(run, name, "least_line"), style.THRUST, f"least thrust {_per_metre(r, 'thrust_min_N')}")
+            thrust_lines(ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, 'thrust_max_N')}")
+            ax.legend(loc="lower center")
+            ax.set_title("Thrust lines upright")
+            style.section_axes(ax)
+            first = next(iter(r["thrusts"]))
+            polygon(forces, {
+                f"least, {first}": paths(run, name, "least_polygon")[first],
+                f"greatest, {first}": paths(run, name, "most_polygon")[first],
+            }, (style.THRUST, style.HINGE))  # fmt: skip
+            forces.set_title("Force polygons upright")
+            found.append(
+                (style.save(fig, folder, f"{name}-upright"), "Thrust lines of least and greatest horizontal thrust under self-weight, and their force polygons.")
+            )
+    if r.get("fracture", {}).get("cracks"):
+        found.append(_draw_fracture(run, name, folder, blocks, centroid, height))
+    return found
+
+
+def _per_metre(r: dict, key: str) -> str:
+    return f"{r[key] / r['depth_m'] / 1e3:.4g} kN/m"
+
+
+def _caption(r: dict) -> str:
+    letters = "; ".join(f"{chr(65 + i)} {h['side']} of {h['name']}" for i, h in enumerate(r["hinges"][:26]))
+    free = " Where the line is not fixed by the mechanism its most central course is drawn." if len(r.get("thrusts", {})) > 1 else ""
+    return f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}"
+
+
+def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, height: float) -> tuple[str, str]:
+    r = run[name]
+    f = r["fracture"]
+    with style.figure(9.5, height, columns=2) as (fig, (whole, cracked)):
+        stone(whole, blocks, ghost=True)
+        stone(whole, carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        whole.set_title(f"Monolithic: {r['collapse_acceleration_g']:.4f} g ({r['tilt_angle_deg']:.2f} deg)")
+        stone(cracked, blocks, ghost=True)
+        stone(cracked, carried(outlines(run, name, "crack_outline"), run.array(name, "crack_centroid"), run.array(name, "crack_pose")))
+        cracked.plot(*run.array(name, "crack").T, "--", color=style.HINGE, linewidth=1.4, zorder=4, label="fracture line")
+        cracked.legend(loc="lower center")
+        cracked.set_title(f"Buttress cracked: {f['collapse_acceleration_g']:.4f} g ({f['tilt_angle_deg']:.2f} deg)")
+        for ax in (whole, cracked):
+            style.section_axes(ax)
+        return (
+            style.save(fig, folder, f"{name}-fracture"),
+            f"Mechanisms with the buttress whole and cracked; the crack starts {f['crack_height_m']:.2f} m above the base, the wedge below it stays.",
+        )
+
+
+def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """The three lines and their force polygons; friction needed along the joints."""
+    r = run[name]
+    blocks = outlines(run, name)
+    colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
+    with style.figure(12.0, 4.6, columns=2, width_ratios=[1.4, 1]) as (fig, (ax, forces)):
+        stone(ax, blocks)
+        ground(ax, run, name, [row["joint"] for row in r["central"]["reactions"]])
+        for which, colour in colours.items():
+            thrust_lines(ax, paths(run, name, f"{which}_line"), colour, f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m")
+        overall_dimensions(ax, blocks)
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
+        ax.set_title(f"Thrust lines at {r['gamma_g']:g} g, safety factor {r['geometric_safety_factor']:.2f}")
+        style.section_axes(ax)
+        polygon(forces, {which: paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours}, tuple(colours.values()))
+        forces.set_title(f"Force polygons of the {r['chain']}")
+        found = [(style.save(fig, folder, f"{name}-lines"), "Thrust lines of least, greatest and most central thrust, and their force polygons.")]
+    with style.figure(7.5, 3.4) as (fig, (ax,)):
+        for which, colour in colours.items():
+            ax.plot(run.array(name, f"{which}_friction"), color=colour, marker=".", markersize=3, label=which)
+        ax.set_xlabel("joint")
+        ax.set_ylabel("friction needed")
+        ax.legend()
+        found.append((style.save(fig, folder, f"{name}-friction"), "Coefficient of friction needed at each joint."))
+    return found
+
+
+def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacity curve with numbered mechanisms, and one section of each mechanism."""
+    r = run[name]
+    value, gamma, number = run.array(name, "value"), run.array(name, "gamma"), run.array(name, "mechanism")
+    tilt = np.degrees(np.arctan(gamma))
+    with style.figure(7.5, 4.2) as (fig, (ax,)):
+        ax.plot(value, tilt, "-", color=style.EDGE, linewidth=1.0, zorder=2)
+        for k in range(1, int(number.max()) + 1):
+            here = number == k
+            ax.plot(value[here], tilt[here], "o", markersize=3.5, color=CHAIN_COLOURS[(k - 1) % len(CHAIN_COLOURS)], label=f"mechanism {k}", zorder=3)
+        if "fractured" in run.arrays[name]:
+            cracked = np.degrees(np.arctan(run.array(name, "fractured")))
+            ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
+        for change in r["changes"]:
+            ax.axvline(change["value"], color=style.EDGE, linestyle=":", linewidth=0.7)
+            ax.annotate(
+                f"{change['from'] or 'falls'}|{change['to'] or 'falls'}", (change["value"], 1.0), xycoords=("data", "axes fraction"),
+                ha="center", va="bottom", fontsize=7,
+            )  # fmt: skip
+        ax.plot(r["optimum_value"], r["optimum_tilt_angle_deg"], "*", color="black", markersize=9, zorder=4, label=f"greatest: {r['optimum_value']:.4g}")
+        for gap in r["gaps"]:
+            ax.plot(gap["value"], 0.0, "x", color=style.THRUST, markersize=4)
+        ax.set_ylim(bottom=0.0)
+        ax.set_xlabel(f"{r['vary']}")
+        ax.set_ylabel("tilt at collapse [deg]")
+        ax.legend(loc="best")
+        found = [(style.save(fig, folder, f"{name}-curve"), "Tilt at collapse; dotted: changes of mechanism; crosses: values without a structure that stands.")]
+    if len(run.array(name, "example")):
+        examples, moved = paths(run, name, "example"), paths(run, name, "example_moved")
+        numbers = sorted({int(key.split("/")[0]) for key in examples})[:6]
+        with style.figure(3.4 * len(numbers), 3.8, columns=len(numbers)) as (fig, axes):
+            for ax, k in zip(axes, numbers, strict=True):
+                stone(ax, [v for key, v in examples.items() if key.startswith(f"{k}/")], ghost=True)
+                stone(ax, [v for key, v in moved.items() if key.startswith(f"{k}/")])
+                ax.set_title(f"Mechanism {k}")
+                style.section_axes(ax)
+            found.append((style.save(fig, folder, f"{name}-mechanisms"), "; ".join(f"{m['number']}: {m['hinges']}" for m in r["mechanisms"][:6])))
+    return found
+
+
+def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacities of all sections in order."""
+    gamma = run.array(name, "gamma")
+    names = run.array(name, "section_name")
+    order = np.argsort(gamma)
+    order = order[np.isfinite(gamma[order])]
+    if not len(order):
+        return []
+    few = len(order) <= 40
+    with style.figure(7.5, max(3.0, 0.22 * len(order) + 1.0) if few else 4.0) as (fig, (ax,)):
+        if few:
+            ax.barh(np.arange(len(order)), gamma[order], color=style.STONE, edgecolor=style.EDGE)
+            ax.set_yticks(np.arange(len(order)), [str(names[i]) for i in order])
+            ax.set_xlabel("collapse acceleration [g]")
+        else:
+            ax.plot(gamma[order], (np.arange(len(order)) + 1.0) / len(order), color=style.THRUST)
+            ax.set_xlabel("collapse acceleration [g]")
+            ax.set_ylabel("share of sections at or below")
+        return [(style.save(fig, folder, name), "Collapse acceleration of the sections that stand.")]
+
+
+def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """The arch on the way to its fall, and how the thrust changes."""
+    r = run[name]
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
+    movement, pose, points = (run.array(name, f"shown_{what}") for what in ("movement", "pose", "point"))
+    with style.figure(11.0, 5.6, rows=2, columns=3) as (fig, axes):
+        for ax in axes[len(movement) :]:
+            ax.set_axis_off()
+        for ax, u, at, line in zip(axes, movement, pose, points, strict=False):
+            stone(ax, carried(blocks, centroid, at))
+            ax.plot(*line.T, color=style.THRUST, zorder=3)
+            ax.set_title(f"{u:.3f} m")
+            style.section_axes(ax)
+        found = [(style.save(fig, folder, f"{name}-states"), "The arch as its right support moves (true scale), with the thrust line through its three hinges.")]
+    with style.figure(7.5, 3.4) as (fig, (ax,)):
+        u, force = run.array(name, "movement"), run.array(name, "force")
+        ax.plot(u, force[:, 0] / 1e3, color=style.THRUST, label="horizontal")
+        ax.plot(u, -force[:, 1] / 1e3, color=style.HINGE, label="vertical")
+        for stage in r["stages"][1:]:
+            ax.axvline(stage["movement_m"], color=style.EDGE, linestyle=":", linewidth=0.7)
+        ax.set_xlabel("movement of the right support [m]")
+        ax.set_ylabel("force on it [kN]")
+        ax.legend()
+        found.append((style.save(fig, folder, f"{name}-thrust"), "Force of the arch on the moving support; dotted: a hinge moves."))
+    return found
+
+
+def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacity over place, and the worst place."""
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
+    place, capacity = run.array(name, "place"), run.array(name, "capacity")
+    top = max(float(o[:, 1].max()) for o in blocks)
+    with style.figure(11.0, 4.0, columns=2) as (fig, (ax, curve)):
+        stone(ax, blocks, ghost=True)
+        stone(ax, carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        for x in run.array(name, "axle"):
+            ax.annotate("", (x, top), (x, top + 0.1 * np.ptp(place)), arrowprops={"arrowstyle": "-|>", "color": style.THRUST})
+        ax.set_ylim(top=top + 0.13 * np.ptp(place))
+        ax.set_title("Mechanism under the load at its worst place")
+        style.section_axes(ax)
+        curve.plot(place, capacity / 1e3, color=style.THRUST, marker=".", markersize=3)
+        low = float(np.nanmin(capacity)) / 1e3
+        curve.set_ylim(0.0, min(float(np.nanmax(capacity)) / 1e3 * 1.05, 8.0 * low))
+        curve.set_xlabel("x of the first axle [m]")
+        curve.set_ylabel("load at collapse [kN]")
+        return [(style.save(fig, folder, name), "Load that brings the structure down, over the place of the first axle.")]
