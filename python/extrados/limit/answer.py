@@ -137,18 +137,30 @@ def why_not(limit: LimitAnalysis) -> str:
         state, part = limit.central()
     except NoEquilibrium:
         if limit.friction is not None:
-            return (
-                "even with joints of any length it slides apart: the coefficient of friction is too small "
-                "somewhere, or a block hangs in tension"
-            )
+            return _slides(limit)
         return "some block hangs: its joint would have to pull"
-    if part < 1.0 and (limit.strength is not None or limit.friction is not None):
-        what = "strength and friction" if limit.strength and limit.friction is not None else (
-            "strength" if limit.strength else "friction")  # fmt: skip
-        return f"a thrust line lies inside the joints ({part:.3f} of their length), but their {what} does not carry it"
+    if part < 1.0 and limit.strength is not None:
+        return f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
+    if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
+        return _slides(limit)
     off = 2.0 * np.abs(state.position - 0.5)
     worst = [assembly.joint_names[j] for j in np.flatnonzero(off > part * (1.0 - 1e-6))]
     return (
         f"no thrust line stays inside it: the joints would have to be {part:.4f} times as long about their middles, "
         f"the line leaves first at {', '.join(worst[:6])}"
     )
+
+
+def _slides(limit: LimitAnalysis) -> str:
+    """The friction that would hold it, by bisection on one coefficient for all joints."""
+
+    def stands(friction: float) -> bool:
+        return LimitAnalysis(limit.assembly, friction, loads=limit.loads).stands()
+
+    low, high = 0.0, 10.0
+    if not stands(high):
+        return "some block hangs: its joint would have to pull"
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if stands(middle) else (middle, high)
+    return f"it slides apart: a coefficient of friction of at least {high:.3f} is needed"

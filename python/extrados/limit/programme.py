@@ -12,7 +12,7 @@ from extrados.structures.assembly import Assembly
 __all__ = ["LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
 
 # Of the total load: how far crushing and dry friction may be from their laws when iteration ends.
-LAW = 1e-10
+LAW = 1e-9
 ROUNDS = 300
 
 
@@ -36,7 +36,7 @@ class LimitAnalysis:
         turned to +x unless given; form: "reduced" or "sparse", by the number of loops unless given.
         """
         self.assembly = assembly
-        self.friction = friction
+        self.friction, self.strength = friction, strength
         self.associated = associated or friction is None
         self.loads = tilt_loads(assembly) if loads is None else loads
         tree = spanning_tree(assembly)

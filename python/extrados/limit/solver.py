@@ -8,7 +8,7 @@ from scipy import sparse
 
 from extrados.limit.systems import Constraints, Reduced, Sparse
 
-FEASIBILITY = 1e-9
+FEASIBILITY = 1e-10
 BOUND = 1e5  # of the scaled unknowns; reached only where the structure cannot be moved at all
 INFINITY = highspy.kHighsInf
 

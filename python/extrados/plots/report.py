@@ -21,8 +21,14 @@ DRAWERS = {
     "rocking": "extrados.plots.arch:draw_rocking",
     "failure-domain": "extrados.plots.arch:draw_failure_domain",
     "assessment": "extrados.plots.arch:draw_assessment",
+    "fragility": "extrados.plots.statistics:draw_fragility",
+    "resonance": "extrados.plots.statistics:draw_resonance",
+    "rocking-spectrum": "extrados.plots.statistics:draw_rocking_spectrum",
+    "harmonic-map": "extrados.plots.statistics:draw_harmonic_map",
+    "code-checks": "extrados.plots.statistics:draw_code_checks",
     "motion": "extrados.plots.motion:draw_motion",
     "shake-table": "extrados.plots.motion:draw_shake_table",
+    "sla": "extrados.plots.sla:draw_sla",
 }
 
 TEMPLATE = """<!doctype html>
