@@ -39,6 +39,9 @@ DRIVERS = {
     "motion": "extrados.analyses.motion_study",
     "shake-table": "extrados.analyses.shake_table",
     "sla": "extrados.analyses.sla",
+    "dem": "extrados.analyses.dem",
+    "dem-domain": "extrados.analyses.dem_domain",
+    "dem-parameters": "extrados.analyses.dem_parameters",
 }
 
 

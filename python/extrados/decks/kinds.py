@@ -1,6 +1,19 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, limit, motion_analyses, motions, sla, statistics, structures, vaults, walls
+from extrados.decks import (
+    analyses,
+    block,
+    dem,
+    limit,
+    masonry,
+    motion_analyses,
+    motions,
+    sla,
+    statistics,
+    structures,
+    vaults,
+    walls,
+)
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
 STRUCTURES: tuple[type[Structure], ...] = (
@@ -13,6 +26,8 @@ STRUCTURES: tuple[type[Structure], ...] = (
     vaults.Blocks,
     walls.Panel,
     walls.Mesh,
+    masonry.Column,
+    masonry.BrickWall,
 )
 MOTIONS: tuple[type[Motion], ...] = (
     motions.Constant,
@@ -44,6 +59,9 @@ ANALYSES: tuple[type[Analysis], ...] = (
     statistics.RockingSpectrum,
     statistics.HarmonicMap,
     statistics.CodeChecks,
+    dem.Dem,
+    dem.DemDomain,
+    dem.DemParameters,
 )
 
 
