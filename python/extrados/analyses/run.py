@@ -38,6 +38,10 @@ DRIVERS = {
     "code-checks": "extrados.analyses.code_checks",
     "motion": "extrados.analyses.motion_study",
     "shake-table": "extrados.analyses.shake_table",
+    "sla": "extrados.analyses.sla",
+    "dem": "extrados.analyses.dem",
+    "dem-domain": "extrados.analyses.dem_domain",
+    "dem-parameters": "extrados.analyses.dem_parameters",
 }
 
 

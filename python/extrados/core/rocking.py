@@ -9,6 +9,7 @@ from extrados import _core
 from extrados.core.arch import FourHinge
 from extrados.core.calls import integers, long_call, real
 from extrados.core.errors import check, status_code, status_list
+from extrados.core.ground import Ground, motion_set
 
 OUTCOMES = ("no-hinging", "recovery", "collapse")
 EVENTS = {1: "uplift", 2: "impact", 3: "peak", 4: "rest", 5: "collapse"}
@@ -48,107 +49,6 @@ def block_body(
     if not all(0.0 <= c <= 1.0 for c in restitution):
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
     return Body(2, np.array(values))
-
-
-@dataclass(frozen=True)
-class Ground:
-    """A ground motion as the core knows it, accelerations in m/s^2.
-
-    Either `samples` (channels, points) at `step` from `start`, joined by straight lines; or, on each
-    interval between `breaks`, `linear` (value and slope at its start: segments, channels, 2) plus
-    `harmonic` ((a + b tau) sin(w tau + phi): segments, channels, terms, 4).
-    Channels: 1 horizontal, or horizontal and vertical.
-    """
-
-    samples: np.ndarray | None = None
-    step: float = 0.0
-    start: float = 0.0
-    breaks: np.ndarray | None = None
-    linear: np.ndarray | None = None
-    harmonic: np.ndarray | None = None
-
-    @property
-    def end(self) -> float:
-        """When the motion is over [s]."""
-        if self.samples is not None:
-            return self.start + self.step * (self.samples.shape[1] - 1)
-        return float(self.breaks[-1])
-
-    @property
-    def channels(self) -> int:
-        return self.samples.shape[0] if self.samples is not None else self.linear.shape[1]
-
-    @property
-    def terms(self) -> int:
-        return self.harmonic.shape[2] if self.harmonic is not None else 0
-
-
-@dataclass(frozen=True)
-class _MotionSet:
-    """Motions stored one behind the other, as fortran/rocking/ensemble.f90 reads them."""
-
-    sampled: np.ndarray
-    first: np.ndarray
-    segments: np.ndarray
-    start: np.ndarray
-    step: np.ndarray
-    samples: np.ndarray
-    breaks: np.ndarray
-    linear: np.ndarray
-    harmonic: np.ndarray
-
-
-def _motion_set(grounds: Sequence[Ground]) -> _MotionSet:
-    channels = max(g.channels for g in grounds)
-    terms = max(g.terms for g in grounds)
-    samples, breaks, linear, harmonic = [], [], [], []
-    sampled, first, segments = [], [], []
-    n_sample = n_break = 0
-    for ground in grounds:
-        if ground.samples is not None:
-            block = np.zeros((ground.samples.shape[1], channels))
-            block[:, : ground.channels] = real("samples", ground.samples, (None, None)).T
-            if len(block) < 2 or not ground.step > 0.0:
-                raise ValueError("a sampled motion needs two samples and a step above zero")
-            samples.append(block)
-            sampled.append(1)
-            first.append(n_sample + 1)
-            segments.append(len(block) - 1)
-            n_sample += len(block)
-        else:
-            edges = real("breaks", ground.breaks, (None,))
-            count = len(edges) - 1
-            if count < 1 or np.any(np.diff(edges) <= 0.0):
-                raise ValueError("breaks of a motion must ascend")
-            lines = np.zeros((count + 1, channels, 2))
-            lines[:count, : ground.channels] = real("linear", ground.linear, (count, ground.channels, 2))
-            sines = np.zeros((count + 1, channels, terms, 4))
-            if ground.terms:
-                sines[:count, : ground.channels, : ground.terms] = real(
-                    "harmonic", ground.harmonic, (count, ground.channels, ground.terms, 4)
-                )
-            breaks.append(edges)
-            linear.append(lines)
-            harmonic.append(sines)
-            sampled.append(0)
-            first.append(n_break + 1)
-            segments.append(count)
-            n_break += count + 1
-
-    def stack(parts: list, empty: tuple[int, ...]) -> np.ndarray:
-        return np.concatenate(parts) if parts else np.zeros(empty)
-
-    return _MotionSet(
-        integers("sampled", sampled),
-        integers("first", first),
-        integers("segments", segments),
-        np.array([g.start for g in grounds], dtype=float),
-        np.array([g.step for g in grounds], dtype=float),
-        stack(samples, (1, channels)).T,
-        stack(breaks, (1,)),
-        stack(linear, (1, channels, 2)).T,
-        stack(harmonic, (1, channels, terms, 4)).T,
-    )
 
 
 @dataclass(frozen=True)
@@ -199,7 +99,7 @@ def history(
     """Rock `body` under `ground` times `scale` until collapse or `end_time` [s]."""
     if not (end_time > 0.0 and output_step > 0.0 and 0.0 < tolerance < 1.0):
         raise ValueError("end time, output step and tolerance must be positive")
-    motions = _motion_set([ground])
+    motions = motion_set([ground])
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
     out = long_call(
         _core.api_rocking.history,
@@ -280,7 +180,7 @@ def ensemble(
     With `stop_when_safe` a run ends once the motion is over and the energy left is below the barrier:
     outcome and peak are known then, the number of impacts is not.
     """
-    motions = _motion_set(grounds)
+    motions = motion_set(grounds)
     n = len(run_body)
     run_body, run_motion = integers("run_body", run_body, n), integers("run_motion", run_motion, n)
     if n and not (

@@ -28,6 +28,10 @@ DRAWERS = {
     "code-checks": "extrados.plots.statistics:draw_code_checks",
     "motion": "extrados.plots.motion:draw_motion",
     "shake-table": "extrados.plots.motion:draw_shake_table",
+    "sla": "extrados.plots.sla:draw_sla",
+    "dem": "extrados.plots.dem:draw_dem",
+    "dem-domain": "extrados.plots.dem:draw_domain",
+    "dem-parameters": "extrados.plots.dem:draw_parameters",
 }
 
 TEMPLATE = """<!doctype html>

@@ -1,0 +1,83 @@
+!> What moves a model: gravity, the ground, and supports that give way.
+module dem_loading
+   use common_kinds, only : wp, pi
+   use common_signal, only : signal
+   implicit none
+   private
+   public :: loading, support_move, mean_acceleration, move_rate, movement_end
+
+   !> A support moves by (dx, dy, turn) between two times, starting and ending at rest
+   type :: support_move
+      integer :: body = 0
+      real(wp) :: shift(3) = 0.0_wp        !! [m, m, rad]
+      real(wp) :: start = 0.0_wp           !! [s]
+      real(wp) :: duration = 1.0_wp        !! [s]
+   end type support_move
+
+   type :: loading
+      real(wp) :: gravity(2) = 0.0_wp      !! [m/s^2]
+      type(signal) :: ground               !! acceleration [m/s^2]
+      logical :: moving_base = .false.     !! supports move; otherwise a body force in the ground's frame
+      type(support_move), allocatable :: move(:)
+   end type loading
+
+contains
+
+   !> Mean ground acceleration between two times: exact across jumps, so that a pulse gives its velocity
+   pure subroutine mean_acceleration(ground, segment, t0, t1, mean)
+      type(signal), intent(in) :: ground
+      integer, intent(inout) :: segment       !! where the last call ended; 0 at first
+      real(wp), intent(in) :: t0              !! [s]
+      real(wp), intent(in) :: t1              !! [s]
+      real(wp), intent(out) :: mean(2)        !! horizontal, vertical [m/s^2]
+      real(wp) :: from, to, h, v
+      integer :: k
+
+      mean = 0.0_wp
+      do while (segment <= ground%segments)
+         if (ground%break_time(segment + 1) > t0) exit
+         segment = segment + 1
+      end do
+      if (.not. t1 > t0) return
+      k = segment
+      from = t0
+      do while (k <= ground%segments)
+         to = min(t1, ground%break_time(k + 1))
+         if (to > from) then
+            call ground%value_at(k, 0.5_wp * (from + to), h, v)
+            mean = mean + (to - from) * [h, v]
+            from = to
+         end if
+         if (.not. from < t1) exit
+         k = k + 1
+      end do
+      mean = mean / (t1 - t0)
+   end subroutine mean_acceleration
+
+   !> Velocity of a support that moves, along a raised cosine
+   pure function move_rate(it, t) result(rate)
+      type(support_move), intent(in) :: it
+      real(wp), intent(in) :: t               !! [s]
+      real(wp) :: rate(3)
+      real(wp) :: phase
+      rate = 0.0_wp
+      phase = (t - it%start) / it%duration
+      if (phase > 0.0_wp .and. phase < 1.0_wp) then
+        rate = it%shift / it%duration * (1.0_wp - cos(2.0_wp * pi * phase))
+      end if
+   end function move_rate
+
+   !> When ground and supports have come to rest [s]
+   pure function movement_end(it) result(t)
+      type(loading), intent(in) :: it
+      real(wp) :: t
+      integer :: k
+      t = 0.0_wp
+      if (it%ground%segments > 0) t = it%ground%break_time(it%ground%segments + 1)
+      if (.not. allocated(it%move)) return
+      do k = 1, size(it%move)
+         t = max(t, it%move(k)%start + it%move(k)%duration)
+      end do
+   end function movement_end
+
+end module dem_loading

@@ -1,0 +1,320 @@
+!> A discrete-element model in motion: bodies, contacts and laws, advanced by leap-frog steps.
+module dem_model
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
+   use dem_bodies, only : body, body_set, body_turn
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
+   use dem_law, only : joint_law, act
+   use dem_loading, only : loading, mean_acceleration, move_rate
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: model, advance, critical_step
+
+   type :: model
+      type(body_set) :: set
+      type(contact_set) :: contacts
+      type(joint_law), allocatable :: law(:)
+      type(loading) :: load
+      real(wp) :: mass_damping = 0.0_wp        !! alpha [1/s]
+      real(wp) :: t = 0.0_wp                   !! time of the next forces [s]
+      real(wp) :: step = 0.0_wp                !! [s]
+      real(wp) :: drift = 0.0_wp               !! position step that led here; 0 at the start [s]
+      real(wp) :: kick = 0.0_wp                !! velocity step taken last [s]
+      real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]
+      real(wp) :: pull_before(2) = 0.0_wp      !! and of the one before
+      real(wp) :: base(2) = 0.0_wp             !! velocity of the ground [m/s], moving base only
+      real(wp) :: base_place(2) = 0.0_wp       !! its displacement [m]
+      integer :: segment = 0                   !! of the ground motion
+      integer :: steps = 0
+      logical :: shaking = .false.             !! false while settling: the ground rests
+      logical :: stale = .false.               !! somebody moved far enough to look for contacts again
+   end type model
+
+contains
+
+   !> Up to `count` steps; returns early where the contacts must be searched again
+   subroutine advance(it, count, threads)
+      type(model), intent(inout) :: it
+      integer, intent(in) :: count
+      integer, intent(in) :: threads
+      if (threads > 1) then
+         call advance_threads(it, count, threads)
+      else
+         call advance_alone(it, count)
+      end if
+   end subroutine advance
+
+   subroutine advance_alone(it, count)
+      type(model), intent(inout) :: it
+      integer, intent(in) :: count
+      integer :: n, k
+      do n = 1, count
+         call prepare(it)
+         do k = 1, size(it%set%item)
+            call predict(it, it%set%item(k))
+         end do
+         do k = 1, it%contacts%pairs
+            call touch(it, it%contacts%pair(it%contacts%sequence(k)))
+         end do
+         do k = 1, size(it%set%item)
+            call move(it, it%set%item(k), it%stale)
+         end do
+         call finish(it)
+         if (it%stale) return
+      end do
+   end subroutine advance_alone
+
+   !> The same steps shared among threads: pairs of one colour touch no common body
+   subroutine advance_threads(it, count, threads)
+      type(model), intent(inout) :: it
+      integer, intent(in) :: count
+      integer, intent(in) :: threads
+      integer :: n, k, c
+      logical :: stale
+
+      stale = .false.
+      !$omp parallel default(none) num_threads(threads) shared(it, count, stale) private(n, k, c)
+      do n = 1, count
+         !$omp single
+         call prepare(it)
+         stale = .false.
+         !$omp end single
+         !$omp do schedule(static)
+         do k = 1, size(it%set%item)
+            call predict(it, it%set%item(k))
+         end do
+         !$omp end do
+         do c = 1, it%contacts%colours - it%contacts%alone
+            !$omp do schedule(static)
+            do k = it%contacts%colour_first(c), it%contacts%colour_first(c + 1) - 1
+               call touch(it, it%contacts%pair(it%contacts%sequence(k)))
+            end do
+            !$omp end do
+         end do
+         !$omp single
+         do c = it%contacts%colours - it%contacts%alone + 1, it%contacts%colours
+            do k = it%contacts%colour_first(c), it%contacts%colour_first(c + 1) - 1
+               call touch(it, it%contacts%pair(it%contacts%sequence(k)))
+            end do
+         end do
+         !$omp end single
+         !$omp do schedule(static) reduction(.or. : stale)
+         do k = 1, size(it%set%item)
+            call move(it, it%set%item(k), stale)
+         end do
+         !$omp end do
+         !$omp single
+         it%stale = stale
+         call finish(it)
+         !$omp end single
+         if (it%stale) exit
+      end do
+      !$omp end parallel
+   end subroutine advance_threads
+
+   !> Body force and base velocity of this step
+   subroutine prepare(it)
+      type(model), intent(inout) :: it
+      real(wp) :: ground(2), half
+
+      ! At the very start half a velocity step leads from the initial velocity to the half step.
+      half = 0.5_wp * it%step
+      it%kick = 0.5_wp * it%drift + half
+      it%pull_before = it%pull
+      it%pull = it%load%gravity
+      if (it%shaking) then
+         call mean_acceleration(it%load%ground, it%segment, it%t - 0.5_wp * it%drift, it%t + half, ground)
+         if (it%load%moving_base) then
+            it%base = it%base + it%kick * ground
+         else
+            it%pull = it%pull - ground
+         end if
+      end if
+   end subroutine prepare
+
+   !> Velocity that follows from the forces of the last step; clears the forces
+   pure subroutine predict(it, b)
+      type(model), intent(in) :: it
+      type(body), intent(inout) :: b
+
+      if (b%fixed) then
+         call prescribe(it, b)
+      else
+         b%px = b%vx + it%kick * (b%fx * b%inverse_mass + it%pull(1))
+         b%py = b%vy + it%kick * (b%fy * b%inverse_mass + it%pull(2))
+         b%pspin = b%spin + it%kick * b%moment * b%inverse_inertia
+         ! Work of the ground's part of the body force; gravity has a potential.
+         b%work = b%work + 0.5_wp * it%drift * b%mass * &
+            ((it%pull(1) + it%pull_before(1) - 2.0_wp * it%load%gravity(1)) * b%vx &
+            + (it%pull(2) + it%pull_before(2) - 2.0_wp * it%load%gravity(2)) * b%vy)
+      end if
+      b%fx = 0.0_wp
+      b%fy = 0.0_wp
+      b%moment = 0.0_wp
+      b%touched = .false.
+   end subroutine predict
+
+   !> Velocity of a support in the coming half step
+   pure subroutine prescribe(it, b)
+      type(model), intent(in) :: it
+      type(body), intent(inout) :: b
+      integer :: k
+      real(wp) :: rate(3)
+      rate = [it%base(1), it%base(2), 0.0_wp]
+      if (it%shaking) then
+         do k = 1, size(it%load%move)
+            if (b%number == it%load%move(k)%body) rate = rate + move_rate(it%load%move(k), it%t + 0.5_wp * it%step)
+         end do
+      end if
+      b%px = rate(1)
+      b%py = rate(2)
+      b%pspin = rate(3)
+   end subroutine prescribe
+
+   !> Geometry and law of one pair
+   pure subroutine touch(it, pair)
+      type(model), intent(inout) :: it
+      type(contact_pair), intent(inout) :: pair
+      type(overlap) :: now
+      real(wp) :: distance
+      if (pair%careful) call choose_edges(it%set, it%contacts%skin, pair, distance)
+      associate (a => it%set%item(pair%bodies(1)), b => it%set%item(pair%bodies(2)))
+         call measure(pair, a, b, now)
+         call act(it%law(pair%law), it%kick, it%drift, now, a, b, pair)
+      end associate
+   end subroutine touch
+
+   !> Velocity and position after the step
+   pure subroutine move(it, b, stale)
+      type(model), intent(in) :: it
+      type(body), intent(inout) :: b
+      logical, intent(inout) :: stale
+      real(wp) :: keep, gain
+
+      if (b%fixed) then
+         b%vx = b%px
+         b%vy = b%py
+         b%spin = b%pspin
+      else
+         keep = 1.0_wp
+         gain = it%kick
+         if (it%mass_damping > 0.0_wp) then
+            b%mass_loss = b%mass_loss + it%drift * it%mass_damping * &
+               (b%mass * (b%vx**2 + b%vy**2) + b%inertia * b%spin**2)
+            gain = it%kick / (1.0_wp + 0.5_wp * it%mass_damping * it%kick)
+            keep = (1.0_wp - 0.5_wp * it%mass_damping * it%kick) / (1.0_wp + 0.5_wp * it%mass_damping * it%kick)
+         end if
+         b%vx = keep * b%vx + gain * (b%fx * b%inverse_mass + it%pull(1))
+         b%vy = keep * b%vy + gain * (b%fy * b%inverse_mass + it%pull(2))
+         b%spin = keep * b%spin + gain * b%moment * b%inverse_inertia
+         if (.not. b%touched) then
+            b%airborne = b%airborne + it%step
+            if (b%touching) b%bounces = b%bounces + 1
+         end if
+         b%touching = b%touched
+      end if
+      b%x = b%x + it%step * b%vx
+      b%y = b%y + it%step * b%vy
+      if (abs(b%spin) > 0.0_wp) then
+         b%angle = b%angle + it%step * b%spin
+         call body_turn(b)
+      end if
+      if (abs(b%x - b%seen_x) + abs(b%y - b%seen_y) + b%radius * abs(b%angle - b%seen_angle) &
+         > 0.5_wp * it%contacts%skin) stale = .true.
+   end subroutine move
+
+   subroutine finish(it)
+      type(model), intent(inout) :: it
+      it%base_place = it%base_place + it%step * it%base
+      it%drift = it%step
+      it%t = it%t + it%step
+      it%steps = it%steps + 1
+   end subroutine finish
+
+   !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 below the greatest
+   !> eigenvalue of any body on its springs, twice as stiff where the neighbour moves too [s]
+   subroutine critical_step(it, step, status)
+      type(model), intent(in) :: it
+      real(wp), intent(out) :: step          !! [s]
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: k(:, :)
+      integer :: n, i, side, failed
+      type(overlap) :: now
+      real(wp) :: stiff_n, stiff_s, length, share, greatest
+
+      step = 0.0_wp
+      allocate (k(6, size(it%set%item)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      k = 0.0_wp
+      do n = 1, it%contacts%pairs
+         associate (pair => it%contacts%pair(n), a => it%set%item(it%contacts%pair(n)%bodies(1)), &
+                    b => it%set%item(it%contacts%pair(n)%bodies(2)))
+            call measure(pair, a, b, now)
+            share = merge(1.0_wp, 2.0_wp, a%fixed .or. b%fixed)
+            do i = 1, 2
+               length = 0.5_wp * max(now%width, 0.25_wp * min(pair%reference_length, pair%incident_length))
+               if (pair%point(i)%closed) length = max(length, pair%point(i)%length)
+               stiff_n = share * it%law(pair%law)%normal_stiffness * length
+               stiff_s = share * it%law(pair%law)%shear_stiffness * length
+               do side = 1, 2
+                  associate (c => it%set%item(pair%bodies(side)))
+                     if (c%fixed) cycle
+                     call add(k(:, pair%bodies(side)), c, now%ty(i), -now%tx(i), now%x(i), now%y(i), stiff_n)
+                     call add(k(:, pair%bodies(side)), c, now%tx(i), now%ty(i), now%x(i), now%y(i), stiff_s)
+                  end associate
+               end do
+            end do
+         end associate
+      end do
+      ! A body that touches nothing yet will land, on its longest edge at the worst.
+      do n = 1, size(it%set%parts)
+         associate (c => it%set%item(it%set%parts(n)%owner))
+            if (c%fixed .or. any(k(1:3, it%set%parts(n)%owner) > 0.0_wp)) cycle
+            length = maxval(it%set%edges(it%set%parts(n)%first:it%set%parts(n)%last)%length)
+            call add(k(:, it%set%parts(n)%owner), c, 0.0_wp, 1.0_wp, c%x + 0.5_wp * length, c%y, &
+               2.0_wp * it%law(1)%normal_stiffness * length)
+            call add(k(:, it%set%parts(n)%owner), c, 1.0_wp, 0.0_wp, c%x, c%y - c%radius, &
+               2.0_wp * it%law(1)%shear_stiffness * length)
+         end associate
+      end do
+      greatest = 0.0_wp
+      do n = 1, size(it%set%item)
+         greatest = max(greatest, greatest_eigenvalue(k(:, n)))
+      end do
+      step = 2.0_wp / sqrt(max(greatest, tiny(1.0_wp)))
+   end subroutine critical_step
+
+   !> Add a spring along (dx, dy) at a point to the mass-scaled 3 x 3 stiffness of a body
+   pure subroutine add(k, b, dx, dy, x, y, stiffness)
+      real(wp), intent(inout) :: k(6)        !! xx, yy, zz, xy, xz, yz
+      type(body), intent(in) :: b
+      real(wp), intent(in) :: dx
+      real(wp), intent(in) :: dy
+      real(wp), intent(in) :: x              !! [m]
+      real(wp), intent(in) :: y              !! [m]
+      real(wp), intent(in) :: stiffness      !! [N/m]
+      real(wp) :: g(3)
+      g(1) = dx * sqrt(b%inverse_mass)
+      g(2) = dy * sqrt(b%inverse_mass)
+      g(3) = ((x - b%x) * dy - (y - b%y) * dx) * sqrt(b%inverse_inertia)
+      k = k + stiffness * [g(1)**2, g(2)**2, g(3)**2, g(1) * g(2), g(1) * g(3), g(2) * g(3)]
+   end subroutine add
+
+   !> Greatest eigenvalue of a symmetric 3 x 3 matrix, by its trigonometric formula
+   pure function greatest_eigenvalue(k) result(value)
+      real(wp), intent(in) :: k(6)           !! xx, yy, zz, xy, xz, yz
+      real(wp) :: value
+      real(wp) :: mean, d(3), spread, determinant
+      mean = sum(k(1:3)) / 3.0_wp
+      d = k(1:3) - mean
+      spread = sqrt((sum(d**2) + 2.0_wp * sum(k(4:6)**2)) / 6.0_wp)
+      value = mean
+      if (.not. spread > 0.0_wp) return
+      determinant = d(1) * (d(2) * d(3) - k(6)**2) - k(4) * (k(4) * d(3) - k(5) * k(6)) &
+         + k(5) * (k(4) * k(6) - k(5) * d(2))
+      value = mean + 2.0_wp * spread * cos(acos(max(-1.0_wp, min(1.0_wp, 0.5_wp * determinant / spread**3))) / 3.0_wp)
+   end function greatest_eigenvalue
+
+end module dem_model

@@ -1,0 +1,343 @@
+!> A run from rest to its end: settle under gravity, shake, watch, record.
+module dem_run
+   use common_cancel, only : cancel_requested
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_cancelled, status_not_finite
+   use dem_contacts, only : contact_pair, overlap, search, measure
+   use dem_energy, only : energy_now, energy_terms
+   use dem_loading, only : movement_end
+   use dem_model, only : model, advance, critical_step
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: run_options, run_record, run_model
+   public :: stop_end, stop_collapse, stop_rest, stop_left, stop_blow_up, stop_step, stop_unsettled, stop_overlap
+
+   !> Why a run ended
+   integer(c_int), parameter :: stop_end = 0         !! end time reached
+   integer(c_int), parameter :: stop_collapse = 1    !! a body moved farther than the collapse limit
+   integer(c_int), parameter :: stop_rest = 2        !! nothing moves any more
+   integer(c_int), parameter :: stop_left = 3        !! a body left the domain
+   integer(c_int), parameter :: stop_blow_up = 4     !! the energy ledger does not close
+   integer(c_int), parameter :: stop_step = 5        !! the step asked for is above the critical one
+   integer(c_int), parameter :: stop_unsettled = 6   !! no rest under gravity
+   integer(c_int), parameter :: stop_overlap = 7     !! bodies overlap at the start
+
+   type :: run_options
+      real(wp) :: end_time = 0.0_wp          !! [s]
+      real(wp) :: step = 0.0_wp              !! [s]; 0: the fraction of the critical step
+      real(wp) :: fraction = 0.3_wp          !! of the critical step
+      real(wp) :: settle_tolerance = 1.0e-6_wp  !! unbalanced force over weight
+      integer :: settle_steps = 0            !! at most; 0: no settling
+      real(wp) :: collapse = 0.0_wp          !! displacement that counts as collapse [m]; 0: none
+      real(wp) :: domain(4) = 0.0_wp         !! left, right, bottom, top [m]
+      real(wp) :: residual_limit = 0.1_wp    !! of the energy that went round
+      logical :: stop_at_rest = .false.      !! once the ground is quiet
+      integer :: threads = 1
+   end type run_options
+
+   type :: run_record
+      real(wp), pointer, contiguous :: wanted(:) => null()        !! (nt) output times [s]
+      real(wp), pointer, contiguous :: time(:) => null()          !! (nt) times of the nearest steps [s]
+      real(wp), pointer, contiguous :: place(:, :, :) => null()   !! (3, bodies, nt): x, y [m], rotation [rad]
+      real(wp), pointer, contiguous :: rate(:, :, :) => null()    !! (3, bodies, nt), relative to the ground
+      real(wp), pointer, contiguous :: energy(:, :) => null()     !! (9, nt), see energy_terms
+      integer :: points = 0
+      integer(c_int) :: reason = stop_end
+      integer :: blamed(2) = 0               !! bodies that the reason is about
+      integer :: settling = 0                !! steps it took
+      integer :: searches = 0
+      integer :: most_pairs = 0
+      real(wp) :: least_step = 0.0_wp        !! [s]
+      real(wp) :: critical = 0.0_wp          !! critical step at the start [s]
+      real(wp) :: stop_time = 0.0_wp         !! [s]
+      real(wp) :: residual = 0.0_wp          !! greatest, over the energy that went round
+   end type run_record
+
+   integer, parameter :: watch = 64          !! steps between two looks at limits
+
+contains
+
+   !> Run a model; what was recorded up to a stop is valid
+   subroutine run_model(it, options, record, status)
+      type(model), intent(inout) :: it
+      type(run_options), intent(in) :: options
+      type(run_record), intent(inout) :: record
+      integer(c_int), intent(out) :: status
+
+      it%contacts%skin = 0.02_wp * it%set%size
+      call search(it%set, it%contacts, .true., status)
+      if (status /= status_ok) return
+      call critical_step(it, record%critical, status)
+      if (status /= status_ok) return
+      it%step = options%step
+      if (.not. it%step > 0.0_wp) it%step = options%fraction * record%critical
+      record%least_step = it%step
+      if (it%step > record%critical) record%reason = stop_step
+      if (record%reason == stop_end) call overlapping(it, record)
+      if (record%reason /= stop_end) return
+      call mark_rest(it)
+      if (options%settle_steps > 0) then
+         call settle(it, options, record, status)
+         if (status /= status_ok .or. record%reason /= stop_end) return
+      end if
+      call mark_rest(it)
+      call shake(it, options, record, status)
+   end subroutine run_model
+
+   !> Bodies that overlap deeper than half the skin were drawn so
+   subroutine overlapping(it, record)
+      type(model), intent(in) :: it
+      type(run_record), intent(inout) :: record
+      integer :: k
+      type(overlap) :: now
+      do k = 1, it%contacts%pairs
+         associate (pair => it%contacts%pair(k))
+            call measure(pair, it%set%item(pair%bodies(1)), it%set%item(pair%bodies(2)), now)
+            if (now%width <= 0.5_wp * it%contacts%skin .or. maxval(now%gap) > -0.5_wp * it%contacts%skin) cycle
+            record%reason = stop_overlap
+            record%blamed = pair%bodies
+            return
+         end associate
+      end do
+   end subroutine overlapping
+
+   subroutine mark_rest(it)
+      type(model), intent(inout) :: it
+      it%set%item%rest_x = it%set%item%x
+      it%set%item%rest_y = it%set%item%y
+      it%set%item%rest_angle = it%set%item%angle
+   end subroutine mark_rest
+
+   !> Rest under gravity by kinetic damping: whenever the kinetic energy has passed a peak, all stops
+   subroutine settle(it, options, record, status)
+      type(model), intent(inout) :: it
+      type(run_options), intent(in) :: options
+      type(run_record), intent(inout) :: record
+      integer(c_int), intent(out) :: status
+      integer, parameter :: batch = 8
+      real(wp) :: kinetic, before
+      integer :: n
+
+      status = status_ok
+      it%shaking = .false.
+      before = 0.0_wp
+      n = 0
+      do while (n < options%settle_steps)
+         call several(it, batch, options%threads, record, status)
+         if (status /= status_ok) return
+         n = n + batch
+         kinetic = sum(it%set%item%mass * (it%set%item%vx**2 + it%set%item%vy**2) &
+                       + it%set%item%inertia * it%set%item%spin**2)
+         if (.not. kinetic <= huge(kinetic)) then
+            status = status_not_finite
+            return
+         end if
+         if (kinetic < before) then
+            it%set%item%vx = 0.0_wp
+            it%set%item%vy = 0.0_wp
+            it%set%item%spin = 0.0_wp
+            before = 0.0_wp
+            if (unbalanced(it) < options%settle_tolerance) exit
+         else
+            before = kinetic
+         end if
+         call limits(it, options, record)
+         if (record%reason /= stop_end) exit
+         if (cancel_requested()) then
+            status = status_cancelled
+            return
+         end if
+      end do
+      record%settling = n
+      if (n >= options%settle_steps .or. record%reason /= stop_end) then
+         record%reason = stop_unsettled
+         if (record%blamed(1) == 0) record%blamed(1) = maxloc(abs(it%set%item%fx * it%set%item%inverse_mass) &
+            + abs(it%set%item%fy * it%set%item%inverse_mass + it%load%gravity(2)), &
+            mask=.not. it%set%item%fixed, dim=1)
+      end if
+      call calm(it)
+      it%set%item%bounces = 0
+      it%set%item%airborne = 0.0_wp
+      it%t = 0.0_wp
+      it%drift = 0.0_wp
+      it%steps = 0
+   end subroutine settle
+
+   !> No dashpot force and no loss is left from settling
+   subroutine calm(it)
+      type(model), intent(inout) :: it
+      integer :: k, i
+      do k = 1, it%contacts%pairs
+         do i = 1, 2
+            associate (point => it%contacts%pair(k)%point(i))
+               point%dash_n = 0.0_wp
+               point%dash_s = 0.0_wp
+               point%friction_loss = 0.0_wp
+               point%damping_loss = 0.0_wp
+            end associate
+         end do
+         it%contacts%pair(k)%loss_before = 0.0_wp
+         it%contacts%pair(k)%support_work = 0.0_wp
+      end do
+      it%contacts%friction_loss = 0.0_wp
+      it%contacts%damping_loss = 0.0_wp
+      it%contacts%support_work = 0.0_wp
+      it%set%item%work = 0.0_wp
+      it%set%item%mass_loss = 0.0_wp
+   end subroutine calm
+
+   !> Greatest unbalanced force over weight, and moment over weight times radius
+   pure function unbalanced(it) result(ratio)
+      type(model), intent(in) :: it
+      real(wp) :: ratio
+      real(wp) :: g
+      integer :: k
+      g = max(hypot(it%load%gravity(1), it%load%gravity(2)), 1.0e-3_wp)
+      ratio = 0.0_wp
+      do k = 1, size(it%set%item)
+         associate (b => it%set%item(k))
+            if (b%fixed) cycle
+            ratio = max(ratio, abs(b%fx / b%mass + it%load%gravity(1)) / g, &
+               abs(b%fy / b%mass + it%load%gravity(2)) / g, abs(b%moment) / (b%mass * g * b%radius))
+         end associate
+      end do
+   end function unbalanced
+
+   !> Exactly `count` steps, with searches in between
+   subroutine several(it, count, threads, record, status)
+      type(model), intent(inout) :: it
+      integer, intent(in) :: count
+      integer, intent(in) :: threads
+      type(run_record), intent(inout) :: record
+      integer(c_int), intent(out) :: status
+      integer :: target_steps
+      real(wp) :: critical
+
+      status = status_ok
+      target_steps = it%steps + count
+      do while (it%steps < target_steps)
+         call advance(it, target_steps - it%steps, threads)
+         if (.not. it%stale) cycle
+         it%stale = .false.
+         if (.not. all(abs(it%set%item%x) + abs(it%set%item%y) <= huge(1.0_wp))) then
+            status = status_not_finite
+            return
+         end if
+         call search(it%set, it%contacts, .false., status)
+         if (status /= status_ok) return
+         record%searches = record%searches + 1
+         record%most_pairs = max(record%most_pairs, it%contacts%pairs)
+         ! New contacts may be stiffer than those of the start.
+         call critical_step(it, critical, status)
+         if (status /= status_ok) return
+         if (it%step > 0.9_wp * critical) it%step = 0.5_wp * critical
+         record%least_step = min(record%least_step, it%step)
+      end do
+   end subroutine several
+
+   subroutine shake(it, options, record, status)
+      type(model), intent(inout) :: it
+      type(run_options), intent(in) :: options
+      type(run_record), intent(inout) :: record
+      integer(c_int), intent(out) :: status
+      type(energy_terms) :: energy, start
+      real(wp) :: round, quiet
+      integer :: n, calm_looks
+      logical :: due
+
+      it%shaking = .true.
+      record%points = 0
+      round = 0.0_wp
+      quiet = movement_end(it%load)
+      calm_looks = 0
+      call several(it, 1, options%threads, record, status)
+      if (status /= status_ok) return
+      start = energy_now(it)
+      call write_down(start)
+      do
+         due = .false.
+         n = watch
+         if (record%points < size(record%wanted)) then
+            n = max(1, nint((record%wanted(record%points + 1) - (it%t - it%drift)) / it%step))
+            due = n <= watch
+            n = min(n, watch)
+         end if
+         call several(it, n, options%threads, record, status)
+         if (status /= status_ok) exit
+         energy = energy_now(it)
+         round = max(round, energy%kinetic + abs(energy%potential - start%potential) + energy%friction &
+            + energy%damping + energy%mass_damping)
+         record%residual = max(record%residual, abs(energy%residual(start)) / max(round, start%elastic, tiny(1.0_wp)))
+         if (due) call write_down(energy)
+         if (.not. record%residual <= options%residual_limit) then
+            record%reason = stop_blow_up
+            record%blamed(1) = maxloc(it%set%item%vx**2 + it%set%item%vy**2, mask=.not. it%set%item%fixed, dim=1)
+         end if
+         if (record%reason == stop_end) call limits(it, options, record)
+         if (options%stop_at_rest .and. it%t > quiet) then
+            calm_looks = merge(calm_looks + 1, 0, unbalanced(it) < 1.0e-3_wp .and. energy%kinetic < 1.0e-6_wp * round)
+            if (calm_looks >= 50 .and. record%reason == stop_end) record%reason = stop_rest
+         end if
+         if (record%reason /= stop_end .or. it%t - it%drift >= options%end_time - 0.5_wp * it%step) exit
+         if (cancel_requested()) then
+            status = status_cancelled
+            exit
+         end if
+      end do
+      record%stop_time = it%t - it%drift
+
+   contains
+
+      !> State at the time of the last forces: half a step before the velocities, a step before the places
+      subroutine write_down(now)
+         type(energy_terms), intent(in) :: now
+         integer :: k
+         real(wp) :: half
+         if (record%points >= size(record%wanted)) return
+         record%points = record%points + 1
+         record%time(record%points) = it%t - it%drift
+         half = 0.5_wp * it%drift
+         do k = 1, size(it%set%item)
+            associate (b => it%set%item(k))
+               record%place(:, k, record%points) = [b%x - it%drift * b%vx, b%y - it%drift * b%vy, &
+                                                    b%angle - it%drift * b%spin]
+               record%rate(:, k, record%points) = [b%vx, b%vy, b%spin]
+               if (.not. b%fixed) record%rate(:, k, record%points) = record%rate(:, k, record%points) &
+                  - half * [b%fx / b%mass + it%pull(1), b%fy / b%mass + it%pull(2), b%moment / b%inertia]
+            end associate
+            record%place(1:2, k, record%points) = record%place(1:2, k, record%points) &
+               - (it%base_place - it%drift * it%base)
+            record%rate(1:2, k, record%points) = record%rate(1:2, k, record%points) - it%base
+         end do
+         record%energy(:, record%points) = [now%kinetic, now%potential, now%elastic, now%friction, now%damping, &
+                                            now%mass_damping, now%work, now%residual(start), now%leapfrog]
+      end subroutine write_down
+
+   end subroutine shake
+
+   !> Has a body collapsed or left the domain?
+   subroutine limits(it, options, record)
+      type(model), intent(in) :: it
+      type(run_options), intent(in) :: options
+      type(run_record), intent(inout) :: record
+      integer :: k
+      real(wp) :: x, y
+      do k = 1, size(it%set%item)
+         associate (b => it%set%item(k))
+            if (b%fixed) cycle
+            x = b%x - it%base_place(1)
+            y = b%y - it%base_place(2)
+            if (options%collapse > 0.0_wp) then
+               if (hypot(x - b%rest_x, y - b%rest_y) > options%collapse) record%reason = stop_collapse
+            end if
+            if (x < options%domain(1) .or. x > options%domain(2) .or. y < options%domain(3) &
+               .or. y > options%domain(4)) record%reason = stop_left
+            if (record%reason == stop_end) cycle
+            record%blamed(1) = k
+            return
+         end associate
+      end do
+   end subroutine limits
+
+end module dem_run

@@ -1,0 +1,130 @@
+"""Analysis kinds of the discrete elements: dem, dem-domain, dem-parameters."""
+
+import itertools
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from extrados.decks.quantities import Acceleration, Angle, Length, Stiffness, Stress, Time
+from extrados.decks.table import Analysis, Table, key
+
+STANDARD_GRAVITY = 9.80665
+Positive = Annotated[float, Field(gt=0.0)]
+
+
+class JointType(Table):
+    """Properties of some joints that differ from those of the analysis."""
+
+    joints: list[str] = key(
+        about='names of joints; "ground" means all joints to the ground', min_length=1, max_length=10000
+    )
+    friction: float | None = key(None, "coefficient of friction", ge=0, le=10)
+    stiffness: Stiffness | None = key(None, "normal stiffness per area", gt=0)
+    cohesion: Stress | None = key(None, "cohesion of the mortar, lost at the first failure", ge=0)
+    tension: Stress | None = key(None, "tensile strength of the mortar, lost at the first failure", ge=0)
+
+
+class SupportMovement(Table):
+    """A support that gives way, slowly, starting and ending at rest."""
+
+    joint: str = key(about="name of a joint on the support")
+    dx: Length = key(0.0, "to the right")
+    dy: Length = key(0.0, "upward; negative is a settlement")
+    turn: Angle = key(0.0, "counter-clockwise, about the middle of the support")
+    start: Time = key(0.0, "when it starts", ge=0)
+    duration: Time = key(1.0, "how long it takes", gt=0)
+
+
+class Joints(Analysis):
+    """What all analyses with discrete elements share: joints and their damping."""
+
+    structures: ClassVar = ("arch", "block", "column", "wall", "vault", "aisled-vault", "blocks")
+    friction: float = key(0.7, "coefficient of friction of the joints", ge=0, le=10)
+    youngs_modulus: Stress = key(
+        10e9,
+        "of the stone; lumped in the joints as E over the length that a joint stands for",
+        source="thesis Eq. 7.10",
+        gt=0,
+    )
+    joint_stiffness: Stiffness | None = key(None, "normal stiffness of all joints, instead of the rule", gt=0)
+    convention: Literal["consistent", "thesis"] = key(
+        "consistent", "stiffness rule: E/L, or E B/L as the thesis prints it", source="thesis Eqs 7.10-7.12"
+    )
+    shear_ratio: float = key(1.0, "shear stiffness over normal stiffness", gt=0, le=10)
+    support_stiffness: Stiffness | None = key(
+        None, "spring supports: stiffness of the ground, in series with its joints", gt=0
+    )
+    cohesion: Stress = key(0.0, "cohesion of mortar, lost at the first failure", ge=0)
+    tension: Stress = key(0.0, "tensile strength of mortar, lost at the first failure", ge=0)
+    joint_types: list[JointType] = key([], "joints that differ, [[analysis.joint_types]]", max_length=1000)
+    damping: Literal["edge", "corner", "rotation"] = key(
+        "edge", "impact frequency that is damped critically", source="thesis Eqs 7.13, 7.17-7.20"
+    )
+    damping_ratio: float = key(1.0, "fraction of critical damping at that frequency", ge=0, le=100)
+    beta: float | None = key(None, "stiffness-proportional damping in s, instead of the rule", ge=0, le=10)
+    mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking", ge=0, le=1e4)
+    merge: Literal["none", "three-bars"] = key(
+        "none", "glue the voussoirs of an arch into the three links of its four-hinge mechanism"
+    )
+    worn_corners: Length = key(0.0, "radius to which the corners of the blocks are worn", ge=0)
+    fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
+
+
+class Dem(Joints):
+    """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
+
+    kind: Literal["dem"]
+    test: Literal["motion", "tilt"] = key(
+        "motion", "follow the motion, or find the constant acceleration that brings it down"
+    )
+    end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
+    output_step: Time = key(0.01, "spacing of the history", gt=0)
+    time_step: Time | None = key(None, "instead of the fraction of the critical step", gt=0)
+    base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
+    collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    floor: Length | None = key(None, "height of a floor that catches what falls")
+    domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
+    stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
+    track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
+    snapshot_times: list[Time] = key([], "draw the structure at these times; default six telling ones", max_length=24)
+    animation: Literal["none", "gif", "mp4"] = key("none", "write an animation")
+    vtk: bool = key(False, "write VTU files and a PVD collection")
+    support_movements: list[SupportMovement] = key([], "[[analysis.support_movements]]", max_length=100)
+    vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
+    vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)
+    vary_friction: list[Positive] = key([], "also run with these coefficients of friction", max_length=50)
+    find_friction: bool = key(False, "also find the least friction at which no joint slides")
+    slip: Length = key(1e-4, "slip that counts as sliding in that search", gt=0)
+    tilt_limit: Acceleration = key(2.0 * STANDARD_GRAVITY, "cap of the tilt test", gt=0)
+    tilt_accuracy: float = key(1e-3, "accuracy of the tilt test, in g", gt=0, le=0.1)
+
+
+class DemDomain(Joints):
+    """Which pulses bring the structure down, by discrete elements, beside the four-hinge curves where they exist."""
+
+    kind: Literal["dem-domain"]
+    pulse: Literal["step", "sine"] = key("step", "step pulse of duration t_p, or one sine of period T_p")
+    amplitudes: list[Acceleration] = key(
+        about="amplitudes at which the shortest failing duration is sought", min_length=1, max_length=200
+    )
+    durations: list[Time] = key(about="durations that are tried first, ascending", min_length=2, max_length=500)
+    accuracy: Time = key(0.005, "of the failing durations", gt=0)
+    settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
+    collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    vary_damping: list[Positive] = key([], "further curves with beta times these factors", max_length=20)
+    vary_stiffness: list[Positive] = key([], "further curves with joint stiffnesses times these factors", max_length=20)
+    vary_friction: list[Positive] = key([], "further curves with these coefficients of friction", max_length=20)
+
+    @model_validator(mode="after")
+    def _ascending(self) -> "DemDomain":
+        if any(b <= a for a, b in itertools.pairwise(self.durations)) or self.durations[0] <= 0.0:
+            raise ValueError("durations must ascend from above zero")
+        if min(self.amplitudes) <= 0.0:
+            raise ValueError("amplitudes must be above zero")
+        return self
+
+
+class DemParameters(Joints):
+    """Joint stiffnesses, impact frequencies and damping by the rules of thesis 7.3, without a run."""
+
+    kind: Literal["dem-parameters"]

@@ -1,0 +1,299 @@
+"""Figures of discrete-element runs: snapshots, histories, energies, hinges, sensitivity, failure curves, animation."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import BoundaryNorm, ListedColormap
+
+from extrados.plots import style
+from extrados.plots.arch import moved, outlines
+from extrados.results.store import Stored
+
+GRAVITY = 9.80665
+SHOWN = 6
+
+
+def _at(run: Stored, name: str, time: float) -> int:
+    return int(np.abs(run.array(name, "time") - time).argmin())
+
+
+def _supports(run: Stored, name: str) -> list[np.ndarray]:
+    vertices, start = run.array(name, "support_outline"), run.array(name, "support_start")
+    return [vertices[a:b] for a, b in itertools.pairwise(start)]
+
+
+def _window(run: Stored, name: str, picks: list[int]) -> tuple[float, float, float, float]:
+    """Limits of the drawings: the structure and where its blocks are at the outputs drawn, within reason."""
+    points = run.array(name, "outline")
+    low, high = points.min(axis=0), points.max(axis=0)
+    size = float((high - low).max())
+    places = run.array(name, "place")[picks][..., :2].reshape(-1, 2)
+    near = places[(places > low - 1.5 * size).all(axis=1) & (places < high + 1.5 * size).all(axis=1)]
+    shape = float(np.median([np.ptp(o, axis=0).max() for o in outlines(run, name)]))
+    if len(near):
+        low, high = np.minimum(low, near.min(axis=0) - 0.5 * shape), np.maximum(high, near.max(axis=0) + 0.5 * shape)
+    room = 0.12 * size
+    return low[0] - room, high[0] + room, low[1] - room, high[1] + room
+
+
+class _Scene:
+    """What stays the same from one picture of a run to the next."""
+
+    def __init__(self, run: Stored, name: str, picks: list[int]):
+        get = run.arrays[name]
+        self.blocks, self.supports = outlines(run, name), _supports(run, name)
+        self.centroid, self.place, self.rate = (get[k].data for k in ("centroid", "place", "rate"))
+        self.p, self.q, self.hinge = (get[k].data for k in ("joint_p", "joint_q", "hinge"))
+        self.owner = _block_of_joint(run, name)
+        self.window = _window(run, name, picks)
+
+    @property
+    def aspect(self) -> float:
+        left, right, bottom, top = self.window
+        return (top - bottom) / (right - left)
+
+    def draw(self, ax: Axes, k: int, arrows: float) -> None:
+        """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
+        place, rate = self.place[k], self.rate[k]
+        left, right, bottom, top = self.window
+        for support in self.supports:
+            ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
+        shapes = [moved(o, c, p) for o, c, p in zip(self.blocks, self.centroid, place, strict=True)]
+        ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
+        points = []
+        for j in np.flatnonzero(np.abs(self.hinge[k]) == 1):
+            if self.owner[j] >= 0:
+                point = self.p[j] if self.hinge[k, j] < 0 else self.q[j]
+                points.append(moved(point[None], self.centroid[self.owner[j]], place[self.owner[j]])[0])
+        if points and len(points) <= 40:
+            style.draw_hinges(ax, np.array(points))
+        if arrows > 0.0:
+            ax.quiver(
+                place[:, 0], place[:, 1], rate[:, 0] * arrows, rate[:, 1] * arrows, angles="xy", scale_units="xy",
+                scale=1.0, color=style.THRUST, width=0.005, zorder=6,
+            )  # fmt: skip
+        ax.set_xlim(left, right)
+        ax.set_ylim(bottom, top)
+        ax.set_aspect("equal")
+        ax.grid(False)
+        ax.set_xticks([])
+        ax.set_yticks([])
+
+
+def _block_of_joint(run: Stored, name: str) -> np.ndarray:
+    """A block whose outline holds both ends of each joint."""
+    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
+    found = np.full(len(p), -1)
+    for i, outline in enumerate(outlines(run, name)):
+        edge = np.roll(outline, -1, axis=0) - outline
+        length = np.hypot(*edge.T)
+        for j in np.flatnonzero(found < 0):
+            away = [point - outline for point in (p[j], q[j])]
+            across = [np.abs(edge[:, 0] * a[:, 1] - edge[:, 1] * a[:, 0]) / length for a in away]
+            along = [(edge * a).sum(axis=1) / length for a in away]
+            small = 1e-6 * length.max()
+            on = [(c < small) & (s > -small) & (s < length + small) for c, s in zip(across, along, strict=True)]
+            if (on[0] & on[1]).any():
+                found[j] = i
+    return found
+
+
+def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Everything that a run or a tilt test has to show."""
+    figures = [_snapshots(run, name, folder)]
+    if "rotation" in run.arrays[name]:
+        figures += [_histories(run, name, folder), _energies(run, name, folder)]
+        if run.array(name, "hinge").shape[1] > 1:
+            figures.append(_hinge_map(run, name, folder))
+        if "sensitivity" in run[name]:
+            figures.append(_sensitivity(run, name, folder))
+    _animation(run, name, folder)
+    return figures
+
+
+def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    times = run.array(name, "snapshot_time")
+    columns = min(3, len(times))
+    rows = -(-len(times) // columns)
+    rate = run.array(name, "rate")
+    picks = [_at(run, name, t) for t in times]
+    scene = _Scene(run, name, picks)
+    fastest = max((float(np.hypot(*rate[k, :, :2].T).max()) for k in picks), default=0.0)
+    left, right, bottom, top = scene.window
+    arrows = 0.15 * max(right - left, top - bottom) / fastest if fastest > 1e-6 else 0.0
+    with style.figure(9.5, 3.1 * rows * min(1.6, max(0.4, scene.aspect)) + 0.4, rows=rows, columns=columns) as (
+        fig,
+        axes,
+    ):
+        for ax, k in zip(axes, picks, strict=False):
+            scene.draw(ax, k, arrows)
+            ax.set_title(f"{run.array(name, 'time')[k]:.3f} s")
+        for ax in axes[len(times) :]:
+            ax.axis("off")
+        saved = style.save(fig, folder, f"{name}-snapshots")
+    scale = f" (longest arrow {fastest:.3g} m/s)" if arrows else ""
+    return saved, f"Displaced structure, hinges (circles) and velocities of the blocks{scale}."
+
+
+def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    time, rotation = run.array(name, "time"), run.array(name, "rotation")
+    tracked = run.array(name, "tracked")
+    most = tracked[np.argsort(-np.abs(rotation[:, tracked]).max(axis=0), kind="stable")[:SHOWN]]
+    names = list(run[name]["peak_rotation_rad"])
+    label = dict(zip(tracked.tolist(), names, strict=True))
+    rigid = next((a for a in run.analyses if a["kind"] == "rocking" and "rotation" in run.arrays[a["name"]]), None)
+    with style.figure(8.0, 5.4, rows=2, sharex=True, height_ratios=[3, 1]) as (fig, (top, low)):
+        if rigid is not None and len(tracked) == 1:
+            other = run.arrays[rigid["name"]]
+            top.plot(
+                other["time"].data,
+                1e3 * other["rotation"].data,
+                color="#999999",
+                linewidth=2.4,
+                label="rigid-block model",
+            )
+        for i in most:
+            top.plot(time, 1e3 * rotation[:, i], label=label[int(i)])
+        top.set_ylabel("rotation [mrad], positive to +x")
+        top.legend(loc="best", ncols=2)
+        low.plot(time, run.array(name, "ground") / GRAVITY, color=style.EDGE)
+        low.set_ylabel("ground [g]")
+        low.set_xlabel("time [s]")
+        low.set_xlim(0.0, time[-1])
+        saved = style.save(fig, folder, f"{name}-rotation")
+    return saved, "Rotation of the blocks from their settled state, and the ground acceleration."
+
+
+def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    time = run.array(name, "time")
+    words = {
+        "work": "work of the ground", "kinetic": "kinetic", "potential": "potential (gravity)", "elastic": "elastic",
+        "damping": "lost in damping", "friction": "lost in friction", "residual": "residual",
+    }  # fmt: skip
+    with style.figure(8.0, 5.4, rows=2, sharex=True) as (fig, (top, low)):
+        top.plot(time, run.array(name, "kinetic_energy") / 1e3, color=style.THRUST)
+        top.set_ylabel("kinetic energy [kJ]")
+        top.set_title("Drops are impacts")
+        for key, word in words.items():
+            low.plot(
+                time, run.array(name, f"{key}_energy") / 1e3, label=word, linestyle="--" if key == "residual" else "-"
+            )
+        low.set_ylabel("energy [kJ]")
+        low.set_xlabel("time [s]")
+        low.set_xlim(0.0, time[-1])
+        low.legend(loc="best", ncols=2)
+        saved = style.save(fig, folder, f"{name}-energy")
+    return saved, (
+        f"Kinetic energy, and the whole ledger; it closes to {100 * run[name]['energy_residual_ratio']:.2g} % of the energy that went round."
+    )
+
+
+def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    time, hinge = run.array(name, "time"), run.array(name, "hinge")
+    colours = ListedColormap([style.HINGE, "#f4f1ea", style.THRUST, "#d9a400"])
+    with style.figure(8.0, min(7.0, 1.6 + 0.18 * hinge.shape[1])) as (fig, (ax,)):
+        norm = BoundaryNorm([-1.5, -0.5, 0.5, 1.5, 2.5], 4)
+        mesh = ax.pcolormesh(
+            time, np.arange(hinge.shape[1]), hinge.T, cmap=colours, norm=norm, shading="nearest", rasterized=True
+        )
+        bar = fig.colorbar(mesh, ax=ax, ticks=[-1, 0, 1, 2])
+        bar.ax.set_yticklabels(["hinge, first end\n(intrados)", "closed", "hinge, second end\n(extrados)", "open"])
+        ax.set_xlabel("time [s]")
+        ax.set_ylabel("joint")
+        ax.grid(False)
+        saved = style.save(fig, folder, f"{name}-hinges")
+    return saved, "Where joints are hinged, over time."
+
+
+def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    rows = run[name]["sensitivity"]
+    kinds = list(dict.fromkeys(row["varied"] for row in rows))
+    time, rotation = run.array(name, "time"), run.array(name, "rotation")
+    follow = int(run.array(name, "tracked")[0])
+    with style.figure(8.0, 2.6 * len(kinds) + 0.4, rows=len(kinds), sharex=True) as (fig, axes):
+        for ax, kind in zip(axes, kinds, strict=True):
+            ax.plot(time, 1e3 * rotation[:, follow], color="black", linewidth=1.8, label="as given")
+            for k, row in enumerate(rows):
+                if row["varied"] == kind:
+                    ax.plot(
+                        run.array(name, f"varied_time_{k}"), 1e3 * run.array(name, f"varied_rotation_{k}"),
+                        label=f"{'' if kind == 'friction' else 'x '}{row['value']:g} ({row['outcome']})", linewidth=0.9,
+                    )  # fmt: skip
+            ax.set_title(kind)
+            ax.set_ylabel("rotation [mrad]")
+            ax.legend(loc="best", ncols=2)
+        axes[-1].set_xlabel("time [s]")
+        saved = style.save(fig, folder, f"{name}-sensitivity")
+    return saved, "Sensitivity of the rotation of the first tracked block to damping, stiffness and friction."
+
+
+def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Failure curves in the plane of duration and amplitude."""
+    amplitude, shortest = run.array(name, "amplitude"), run.array(name, "shortest")
+    labels = [str(v) for v in run.array(name, "curve")]
+    with style.figure(6.5, 4.6) as (fig, (ax,)):
+        for k, (label, row) in enumerate(zip(labels, shortest, strict=True)):
+            shown = "discrete elements" if k == 0 else label
+            ax.plot(row, amplitude, "o-" if k == 0 else ".-", linewidth=1.8 if k == 0 else 0.9, label=shown)
+        for mode, mark in (("mode_I", "--"), ("mode_II", ":")):
+            if mode in run.arrays[name]:
+                ax.plot(
+                    run.array(name, mode),
+                    amplitude,
+                    mark,
+                    color="black",
+                    label=f"four hinges, {mode.replace('_', ' ')}",
+                )
+        ax.set_xlabel("t_p [s]" if run[name]["pulse"] == "step" else "T_p [s]")
+        ax.set_ylabel("amplitude [g]")
+        ax.set_xlim(left=0.0)
+        ax.legend()
+        saved = style.save(fig, folder, f"{name}-curves")
+    return [(saved, "Shortest failing pulses; to the right of a curve the structure comes down.")]
+
+
+def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Damping over frequency, with the impact frequencies of the joints (thesis Figs 7-4, 7-12)."""
+    beta = run[name]["beta_s"]
+    with style.figure(6.5, 4.0) as (fig, (ax,)):
+        lowest = min(run.array(name, f"{k}_frequency").min() for k in ("rotation", "corner", "edge"))
+        highest = max(run.array(name, f"{k}_frequency").max() for k in ("rotation", "corner", "edge"))
+        frequency = np.geomspace(0.1 * lowest, 3.0 * highest, 200)
+        ax.loglog(frequency, 50.0 * beta * frequency, color=style.EDGE, label=f"beta = {beta:.3g} s")
+        for kind, colour in (("rotation", style.THRUST), ("corner", style.HINGE), ("edge", style.GROUND)):
+            values = run.array(name, f"{kind}_frequency")
+            ax.loglog(values, 50.0 * beta * values, "o", color=colour, label=f"{kind} impact")
+        for level, word in ((10.0, "least at rotation"), (25.0, "least at edge"), (100.0, "critical")):
+            ax.axhline(level, color="#bbbbbb", linewidth=0.8)
+            ax.text(frequency[0], level * 1.05, f"{level:g} % {word}", fontsize=7)
+        ax.set_xlabel("frequency [rad/s]")
+        ax.set_ylabel("critical damping [%]")
+        ax.legend()
+        saved = style.save(fig, folder, f"{name}-damping")
+    return [(saved, "Fraction of critical damping at the impact frequencies of the joints.")]
+
+
+def _animation(run: Stored, name: str, folder: Path) -> None:
+    """figures/NAME.gif or .mp4, in real time, where the deck asks for one."""
+    kind = run[name].get("animation", "none")
+    if kind == "none":
+        return
+    from matplotlib.animation import FFMpegWriter, PillowWriter
+
+    time = run.array(name, "time")
+    # Real time, but never more frames than draw in a few tens of seconds
+    step = max(1.0 / 15.0, (time[-1] - time[0]) / 150.0)
+    frames = [_at(run, name, t) for t in np.arange(time[0], time[-1], step)]
+    writer = (PillowWriter if kind == "gif" else FFMpegWriter)(fps=round(1.0 / step))
+    scene = _Scene(run, name, frames)
+    with style.figure(5.0, 5.0 * min(1.6, max(0.4, scene.aspect))) as (fig, (ax,)):
+        fig.set_layout_engine("none")  # frames must not wobble
+        with writer.saving(fig, str(folder / "figures" / f"{name}.{kind}"), dpi=80):
+            for k in frames:
+                ax.clear()
+                scene.draw(ax, k, 0.0)
+                ax.set_title(f"{time[k]:.2f} s")
+                writer.grab_frame()

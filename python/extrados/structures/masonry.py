@@ -1,0 +1,99 @@
+"""Columns of drums and walls of units in running bond."""
+
+import numpy as np
+
+from extrados.structures.assembly import GROUND, Assembly
+
+
+def _assembly(
+    outlines: list[np.ndarray], names: list[str], joints: list[tuple[str, np.ndarray, np.ndarray, int, int]],
+    density: float, depth: float,
+) -> Assembly:  # fmt: skip
+    """Blocks of straight outlines and their joints (name, p, q, block above or right, block below or left)."""
+    mass, centroid, inertia = zip(*(_properties(o) for o in outlines), strict=True)
+    weight = density * depth
+    label, p, q, a, b = zip(*joints, strict=True)
+    return Assembly(
+        outlines=outlines, mass=np.array(mass) * weight, centroid=np.array(centroid), inertia=np.array(inertia) * weight,
+        p=np.array(p), q=np.array(q), a=np.array(a), b=np.array(b), depth=depth, block_names=names,
+        joint_names=list(label),
+    )  # fmt: skip
+
+
+def _properties(outline: np.ndarray) -> tuple[float, np.ndarray, float]:
+    """Area, centroid and polar moment of area about it of a polygon (counter-clockwise)."""
+    origin = outline.mean(axis=0)
+    a = outline - origin
+    b = np.roll(a, -1, axis=0)
+    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
+    area = 0.5 * cross.sum()
+    centroid = ((a + b) * cross[:, None]).sum(axis=0) / (6.0 * area)
+    polar = float((cross * ((a * a).sum(axis=1) + (a * b).sum(axis=1) + (b * b).sum(axis=1))).sum()) / 12.0
+    return float(area), centroid + origin, polar - float(area * centroid @ centroid)
+
+
+def make_column(
+    width: float, heights: list[float], top_width: float | None = None, density: float = 2000.0, depth: float = 1.0
+) -> Assembly:
+    """Drums of the given heights [m] on the ground, from `width` at the base to `top_width` [m]."""
+    levels = np.concatenate([[0.0], np.cumsum(heights)])
+    half = 0.5 * np.interp(levels, [0.0, levels[-1]], [width, width if top_width is None else top_width])
+    n = len(heights)
+    outlines = [
+        np.array(
+            [[-half[i], levels[i]], [half[i], levels[i]], [half[i + 1], levels[i + 1]], [-half[i + 1], levels[i + 1]]]
+        )
+        for i in range(n)
+    ]
+    joints = [
+        (
+            "base" if i == 0 else f"joint {i}", np.array([-half[i], levels[i]]), np.array([half[i], levels[i]]), i,
+            i - 1 if i else GROUND,
+        )
+        for i in range(n)
+    ]  # fmt: skip
+    return _assembly(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
+
+
+def make_wall(
+    unit_length: float, unit_height: float, units: int, courses: int, density: float = 1800.0, depth: float = 0.25
+) -> Assembly:
+    """Running bond: every other course begins and ends with half a unit; sizes in m."""
+    rows = []
+    for c in range(courses):
+        ends = np.arange(units + 1.0) if c % 2 == 0 else np.concatenate([[0.0], np.arange(units) + 0.5, [units]])
+        rows.append(ends * unit_length)
+    outlines, names, joints = [], [], []
+    below: list[int] = []
+    for c, ends in enumerate(rows):
+        low, high = c * unit_height, (c + 1) * unit_height
+        row = []
+        for k in range(len(ends) - 1):
+            left, right = ends[k], ends[k + 1]
+            row.append(len(outlines))
+            names.append(f"unit {k + 1} of course {c + 1}")
+            outlines.append(np.array([[left, low], [right, low], [right, high], [left, high]]))
+            if k:
+                joints.append(
+                    (
+                        f"head joint {k} of course {c + 1}",
+                        np.array([left, low]),
+                        np.array([left, high]),
+                        row[k],
+                        row[k - 1],
+                    )
+                )
+            if c == 0:
+                joints.append((f"base of unit {k + 1}", np.array([left, low]), np.array([right, low]), row[k], GROUND))
+                continue
+            for m in below:
+                one, two = max(left, outlines[m][0, 0]), min(right, outlines[m][1, 0])
+                if two - one > 1e-9 * unit_length:
+                    joints.append(
+                        (
+                            f"bed joint of {names[row[k]]} on {names[m]}", np.array([one, low]), np.array([two, low]),
+                            row[k], m,
+                        )
+                    )  # fmt: skip
+        below = row
+    return _assembly(outlines, names, joints, density, depth)

@@ -1,0 +1,199 @@
+"""Discrete elements against exact solutions."""
+
+import numpy as np
+import pytest
+from dem_models import G, block_on_floor, constant, cosine, housner, model, pieces, rectangle
+
+from extrados.core import dem
+
+STIFF = dem.Law(1e10, 1e10, 0.6, damping=2e-3)
+
+
+def test_free_fall_is_exact() -> None:
+    bodies = model([rectangle(0.0, 1.0, 5.0, 6.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF)
+    rate = np.array([[0.3, 1.0, 0.7], [0.0, 0.0, 0.0]])
+    run = dem.run(bodies, dem.Options(0.5, 0.05, step=1e-4), shift=np.zeros((2, 3)), rate=rate)
+    t = run.time
+    exact = np.stack([0.5 + 0.3 * t, 5.5 + t - 0.5 * G * t**2, 0.7 * t], axis=1)
+    assert np.abs(run.place[:, 0] - exact).max() < 1e-12
+    assert run.residual < 1e-12
+
+
+def test_newmark_sliding_block() -> None:
+    """A flat block under a pulse a > mu g slides a t^2 / 2 (a / (mu g) - 1) (Newmark 1965)."""
+    friction, a, t = 0.3, 0.5 * G, 0.2
+    # So stiff that the shear springs take no part: they delay the onset by sqrt(2 m / k).
+    bodies = block_on_floor(4.0, 0.2, dem.Law(1e15, 1e15, friction, damping=2e-6))
+    # The ground stays at its velocity a t after the pulse; the slip ends a t / (mu g) after the start.
+    run = dem.run(bodies, dem.Options(0.4, 0.01), pieces([0.0, t], [a]))
+    slip = 0.5 * a * t**2 * (a / (friction * G) - 1.0)
+    moved = run.settled[0, 0] - run.place[-1, 0, 0]
+    assert abs(moved / slip - 1.0) < 1e-6
+    heat = friction * bodies.mass[0] * G * slip
+    assert abs(run.energy["friction"][-1] / heat - 1.0) < 1e-5
+
+
+@pytest.mark.parametrize(("slope", "slides"), [(0.59, False), (0.61, True)])
+def test_slope_slides_at_its_friction(slope: float, slides: bool) -> None:
+    """A block slides where the slope's tangent exceeds the friction, with g (sin - mu cos)."""
+    angle = np.arctan(slope)
+    bodies = block_on_floor(2.0, 0.2, dem.Law(1e13, 1e13, 0.6, damping=2e-5))
+    gravity = (G * np.sin(angle), -G * np.cos(angle))
+    ramp = dem.Options(0.5, 0.1, gravity=(0.0, -G * np.cos(angle)))
+    run = dem.run(bodies, ramp, constant(-gravity[0]))
+    moved = run.place[-1, 0, 0] - run.settled[0, 0]
+    if slides:
+        exact = 0.5 * G * (np.sin(angle) - 0.6 * np.cos(angle)) * run.time[-1] ** 2
+        assert moved == pytest.approx(exact, rel=1e-3)
+    else:
+        assert abs(moved) < 1e-5
+
+
+@pytest.mark.parametrize(("ratio", "topples"), [(0.995, False), (1.005, True)])
+def test_block_topples_at_its_slenderness(ratio: float, topples: bool) -> None:
+    bodies = block_on_floor(1.0, 4.0, dem.Law(1e12, 1e12, 2.0, damping=1e-3))
+    run = dem.run(bodies, dem.Options(6.0, 0.1, collapse=0.5), constant(ratio * 0.25 * G))
+    assert (run.reason == "collapse") == topples
+    if not topples:
+        assert np.abs(run.place[:, 0, 2]).max() < 1e-4
+
+
+def test_elastic_bounce_returns() -> None:
+    """Without damping a flat fall comes back to its height: a linear spring gives all back."""
+    bodies = model([rectangle(-1.0, 1.0, 0.1, 1.1)], [rectangle(-5.0, 5.0, -1.0, 0.0)], dem.Law(1e9, 1e9, 0.6))
+    fall = np.sqrt(2 * 0.1 / G)
+    run = dem.run(bodies, dem.Options(2.2 * fall, 0.001, step=1e-5), shift=np.zeros((2, 3)))
+    height = run.place[:, 0, 1] - 0.5
+    later = run.time > 1.5 * fall
+    assert height[later].max() == pytest.approx(0.1, rel=2e-5)
+    assert run.residual < 2e-5
+    assert run.bounces[0] == 1
+
+
+def test_leapfrog_is_second_order() -> None:
+    """A block hangs on its bonded base springs: undamped vibration against the harmonic solution."""
+    law = dem.Law(1e7, 1e7, 1.0, cohesion=1e9, tension=1e9)
+    bodies = model([rectangle(-0.5, 0.5, 0.0, 1.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], law)
+    omega = np.sqrt(1e7 / bodies.mass[0])
+    error = []
+    for step in (2e-3, 1e-3, 5e-4):
+        rate = np.array([[0.0, 0.01, 0.0], [0.0, 0.0, 0.0]])
+        options = dem.Options(0.2, 0.1, step=step, gravity=(0.0, 0.0))
+        run = dem.run(bodies, options, shift=np.zeros((2, 3)), rate=rate)
+        error.append(abs(run.place[-1, 0, 1] - 0.5 - 0.01 / omega * np.sin(omega * run.time[-1])))
+    order = np.log2(np.array(error[:-1]) / error[1:])
+    assert np.abs(order - 2.0).max() < 0.1, order
+
+
+def test_momentum_is_conserved() -> None:
+    """Two blocks collide in free space: linear and angular momentum stay to rounding."""
+    bodies = model(
+        [rectangle(0.0, 1.0, 0.0, 1.0), rectangle(1.2, 2.2, 0.4, 1.4)], [rectangle(50.0, 51.0, 0.0, 1.0)],
+        dem.Law(1e8, 1e8, 0.4, damping=1e-4),
+    )  # fmt: skip
+    rate = np.array([[1.0, 0.2, 0.5], [-0.5, 0.0, -1.0], [0.0, 0.0, 0.0]])
+    run = dem.run(bodies, dem.Options(1.0, 0.01, gravity=(0.0, 0.0)), shift=np.zeros((3, 3)), rate=rate)
+    m, inertia = bodies.mass[:2], bodies.inertia[:2]
+    place, v = run.place[:, :2], run.rate[:, :2]
+    linear = np.einsum("b,tbi->ti", m, v[..., :2])
+    angular = np.einsum("b,tb->t", m, place[..., 0] * v[..., 1] - place[..., 1] * v[..., 0]) + v[..., 2] @ inertia
+    assert run.energy["damping"][-1] > 1.0  # they did collide
+    scale = float(np.abs(m @ np.abs(rate[:2, :2])).max())
+    assert np.abs(linear - linear[0]).max() / scale < 1e-12
+    assert np.abs(angular - angular[0]).max() / (scale * 2.0) < 1e-9
+
+
+def test_rocking_block_follows_housner() -> None:
+    """Thesis Fig. 7-1: 1 x 4 m under 0.5 g cos(10.88 t), damping by the rule (critical at edge impact)."""
+    times = np.linspace(0.0, 5.0, 1001)
+    exact = housner(1.0, 4.0, 0.5 * G, 10.88, times)
+    assert np.abs(exact).max() == pytest.approx(0.0539, abs=1e-4)  # note of the oracle
+    for stiffness in (1e10, 1e12):
+        edge = np.sqrt(stiffness / 8000.0)
+        bodies = block_on_floor(1.0, 4.0, dem.Law(stiffness, stiffness, 2.0, damping=2.0 / edge))
+        run = dem.run(bodies, dem.Options(5.0), cosine(0.5 * G, 10.88), times=times)
+        rotation = -run.place[:, 0, 2]
+        rms = float(np.sqrt(np.mean((rotation - np.interp(run.time, times, exact)) ** 2)))
+        assert rms < 0.005 * np.arctan(0.25)
+        assert run.residual < 0.01
+
+
+def test_moving_base_equals_body_force() -> None:
+    bodies = block_on_floor(1.0, 4.0, STIFF)
+    runs = [dem.run(bodies, dem.Options(1.5, 0.05, moving_base=base), cosine(0.5 * G, 10.88)) for base in (False, True)]
+    assert np.abs(runs[0].place[:, 0] - runs[1].place[:, 0]).max() < 1e-7
+    assert runs[1].residual < 0.01
+
+
+def test_threads_give_the_same_bits() -> None:
+    """A wall that falls apart, on one and on two threads."""
+    bricks = [
+        rectangle(x + 0.5 * (row % 2), x + 1.0 + 0.5 * (row % 2), 0.4 * row, 0.4 * row + 0.4)
+        for row in range(6)
+        for x in range(4)
+    ]
+    bodies = model(bricks, [rectangle(-20.0, 20.0, -1.0, 0.0)], dem.Law(1e9, 1e9, 0.6, damping=2e-3))
+    runs = [dem.run(bodies, dem.Options(0.8, 0.1, threads=k), cosine(1.2 * G, 8.0)) for k in (1, 2)]
+    assert np.array_equal(runs[0].place, runs[1].place)
+    assert all(np.array_equal(runs[0].energy[k], runs[1].energy[k]) for k in dem.ENERGIES)
+    assert runs[0].searches > 3  # the order of contacts changed on the way
+    assert runs[0].residual < 0.01
+
+
+def test_a_block_falls_on_another_and_rests() -> None:
+    bodies = model(
+        [rectangle(-0.5, 0.5, 0.0, 1.0), rectangle(0.2, 1.2, 1.5, 2.0)], [rectangle(-20.0, 20.0, -1.0, 0.0)], STIFF
+    )
+    run = dem.run(bodies, dem.Options(4.0, 0.1, stop_at_rest=True), shift=np.zeros((3, 3)))
+    assert run.reason == "rest"
+    assert run.residual < 0.02
+    lowest = run.place[-1, :2, 1].min()
+    assert lowest > 0.2  # nothing sank into the floor
+    assert run.energy["kinetic"][-1] < 1e-3
+
+
+def test_mortar_holds_until_its_strength() -> None:
+    """A bonded block hangs from a ceiling: tension k gap; it falls where its weight exceeds the strength."""
+    weight = 2000.0 * G  # of 1 x 1 x 1 m
+    for strength, falls in ((1.3 * weight, False), (0.9 * weight, True)):
+        law = dem.Law(1e9, 1e9, 0.6, cohesion=1e6, tension=strength, damping=2e-3)
+        bodies = model([rectangle(-0.5, 0.5, -1.0, 0.0)], [rectangle(-2.0, 2.0, 0.0, 1.0)], law)
+        # Gravity is brought in slowly through the ground, which accelerates downward at first.
+        slow = dem.Options(1.0, 0.05, settle_steps=0, gravity=(0.0, -G), mass_damping=0.0)
+        lift = pieces([0.0, 100.0], [0.0])
+        lift = type(lift)(
+            breaks=np.array([0.0, 0.5]), linear=np.array([[[0.0, 0.0], [-G, 2.0 * G]]]),
+            harmonic=np.zeros((1, 2, 0, 4)),
+        )  # fmt: skip
+        run = dem.run(bodies, slow, lift)
+        assert (run.place[-1, 0, 1] < -0.6) == falls
+
+
+def test_support_settles() -> None:
+    bodies = block_on_floor(1.0, 1.0, STIFF)
+    run = dem.run(bodies, dem.Options(1.5, 0.1), moves=(dem.SupportMove(1, 0.0, -0.05, 0.0, 0.1, 1.0),))
+    assert run.place[-1, 0, 1] - run.settled[0, 1] == pytest.approx(-0.05, abs=1e-5)
+    assert run.residual < 0.01
+
+
+def test_step_above_the_critical_one_is_told() -> None:
+    bodies = block_on_floor(1.0, 4.0, STIFF)
+    run = dem.run(bodies, dem.Options(1.0, 0.1, step=1.0))
+    assert run.reason == "step" and 0.0 < run.critical_step < 1.0
+
+
+def test_overlapping_blocks_are_named() -> None:
+    bodies = model(
+        [rectangle(0.0, 1.0, 0.0, 1.0), rectangle(0.9, 1.9, 0.0, 1.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF
+    )
+    run = dem.run(bodies, dem.Options(1.0, 0.1))
+    assert run.reason == "overlap" and sorted(run.blamed) == [0, 1]
+
+
+def test_a_block_that_leaves_the_domain_is_named() -> None:
+    bodies = model(
+        [rectangle(0.0, 1.0, 0.0, 1.0), rectangle(30.0, 31.0, 5.0, 6.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], STIFF
+    )
+    options = dem.Options(3.0, 0.1, domain=(-40.0, 40.0, -2.0, 40.0))
+    run = dem.run(bodies, options, shift=np.zeros((3, 3)))
+    assert run.reason == "left" and run.blamed == [1]
