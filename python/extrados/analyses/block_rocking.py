@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from extrados.analyses.block_model import BlockModel, block_model
+from extrados.analyses.block_model import BlockModel, as_block, block_model, initial_ratio
 from extrados.analyses.run import Context
 from extrados.analyses.tilt import geometry_arrays
 from extrados.core import rocking as core_rocking
@@ -13,9 +13,12 @@ from extrados.results.model import Array, Result, TableData
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, and the friction that keeps the toe from sliding."""
-    model = block_model(context.structure, context.deck.structure)
+    structure = context.deck.structure
+    model = block_model(as_block(structure, context.structure), structure)
     context.warnings += model.warnings + context.motion.notes
-    ratio = context.deck.structure.initial_rotation_ratio
+    if structure.kind == "column":
+        context.warnings.append("the column is taken as one rigid body; joints that open are left to the analysis `dem`")
+    ratio = initial_ratio(structure)
     side = 1 if ratio >= 0.0 else -1
     p = float(model.frequency.min())
     end_time = options.end_time or context.motion.end + 30.0 / p
