@@ -47,7 +47,9 @@ def monolith(assembly: Assembly) -> Block:
     inertia = float(assembly.inertia.sum() + assembly.mass @ (arm**2).sum(axis=1))
     vertices = np.concatenate(assembly.outlines)
     ground, top = vertices[:, 1].min(), vertices[:, 1].max()
-    base, head = (vertices[np.isclose(vertices[:, 1], y, atol=1e-9 * (top - ground)), 0] - centre[0] for y in (ground, top))
+    base, head = (
+        vertices[np.isclose(vertices[:, 1], y, atol=1e-9 * (top - ground)), 0] - centre[0] for y in (ground, top)
+    )
     height = float(top - ground)
     made = make_block(
         depth=assembly.depth, mass=mass, inertia=inertia, centre_height=float(centre[1] - ground),
