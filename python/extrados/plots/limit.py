@@ -121,7 +121,9 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         stone(axes[0], blocks)
         ground(axes[0], run, name, _standing(run, name))
         if with_lines:
-            thrust_lines(axes[0], paths(run, name, "collapse_line"))
+            thrust_lines(axes[0], paths(run, name, "collapse_line"), label="thrust line")
+            thrust_lines(axes[0], paths(run, name, "collapse_funicular"), style.EDGE, "funicular", linewidth=0.6, linestyle="--")
+            axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2)
         else:
             axes[0].plot(*run.array(name, "collapse_point").T, ".", color=style.THRUST, markersize=3, zorder=3)
         hinge_marks(axes[0], r["hinges"])
@@ -200,7 +202,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for which, colour in colours.items():
             thrust_lines(ax, paths(run, name, f"{which}_line"), colour, f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m")
         overall_dimensions(ax, blocks)
-        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
         ax.set_title(f"Thrust lines at {r['gamma_g']:g} g, safety factor {r['geometric_safety_factor']:.2f}")
         style.section_axes(ax)
         polygon(forces, {which: paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours}, tuple(colours.values()))
