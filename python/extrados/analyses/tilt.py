@@ -3,7 +3,13 @@
 import numpy as np
 
 from extrados.analyses.limit_common import (
-    answer_of, fracture_of, geometry_arrays, graphic_arrays, hinge_rows, reaction_rows, state_arrays,
+    answer_of,
+    fracture_of,
+    geometry_arrays,
+    graphic_arrays,
+    hinge_rows,
+    reaction_rows,
+    state_arrays,
 )  # fmt: skip
 from extrados.analyses.run import Context
 from extrados.decks.limit import Tilt
@@ -151,9 +157,8 @@ def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Resul
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
         text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
-    text += (
-        f"Friction of {result.results['required_friction']:.2f} is needed"
-        + (f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else ".")
+    text += f"Friction of {result.results['required_friction']:.2f} is needed" + (
+        f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."
     )
     fracture = result.results.get("fracture", {})
     if fracture.get("cracks"):
