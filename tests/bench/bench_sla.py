@@ -65,7 +65,9 @@ class Wall:
 def against_refactorisation() -> None:
     """Time per event of both at four sizes, the largest difference of the loads, the growth with the size."""
     print("\nsla: per event, one thread; update of the factor against supernodal refactorisation, same sweep")
-    print(f"{'equations':>10} {'update ms':>10} {'refactor ms':>12} {'ratio':>7} {'factor MB':>10} {'load difference':>16}")
+    print(
+        f"{'equations':>10} {'update ms':>10} {'refactor ms':>12} {'ratio':>7} {'factor MB':>10} {'load difference':>16}"
+    )
     rows = []
     for n, (many, few) in SIZES.items():
         wall = Wall(n)
