@@ -111,6 +111,17 @@ def test_sweep_of_whole_numbers_and_nested_keys() -> None:
     assert nested["collapse_accelerations_g"][1] == pytest.approx(0.0681, abs=1e-4)
 
 
+def test_sweep_of_friction() -> None:
+    """Oppenheim's arch: below .495 the leeward springing slides."""
+    arch = {**ARCH, "embrace": 157.5, "voussoirs": 7}
+    result = run(arch, kind="sweep", vary="analysis.friction", start=0.3, stop=0.6, count=13)
+    assert result["changes"][-1]["value"] == pytest.approx(0.495, abs=1e-3)
+    assert result["optimum_collapse_acceleration_g"] == pytest.approx(0.37000974, abs=1e-8)
+    assert "slide" in result["mechanisms"][0]["hinges"]
+    assert "cannot vary" in run(arch, kind="sweep", vary="analysis.load", start=0.3, stop=0.6).reason
+    assert "above 0" in run(arch, kind="sweep", vary="analysis.strength", start=0.0, stop=1e6).reason
+
+
 def test_survey(tmp_path: Path) -> None:
     (tmp_path / "s.csv").write_text(
         "name,thickness,embrace\nfirst,1.5,157.5\nthin,0.2,180\nsilly,twelve,150\nunit,150 cm,157.5\n,,\nempty,,157.5\n"

@@ -40,6 +40,7 @@ def run(context: Context, options: Tilt) -> Result:
         "collapse_acceleration_opposite_g": -answer.back_state.gamma,
         "tilt_angle_deg": degrees(state.gamma),
         "tilt_angle_opposite_deg": degrees(-answer.back_state.gamma),
+        "admissible_interval_g": [answer.back_state.gamma, state.gamma],
         "load_direction": "+x",
         "hinges": hinges,
         "sliding_joints": mechanism.sliding,
