@@ -286,7 +286,7 @@ contains
 
    !> A batch of events
    subroutine run(handle, room, stop_lambda, stop_displacement, stop_fraction, stop_compliance, refuse_overload, &
-                  monitors, entries, first, node, direction, share, count, reals, integers, monitored, guard, reason, &
+                  monitors, entries, first, node, direction, share, count, reals, integers, monitored, guard, cracked, reason, &
                   status)
       use sla_events, only : run_events, stop_rules, event_log
       use sla_handle, only : model_of
@@ -309,6 +309,7 @@ contains
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       integer(c_int), intent(out) :: guard(3)            !! residual checks, re-solutions, new factors
+      real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
       integer(c_int), intent(out) :: reason
       integer(c_int), intent(out) :: status
       type(model), pointer :: made
@@ -339,6 +340,7 @@ contains
       integers(:, 1:count) = log%integers(:, 1:count)
       monitored(:, 1:count) = log%monitors(:, 1:count)
       guard = int(made%guard, c_int)
+      cracked = made%cracked
    end subroutine run
 
    !> Displacements of the nodes under A and under B

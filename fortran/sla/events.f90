@@ -105,9 +105,14 @@ contains
          call record(made, found, equilibrium, first, equation, share, log)
          if (reason /= stop_none) return
          if (equilibrium) then
-            made%peak = max(made%peak, made%lambda)
+            if (made%lambda > made%peak) then
+               made%peak = made%lambda
+               made%peak_displacement = log%monitors(1, log%count)
+            end if
             if (abs(log%monitors(1, log%count)) >= rules%displacement) reason = stop_displacement
-            if (rules%fraction >= 0.0_wp .and. made%lambda < rules%fraction * made%peak) reason = stop_fraction
+            ! A drop on the way back from a small crack is no end: the wall must have gone further than at its peak.
+            if (rules%fraction >= 0.0_wp .and. made%peak > 0.0_wp .and. made%lambda < rules%fraction * made%peak .and. &
+                (log%monitors(1, log%count) - made%peak_displacement) * made%slope > 0.0_wp) reason = stop_fraction
          end if
          if (made%work(3) > rules%compliance * made%first_compliance) reason = stop_mechanism
          if (reason /= stop_none) return
@@ -371,7 +376,7 @@ contains
 
    !> One row of the log
    subroutine record(made, found, equilibrium, first, equation, share, log)
-      type(model), intent(in) :: made
+      type(model), intent(inout) :: made
       type(scan_result), intent(in) :: found
       logical, intent(in) :: equilibrium
       integer(c_int), intent(in) :: first(:)
@@ -399,6 +404,7 @@ contains
          do i = int(first(k)), int(first(k + 1)) - 1
             log%monitors(k, log%count) = log%monitors(k, log%count) + &
                share(i) * (made%ua(equation(i)) + made%lambda * made%ub(equation(i)))
+            if (k == 1) made%slope = merge(0.0_wp, made%slope, i == first(1)) + share(i) * made%ub(equation(i))
          end do
       end do
    end subroutine record

@@ -53,6 +53,8 @@ module sla_model
       real(wp) :: cracked = 0.0_wp                       !! [J] at constant strain: the area of the teeth
       real(wp) :: first_compliance = 0.0_wp              !! fb.ub at the start of the stage
       real(wp) :: peak = 0.0_wp                          !! greatest |lambda| in equilibrium of the stage
+      real(wp) :: peak_displacement = 0.0_wp             !! of monitor 1 there [m]
+      real(wp) :: slope = 0.0_wp                         !! of monitor 1 per unit lambda [m]
       real(wp) :: residual = 0.0_wp                      !! the last found by the guard
       integer :: guard(3) = 0                            !! residual checks, re-solutions, new factors
       integer :: events = 0

@@ -9,7 +9,7 @@ from extrados.analyses.run import Context, Refused
 from extrados.analyses.sla_curve import bilinear, envelope
 from extrados.analyses.sla_model import SlaModel, build, strength_factors
 from extrados.analyses.sla_run import Curve, State, damage_before, run_curves
-from extrados.core.sla import EVENTS
+from extrados.core.sla import EVENTS, Plane, teeth
 from extrados.decks.sla import Sla
 from extrados.decks.walls import Panel
 from extrados.results.model import Array, Result, TableData
@@ -63,7 +63,7 @@ def _resume(context: Context, options: Sla) -> np.ndarray | None:
         raise Refused(f"resume_from: {error}") from None
 
 
-def _numbers(model: SlaModel, curve: Curve) -> dict[str, Any]:
+def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     """Results of one curve; keys end in their unit."""
     events, peak, unit = curve.events, curve.peak, model.unit
     lost = np.flatnonzero(~events.equilibrium)
@@ -87,7 +87,7 @@ def _numbers(model: SlaModel, curve: Curve) -> dict[str, Any]:
         "external_work_J": float(events.external[-1]) if len(events) else None,
         "stored_energy_J": float(events.stored[-1]) if len(events) else None,
         "dissipated_energy_J": float(events.dissipated[-1]) if len(events) else None,
-        "crack_energy_J": float(events.crack[-1]) if len(events) else None,
+        "crack_energy_J": events.crack_total,
         "residual_ratio": float(events.residual.max()) if len(events) else None,
         "guard_checks": events.guard[0],
         "guard_resolutions": events.guard[1],
@@ -96,6 +96,11 @@ def _numbers(model: SlaModel, curve: Curve) -> dict[str, Any]:
         "events_of_constant_loads": len(curve.stage_a) - 1 if curve.stage_a is not None and len(curve.stage_a) else 0,
     }
     d, p = envelope(events.monitors[events.equilibrium, 0], events.load[events.equilibrium] * unit)
+    if options.probes:
+        reached = [float(np.interp(x, d, p)) if x <= d[-1] else None for x in options.probes]
+        numbers["probe_loads_N"] = reached
+    if len(events):
+        numbers["initial_stiffness_N_m"] = float(unit**2 / events.compliance[0])
     idea = bilinear(d, p)
     if idea is not None:
         numbers["bilinear"] = {
@@ -106,18 +111,33 @@ def _numbers(model: SlaModel, curve: Curve) -> dict[str, Any]:
     return numbers
 
 
+def _tooth_counts(model: SlaModel) -> list[int]:
+    """Least and greatest number of teeth of the cracking elements (of the widest and narrowest bands)."""
+    laws = {}
+    for group in model.groups:
+        if isinstance(group, Plane) and group.tension is not None:
+            for k, law in enumerate(group.tension):
+                if law is not None:
+                    band = float(group.band[k])
+                    low, high = laws.get((law, float(group.young[k])), (band, band))
+                    laws[law, float(group.young[k])] = (min(low, band), max(high, band))
+    counts = [len(teeth(law, young, h)[0]) for (law, young), ends in list(laws.items())[:50] for h in ends]
+    return [min(counts), max(counts)] if counts else [0, 0]
+
+
 def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]) -> None:
     first = curves[0]
     result.results = {
-        **_numbers(model, first),
+        **_numbers(model, options, first),
         "reference_load_N": model.unit,
+        "teeth": _tooth_counts(model),
         "nodes": len(model.wall.xy),
         "elements": model.wall.elements(),
         "equations": first.equations,
         "points": first.points,
     }
     for curve in curves[1:]:
-        result.results["minus"] = _numbers(model, curve)
+        result.results["minus"] = _numbers(model, options, curve)
     for curve in curves:
         result.warnings += curve.warnings
         events, sense = curve.events, "" if curve.sign > 0 else " (load to -)"

@@ -135,6 +135,7 @@ class Events:
     reason: str = ""
     guard: tuple[int, int, int] = (0, 0, 0)
     interrupted: bool = False
+    crack_total: float = 0.0  # with the last event applied [J]
 
     def __len__(self) -> int:
         return len(self.load)
@@ -155,9 +156,11 @@ class Events:
         columns = {
             name: np.concatenate([getattr(p, name) for p in parts])
             for name in Events.__dataclass_fields__
-            if name not in ("reason", "guard", "interrupted")
+            if name not in ("reason", "guard", "interrupted", "crack_total")
         }
-        return Events(**columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted)
+        return Events(
+            **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total
+        )
 
 
 @dataclass(frozen=True)
@@ -433,7 +436,7 @@ class Model:
         stop = stop or Stop()
         first = np.cumsum([1] + [len(m.node) for m in monitors]).astype(np.int32)
         huge = np.finfo(float).max
-        count, reals, ints, watched, guard, reason, status = long_call(
+        count, reals, ints, watched, guard, cracked, reason, status = long_call(
             _core.api_sla.run, self._handle, int(room), min(stop.load, huge), min(stop.displacement, huge),
             float(stop.fraction), float(stop.compliance), int(stop.refuse_overload), first,
             integers("node", np.concatenate([m.node for m in monitors])) + np.int32(1),
@@ -446,7 +449,7 @@ class Model:
         reals, ints = reals[:, :count].copy(), ints[:, :count]
         return Events(
             *reals, ints[0] - 1, ints[1].copy(), ints[2].copy(), ints[3].astype(bool), watched[:, :count].T.copy(),
-            STOPS[int(reason)], tuple(int(g) for g in guard), interrupted,
+            STOPS[int(reason)], tuple(int(g) for g in guard), interrupted, float(cracked),
         )  # fmt: skip
 
     def displacement(self, load: float) -> np.ndarray:

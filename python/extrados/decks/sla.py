@@ -98,6 +98,7 @@ class Sla(Analysis):
     crack_closure: bool = key(False, "cracks that close regain their stiffness")
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[int] = key([], "events whose state is kept (the peak and the last are anyway)", max_length=200)
+    probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
     section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections", max_length=10)
     seeds: list[int] = key([], "repeat with these seeds of random mesh and strength: a scatter band", max_length=200)
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)

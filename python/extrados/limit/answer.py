@@ -7,6 +7,7 @@ import numpy as np
 from extrados.limit.graphic import force_polygon, funicular, pier_line
 from extrados.limit.loads import Loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.limit.systems import Sparse
 from extrados.structures.assembly import GROUND, Assembly
 
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
@@ -22,7 +23,8 @@ class Answer:
 
     collapse_state is the state at collapse with the free part of the line at its most central; least and
     most are the states of least and greatest thrust of each chain; central the most central upright line,
-    held by `part` of the joints' length. touching: joints whose end the line touches without a hinge.
+    held by `part` of the joints' length (None and NaN for a wall of many loops, where this takes many large
+    programmes). touching: joints whose end the line touches without a hinge.
     """
 
     assembly: Assembly
@@ -33,7 +35,7 @@ class Answer:
     back_mechanism: Mechanism
     least: dict[str, State]
     most: dict[str, State]
-    central: State
+    central: State | None
     part: float
 
     @property
@@ -50,8 +52,11 @@ class Answer:
 
     @property
     def safety(self) -> float:
-        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line."""
-        return 1.0 / self.part
+        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line.
+
+        Infinite where the line can run through the middles of all joints.
+        """
+        return np.inf if self.part < 1e-9 else 1.0 / self.part
 
     @property
     def touching(self) -> list[int]:
@@ -113,6 +118,11 @@ def assess(
     state, mechanism = limit.collapse(1)
     back, back_mechanism = limit.collapse(-1)
     moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
+    if isinstance(limit.system, Sparse):
+        return Answer(
+            assembly, limit.loads, state, mechanism, back, back_mechanism,
+            {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()}, None, np.nan,
+        )  # fmt: skip
     drawn = limit.recentred(state, moving)
     central, part = limit.central(start=[state for pair in ends.values() for state in pair])
     return Answer(
