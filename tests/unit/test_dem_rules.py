@@ -23,7 +23,13 @@ def test_table_7_3() -> None:
     # recomputed to four digits; the table prints 1.3e-3, 5.7e-4, 4.0e-4
     for name, beta in (("rotation", 1.347e-3), ("corner", 5.66e-4), ("edge", 4.00e-4)):
         assert rules.damping_constant(float(impact.of(name)[0])) == pytest.approx(beta, rel=1e-3)
-    printed = {1.3e-3: (100, 240, 340), 5.7e-4: (42, 100, 141), 4.0e-4: (30, 71, 100), 2.0e-4: (15, 36, 50), 1.0e-4: (7.6, 18, 25)}
+    printed = {
+        1.3e-3: (100, 240, 340),
+        5.7e-4: (42, 100, 141),
+        4.0e-4: (30, 71, 100),
+        2.0e-4: (15, 36, 50),
+        1.0e-4: (7.6, 18, 25),
+    }
     exact = {1.3e-3: 1.347e-3, 5.7e-4: 5.657e-4}
     for beta, row in printed.items():
         for name, percent in zip(("rotation", "corner", "edge"), row, strict=True):

@@ -3,7 +3,13 @@
 import numpy as np
 
 from extrados.analyses.limit_common import (
-    answer_of, fracture_of, geometry_arrays, graphic_arrays, hinge_rows, reaction_rows, state_arrays,
+    answer_of,
+    fracture_of,
+    geometry_arrays,
+    graphic_arrays,
+    hinge_rows,
+    reaction_rows,
+    state_arrays,
 )  # fmt: skip
 from extrados.analyses.run import Context
 from extrados.decks.limit import Tilt

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from extrados.structures.assembly import Assembly
+from extrados.structures.builder import BadGeometry
 from extrados.structures.contacts import find_contacts
 from extrados.structures.polygons import crosses_itself, properties, signed_area
-from extrados.structures.builder import BadGeometry
 
 LARGEST_FILE = 20_000_000  # bytes
 MOST_BLOCKS = 20_000

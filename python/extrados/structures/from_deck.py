@@ -4,9 +4,8 @@ from pathlib import Path
 from typing import Any
 
 from extrados.decks import block as block_models
-from extrados.decks import masonry
+from extrados.decks import masonry, vaults
 from extrados.decks import structures as models
-from extrados.decks import vaults
 from extrados.decks.table import Structure
 from extrados.structures import from_vaults
 from extrados.structures.arch import make_arch
