@@ -25,4 +25,24 @@ EXTRADOS_API void extrados_library_init(void);
 /* version.c: the linked CHOLMOD as major*10000 + minor*100 + patch. */
 EXTRADOS_API int extrados_cholmod_version(void);
 
+/* ldl.c: a symmetric sparse system, lower triangle by columns, 0-based. `order` gives the fill-reducing
+ * order (ordering 0 AMD, 1 METIS; order[new] = old); everything after it expects equations in that order. */
+EXTRADOS_API int extrados_sparse_order(int64_t n, const int64_t *start, const int64_t *row, int ordering,
+                                       int64_t *order);
+/* Analyse only: `values` doubles will hold the factor. The pattern must outlive the handle. */
+EXTRADOS_API int extrados_sparse_new(int64_t n, const int64_t *start, const int64_t *row, void **handle,
+                                     int64_t *values);
+EXTRADOS_API void extrados_sparse_free(void **handle);
+/* LDL' of new values; the smallest over the largest pivot, and the equation of the smallest (or the first
+ * that is not positive). */
+EXTRADOS_API int extrados_sparse_factor(void *handle, const double *value, double *ratio, int64_t *weakest);
+EXTRADOS_API int extrados_sparse_solve(void *handle, int vectors, double *z);
+/* z = K^-1 w for up to 4 vectors with `count` entries each at `index` (0-based, of one element). */
+EXTRADOS_API int extrados_sparse_event(void *handle, int vectors, int count, const int *index, const double *w,
+                                       double *z);
+/* K + sign w w': after not_positive_definite the factor must be made anew. */
+EXTRADOS_API int extrados_sparse_rank1(void *handle, int sign, int count, const int *index, const double *w);
+/* Factorise and solve by CHOLMOD alone: the algorithm the updates are compared with. */
+EXTRADOS_API int extrados_sparse_plain(void *handle, const double *value, int vectors, double *z);
+
 #endif

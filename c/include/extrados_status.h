@@ -16,6 +16,9 @@
   ENTRY(7, step_too_small, "the integrator cannot reach its tolerance: the step vanished") \
   ENTRY(8, bad_geometry, "the geometry is impossible") \
   ENTRY(9, library_failed, "a numerical library reported a failure") \
+  ENTRY(10, snap_back, "the crack band is wider than the fracture energy allows: the law snaps back") \
+  ENTRY(11, too_large, "the factor would not fit into the memory allowed") \
+  ENTRY(12, beyond_strength, "the constant loads alone exceed the strength") \
   ENTRY(130, cancelled, "cancelled")
 
 #define EXTRADOS_ENUM_ENTRY(code, name, text) EXTRADOS_##name = code,

@@ -80,6 +80,7 @@ def run(
     out: Annotated[Path | None, typer.Option(help="results folder; default results/<deck name>")] = None,
     threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
     resume: Annotated[bool, typer.Option(help="go on from the checkpoint of an interrupted run")] = False,
+    scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the sweeps")] = "",
     figures: Annotated[bool, typer.Option(help="draw figures and the report")] = True,
     quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no answer")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
@@ -97,7 +98,7 @@ def run(
         checked = [read_deck(path) for path in decks]
         for deck in checked:
             progress = _Progress(quiet or as_json)
-            context = Context(deck, threads or default_threads(), progress, resume=resume)
+            context = Context(deck, threads or default_threads(), progress, resume=resume, scheduler=scheduler)
             try:
                 folder, results = run_deck(context, out, figures)
             finally:

@@ -7,7 +7,7 @@ from typing import Any
 from extrados._build_info import BUILD_TYPE, C_COMPILER, COMPILER, VERSION
 from extrados.analyses.run import Context, run_analyses
 from extrados.decks.reader import Deck
-from extrados.results import store
+from extrados.results import checkpoint, store
 from extrados.results.model import Result
 
 
@@ -42,13 +42,15 @@ def run_deck(context: Context, out: Path | None = None, figures: bool = True) ->
     out = Path(out) if out is not None else default_out(deck)
     store.prepare(out)
     context.out = out
+    if context.resume:
+        checkpoint.refuse_other_deck(out, deck.identity)
     results = run_analyses(context)
     with store.new_folder(out) as folder:
         head = {
             "extrados": provenance(),
             "deck": {
                 "path": deck.path,
-                "sha256": deck.sha256,
+                "sha256": deck.identity,
                 "title": deck.title,
                 "note": deck.note,
                 "resolved": deck.resolved(),
@@ -59,4 +61,6 @@ def run_deck(context: Context, out: Path | None = None, figures: bool = True) ->
             from extrados.plots.report import write_report
 
             write_report(folder)
+    if all(r.status in ("ok", "refused") for r in results):
+        checkpoint.discard(out)
     return out, results

@@ -64,20 +64,26 @@ def test_read_only_folder(tmp_path) -> None:
 
 
 def test_small_commands(tmp_path) -> None:
-    assert json.loads(extrados("schema").stdout)["title"] == "extrados deck"
-    assert "R_A" in extrados("explain", "radius").stdout
-    assert extrados("explain", "raduis").returncode == 2
-    assert 'kind = "rocking"' in extrados("new", "rocking").stdout
-    assert "readme.toml" in extrados("cases", str(ROOT / "cases")).stdout
-    assert extrados("version").stdout.startswith("extrados 0")
+    from typer.testing import CliRunner
+
+    from extrados.cli import app
+
+    def call(*args: str):
+        return CliRunner().invoke(app, list(args))
+
+    assert json.loads(call("schema").stdout)["title"] == "extrados deck"
+    assert "R_A" in call("explain", "radius").stdout
+    assert call("explain", "raduis").exit_code == 2
+    assert 'kind = "rocking"' in call("new", "rocking").stdout
+    assert "readme.toml" in call("cases", str(ROOT / "cases")).stdout
+    assert call("version").stdout.startswith("extrados 0")
     good = deck(tmp_path, ARCH + '[analysis]\nkind = "tilt"\n')
-    assert extrados("check", good).stdout.strip() == "ok"
-    assert (
-        json.loads(extrados("run", good, "--json", "--out", str(tmp_path / "o")).stdout)["analyses"][0]["status"]
-        == "ok"
-    )
-    assert extrados("report", str(tmp_path / "o")).returncode == 0
-    assert extrados("report", str(tmp_path)).returncode == 3
+    assert call("check", good).stdout.strip() == "ok"
+    out = str(tmp_path / "o")
+    assert json.loads(call("run", good, "--json", "--out", out).stdout)["analyses"][0]["status"] == "ok"
+    assert call("report", out).exit_code == 0
+    assert call("plot", out).exit_code == 0
+    assert call("report", str(tmp_path)).exit_code == 3
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
@@ -88,11 +94,18 @@ def test_ctrl_c_in_a_compiled_loop(tmp_path) -> None:
         + '[motion]\nkind = "harmonic"\namplitude = "0.42 g"\nfrequency = 30.0\nduration = 20000.0\n'
         + '[analysis]\nkind = "rocking"\noutput_step = 1.0\ntolerance = 1e-12\n'
     )
+    # The command line as it is, but it says when it enters the core
+    code = (
+        "import sys; import extrados.core.rocking as r; call = r.long_call;"
+        "r.long_call = lambda *a, **k: (print('in the core', flush=True), call(*a, **k))[1];"
+        f"sys.argv = ['extrados', 'run', {deck(tmp_path, text)!r}, '--out', {str(tmp_path / 'o')!r}, '--no-figures'];"
+        "from extrados.cli import main; main()"
+    )
     process = subprocess.Popen(
-        [sys.executable, "-m", "extrados.cli", "run", deck(tmp_path, text), "--out", str(tmp_path / "o"), "--no-figures"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        [sys.executable, "-c", code], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )  # fmt: skip
-    time.sleep(4.0)
+    assert process.stdout.readline().strip() == "in the core"
+    time.sleep(1.0)
     assert process.poll() is None, "the run was over before it could be interrupted"
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=20)

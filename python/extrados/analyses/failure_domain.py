@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.analyses.arch_model import ArchModel
+from extrados.analyses.rocking_model import RockingModel, rocking_model
 from extrados.analyses.run import Context
-from extrados.core import rocking as core_rocking
-from extrados.core.errors import Cancelled, CoreError, status_code
+from extrados.analyses.runs import RunsJob, runs_job
+from extrados.analyses.batches import sweep
 from extrados.core.rocking import Body
 from extrados.decks.analyses import FailureDomain
 from extrados.motions import pulses
@@ -23,15 +24,24 @@ NO_HINGING, RECOVERY, MODE_I, MODE_II = 0, 1, 2, 3
 BATCH = 4096
 
 
+#: What the deck calls the duration of each pulse, and how many of it span the natural range of the curve
+SPANS = {"step": ("t_p", 1.0), "sine": ("T_p", 2.4), "half-sine": ("T_p", 4.0), "rectangular": ("t_p", 2.0),
+         "cosine": ("T_p", 2.4), "ricker": ("T_p", 2.4)}  # fmt: skip
+
+
 def unit_pulse(pulse: str, duration: float) -> Motion:
     """The pulse of 1 m/s^2, first to -x, so that the structure first rocks to +x."""
-    make = pulses.step_pulse if pulse == "step" else pulses.sine_pulse
-    return make(-1.0, duration)
+    if pulse == "step":
+        return pulses.step_pulse(-1.0, duration)
+    if pulse == "sine":
+        return pulses.sine_pulse(-1.0, duration)
+    return pulses.pulse(pulse, -1.0, duration)
 
 
 @dataclass(frozen=True)
 class Curves:
-    """Lowest failing amplitudes [m/s^2] at each duration (NaN: none below the cap), and the map.
+    """Lowest failing amplitudes [m/s^2] at each duration (NaN: none below the cap), and the map; pocket: where
+    the first safe pocket above the curve begins (NaN: none).
 
     codes (durations, amplitudes): 0 no hinging, 1 recovery, 2 Mode I, 3 Mode II.
     """
@@ -41,60 +51,63 @@ class Curves:
     codes: np.ndarray
     mode_i: np.ndarray
     mode_ii: np.ndarray
+    pocket: np.ndarray
+
+
+def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
+    """Outcome codes of the map."""
+    return np.where(outcome == 2, np.where(half_cycles == 1, MODE_II, MODE_I), np.minimum(outcome, 1)).astype(int)
 
 
 class Mapper:
     """Runs pulses of many durations and amplitudes on one structure."""
 
-    def __init__(self, body: Body, pulse: str, durations: Sequence[float], settle: float, threads: int):
+    def __init__(
+        self, body: Body, pulse: str, durations: Sequence[float], settle: float, threads: int, start_rotation: float = 0.0
+    ):
         self.body = body
         self.motions = [unit_pulse(pulse, t) for t in durations]
         self.settle = settle
         self.threads = threads
+        self.start_rotation = start_rotation
 
-    def codes(self, index: np.ndarray, amplitude: np.ndarray, tick: Callable[[int], None]) -> np.ndarray:
-        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]."""
-        out = np.empty(len(index), dtype=int)
-        grounds = [m.ground for m in self.motions]
+    def job(self, index: np.ndarray, amplitude: np.ndarray) -> RunsJob:
+        """Pulses `index` of the given amplitudes [m/s^2]."""
         ends = np.array([m.end for m in self.motions]) + self.settle
+        return runs_job(
+            [self.body], [m.ground for m in self.motions], 0, index, amplitude, ends[index], self.start_rotation
+        )
+
+    def codes(self, index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]."""
+        job = self.job(index, amplitude)
+        parts = []
         for first in range(0, len(index), BATCH):
-            part = slice(first, first + BATCH)
-            e = core_rocking.ensemble(
-                [self.body], grounds, np.zeros(len(index[part]), dtype=int), index[part], amplitude[part],
-                ends[index[part]], threads=self.threads,
-            )  # fmt: skip
-            if e.interrupted:
-                raise Cancelled(status_code("cancelled"), "failure domain interrupted")
-            if e.failed:
-                raise CoreError(0, f"failure domain: {next(iter(e.failed.values()))}")
-            collapse = e.outcome == 2
-            out[part] = np.where(collapse, np.where(e.half_cycles == 1, MODE_II, MODE_I), np.minimum(e.outcome, 1))
-            tick(len(index[part]))
-        return out
+            rows = job.run(first, min(BATCH, len(index) - first), self.threads)
+            parts.append(codes_of(rows["outcome"], rows["half_cycles"]))
+        return np.concatenate(parts)
 
 
-def failure_curves(
-    mapper: Mapper,
-    durations: np.ndarray,
-    amplitudes: np.ndarray,
-    accuracy: float,
-    tick: Callable[[int], None] = lambda n: None,
-) -> Curves:
+def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, accuracy: float) -> Curves:
     """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map."""
     nd, na = len(durations), len(amplitudes)
-    grid = np.repeat(np.arange(nd), na)
-    codes = mapper.codes(grid, np.tile(amplitudes, nd), tick).reshape(nd, na)
-    curves = [
-        _refine(
-            lambda i, a: mapper.codes(i, a, tick),
-            codes,
-            np.broadcast_to(amplitudes, codes.shape),
-            wanted,
-            accuracy,
-        )
-        for wanted in (MODE_I, MODE_II)
-    ]
-    return Curves(durations, amplitudes, codes, *curves)
+    codes = mapper.codes(np.repeat(np.arange(nd), na), np.tile(amplitudes, nd)).reshape(nd, na)
+    return curves_of(mapper, durations, amplitudes, codes, accuracy)
+
+
+def curves_of(
+    mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, codes: np.ndarray, accuracy: float
+) -> Curves:
+    """The curves of a map that has been run."""
+    grid = np.broadcast_to(amplitudes, codes.shape)
+    refined = [_refine(mapper.codes, codes, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II)]
+    # The pocket is the first safe amplitude above a failing one: the same search with the roles exchanged.
+    risen = np.where((codes < MODE_I) & (np.cumsum(codes >= MODE_I, axis=1) > 0), MODE_I, RECOVERY)
+
+    def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
+
+    return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, accuracy))
 
 
 def shortest_durations(
@@ -110,7 +123,7 @@ def shortest_durations(
 
     def codes(index: np.ndarray, length: np.ndarray) -> np.ndarray:
         mapper = Mapper(body, pulse, length.tolist(), settle, threads)
-        return mapper.codes(np.arange(len(length)), amplitudes[index], lambda n: None)
+        return mapper.codes(np.arange(len(length)), amplitudes[index])
 
     na, nd = len(amplitudes), len(durations)
     grid = np.broadcast_to(durations, (na, nd))
@@ -152,56 +165,56 @@ def _refine(
     return out
 
 
-def natural_durations(model: ArchModel, pulse: str, count: int = 40) -> np.ndarray:
-    """Durations that cover the curve: from a twentieth to three times sqrt(R/g) (Eq. 5.7)."""
-    unit = np.sqrt(model.arch.radius / GRAVITY)
-    span = (0.1, 1.0) if pulse == "step" else (0.2, 2.4)
-    return np.round(np.linspace(*span, count) * unit, 4)
+def natural_durations(time_unit: float, pulse: str, count: int = 40) -> np.ndarray:
+    """Durations that cover the curve of a structure whose natural time is `time_unit` [s] (Eq. 5.7)."""
+    high = SPANS[pulse][1]
+    return np.round(np.linspace(0.1 * high, high, count) * time_unit, 4)
+
+
+def natural_time(model: ArchModel) -> float:
+    """sqrt(R/g), by which the curves of arches scale (Eq. 5.7) [s]."""
+    return float(np.sqrt(model.arch.radius / GRAVITY))
 
 
 def settling_time(model: ArchModel) -> float:
     """Long enough for the last half cycles after a pulse; runs stop earlier once they are safe."""
-    return 40.0 * float(np.sqrt(model.arch.radius / GRAVITY))
+    return 40.0 * natural_time(model)
 
 
 def run(context: Context, options: FailureDomain) -> Result:
-    """Map, Mode I and Mode II curves of step or sine pulses."""
-    model = ArchModel(context.structure, context.deck.structure.restitution)
-    context.warnings += model.warnings
-    gamma = model.collapse[0].gamma
-    durations = np.array(options.durations) if options.durations else natural_durations(model, options.pulse)
+    """Map, Mode I and Mode II curves of pulses on an arch or a block."""
+    model = rocking_model(context)
+    # The arch keeps sqrt(R/g); a block has 1/p, and its curves span omega/p from about 1 to 12.
+    unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
+    durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
-    mapper = Mapper(model.body, options.pulse, durations, settling_time(model), context.threads)
-    total = len(durations) * len(amplitudes) * 1.5
-    done = 0
-
-    def tick(n: int) -> None:
-        nonlocal done
-        done += n
-        context.progress(min(done, total), total, "failure domain")
-
-    curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY, tick)
+    mapper = Mapper(model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation)
+    job = mapper.job(np.repeat(np.arange(len(durations)), len(amplitudes)), np.tile(amplitudes, len(durations)))
     result = Result("failure-domain")
+    swept = sweep(context, "failure-domain", job, len(job.scale), "failure domain")
+    if not swept.complete:
+        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
+        return result
+    codes = codes_of(swept["outcome"], swept["half_cycles"]).reshape(len(durations), len(amplitudes))
+    curves = curves_of(mapper, durations, amplitudes, codes, options.accuracy * GRAVITY)
     names = {"mode_I": curves.mode_i, "mode_II": curves.mode_ii}
+    gamma = model.uplift
     result.results = {
         "pulse": options.pulse,
         **{
-            name: {
-                "durations_s": durations,
-                "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve],
-            }
+            name: {"durations_s": durations, "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve]}
             for name, curve in names.items()
         },
+        "pocket_begins_g": [None if np.isnan(a) else a / GRAVITY for a in curves.pocket],
         "uplift_acceleration_g": gamma,
         "restitution": model.restitution,
-        "safe_pockets": int(
-            (((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()
-        ),
+        "natural_time_s": unit if model.what == "arch" else model.time_unit,
+        "safe_pockets": int((((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()),
     }
     if options.at_amplitudes:
         at = np.array(options.at_amplitudes)
         found = shortest_durations(
-            model.body, options.pulse, at, np.linspace(durations.min(), durations.max(), 200), settling_time(model),
+            model.body, options.pulse, at, np.linspace(durations.min(), durations.max(), 200), 40.0 * unit,
             options.accuracy, context.threads,
         )  # fmt: skip
         result.results["at_amplitudes"] = {
@@ -209,42 +222,44 @@ def run(context: Context, options: FailureDomain) -> Result:
             "mode_I_durations_s": [None if np.isnan(t) else t for t in found[0]],
             "mode_II_durations_s": [None if np.isnan(t) else t for t in found[1]],
         }
-    result.tables["failure_domain"] = TableData(
-        {
-            "duration": durations,
-            # Eq. 5.7: arches of other sizes and the same proportions fail at the same values of this
-            "duration_over_sqrt_radius": durations / np.sqrt(model.arch.radius),
-            **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
-        },
-        {
-            "duration": "s",
-            "duration_over_sqrt_radius": "s/m^0.5",
-            "mode_I_amplitude": "g",
-            "mode_II_amplitude": "g",
-        },
-    )
+    columns = {"duration": durations, **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()}, "pocket_begins": curves.pocket / GRAVITY}
+    if model.what == "block":
+        # omega/p and a/(g tan alpha), the axes of overturning spectra
+        ratio = 2.0 * np.pi / durations * model.time_unit
+        columns |= {"frequency_ratio": ratio, **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()}}
+        result.results["frequency_ratio"] = ratio
+        result.results["pocket_begins_ratio"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curves.pocket]
+        for name, curve in names.items():
+            result.results[name]["amplitude_ratios"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curve]
+        result.results["mode_names"] = (
+            "Mode I: overturning after an impact (mode 1, with impact, of Zhang and Makris 2001); "
+            "Mode II: without impact (their mode 2)"
+        )
+    result.tables["failure_domain"] = TableData(columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"})
     result.arrays = {
-        "duration": Array(durations, ("duration",), "s", "t_p of the step pulse or T_p of the sine"),
+        "duration": Array(durations, ("duration",), "s", "t_p of step and rectangular pulses, else the period T_p"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in any half cycle"),
-        "mode_II": Array(
-            curves.mode_ii / GRAVITY,
-            ("duration",),
-            "g",
-            "lowest amplitude of collapse in the first half cycle",
-        ),
+        "pocket": Array(curves.pocket / GRAVITY, ("duration",), "g", "where the first safe pocket above the curve begins"),
+        "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"),
     }
-    governing = np.nanmin(curves.mode_i) / GRAVITY if np.isfinite(curves.mode_i).any() else None
-    shape = "step pulses (a_p for t_p, then -a_p/2 for 2 t_p)" if options.pulse == "step" else "single sine pulses"
-    if governing is None:
-        result.answer = f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g brings the arch down."
-    else:
-        longest = durations[np.flatnonzero(np.isfinite(curves.mode_i))[0]]
-        result.answer = (
-            f"Under {shape} the arch starts to hinge at {gamma:.3f} g. It comes down from {longest:.3f} s on "
-            f"(at up to {options.max_amplitude / GRAVITY:g} g); over the durations tried the lowest failing amplitude is {governing:.3f} g. "
-            f"Collapse after one impact (Mode I) governs where its curve lies below that of Mode II; "
-            f"{result.results['safe_pockets']} of {len(durations)} durations have safe pockets above the curve, not to be relied on."
-        )
+    result.answer = _answer(model, options, durations, curves, result.results["safe_pockets"])
     return result
+
+
+def _answer(model: RockingModel, options: FailureDomain, durations: np.ndarray, curves: Curves, pockets: int) -> str:
+    shape = {"step": "step pulses (a_p for t_p, then -a_p/2 for 2 t_p)", "sine": "single sine pulses"}.get(
+        options.pulse, f"{options.pulse} pulses"
+    )
+    if not np.isfinite(curves.mode_i).any():
+        return f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g brings the {model.what} down."
+    governing = np.nanmin(curves.mode_i) / GRAVITY
+    shortest = durations[np.flatnonzero(np.isfinite(curves.mode_i))[0]]
+    start = "hinge" if model.what == "arch" else "rock"
+    return (
+        f"Under {shape} the {model.what} starts to {start} at {model.uplift:.3f} g. It comes down from {shortest:.3f} s on "
+        f"(at up to {options.max_amplitude / GRAVITY:g} g); over the durations tried the lowest failing amplitude is {governing:.3f} g. "
+        f"Collapse after an impact (Mode I) governs where its curve lies below that of Mode II; "
+        f"{pockets} of {len(durations)} durations have safe pockets above the curve, not to be relied on."
+    )

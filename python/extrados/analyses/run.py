@@ -15,6 +15,7 @@ from extrados.limit.solver import NoAnswer
 from extrados.motions.from_deck import make_motion
 from extrados.motions.motion import Motion
 from extrados.motions.records import RecordError
+from extrados.results.checkpoint import Checkpoint
 from extrados.results.model import Result
 from extrados.structures.builder import BadGeometry
 from extrados.structures.from_deck import make_structure
@@ -30,8 +31,14 @@ DRIVERS = {
     "rocking": "extrados.analyses.rocking",
     "failure-domain": "extrados.analyses.failure_domain",
     "assessment": "extrados.analyses.assessment",
+    "fragility": "extrados.analyses.fragility",
+    "resonance": "extrados.analyses.resonance",
+    "rocking-spectrum": "extrados.analyses.rocking_spectrum",
+    "harmonic-map": "extrados.analyses.harmonic_map",
+    "code-checks": "extrados.analyses.code_checks",
     "motion": "extrados.analyses.motion_study",
     "shake-table": "extrados.analyses.shake_table",
+    "sla": "extrados.analyses.sla",
     "dem": "extrados.analyses.dem",
     "dem-domain": "extrados.analyses.dem_domain",
     "dem-parameters": "extrados.analyses.dem_parameters",
@@ -45,13 +52,15 @@ class Refused(Exception):
 @dataclass
 class Context:
     """What every driver is given. `progress(done, total, text)` may be called often; `out` is the results
-    folder of the run, `resume` asks to go on from a checkpoint there."""
+    folder of the run, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
+    dask.distributed scheduler for sweeps."""
 
     deck: Deck
     threads: int = 1
     progress: Callable[[float, float, str], None] = lambda done, total, text: None
     out: Path | None = None
     resume: bool = False
+    scheduler: str = ""
     warnings: list[str] = field(default_factory=list)
 
     @cached_property
@@ -61,6 +70,11 @@ class Context:
             return make_structure(self.deck.structure, self.deck.folder)
         except BadGeometry as error:
             raise Refused(str(error)) from None
+
+    @cached_property
+    def checkpoint(self) -> Checkpoint | None:
+        """Where sweeps keep finished batches; None without a results folder."""
+        return None if self.out is None else Checkpoint(self.out, self.deck.identity, self.resume)
 
     @cached_property
     def motion(self) -> Motion:

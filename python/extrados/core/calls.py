@@ -37,6 +37,17 @@ def integers(name: str, value, length: int | None = None) -> np.ndarray:
 
 _lock = threading.Lock()
 _nesting = 0
+_asked = threading.Event()
+
+
+def cancel_requested() -> bool:
+    """True once the user asked to stop, while `interruptible` lasts."""
+    return _asked.is_set()
+
+
+def _ask(*_: object) -> None:
+    _asked.set()
+    _core.api_support.set_cancel(1)
 
 
 @contextlib.contextmanager
@@ -48,11 +59,12 @@ def interruptible() -> Iterator[None]:
         _nesting += 1
         outermost = _nesting == 1
         if outermost:
+            _asked.clear()
             _core.api_support.set_cancel(0)
     before = {}
     if main and outermost:
         for number in (signal.SIGINT, signal.SIGTERM):
-            before[number] = signal.signal(number, lambda *_: _core.api_support.set_cancel(1))
+            before[number] = signal.signal(number, _ask)
     try:
         yield
     finally:

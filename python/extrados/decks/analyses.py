@@ -21,15 +21,15 @@ class Rocking(Analysis):
 
 
 class FailureDomain(Analysis):
-    """Which pulses bring the arch down: Mode I (after one impact) and Mode II (without impact)."""
+    """Which pulses bring an arch or a block down: Mode I (after an impact) and Mode II (without impact)."""
 
     kind: Literal["failure-domain"]
-    structures: ClassVar = ("arch",)
-    pulse: Literal["step", "sine"] = key(
-        "step", "step pulse of duration t_p, or one sine of period T_p", source="thesis 5.2.3"
+    structures: ClassVar = ("arch", "block")
+    pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
+        "step", "step pulse of duration t_p, one sine of period T_p, or another shape of `pulse`", source="thesis 5.2.3"
     )
     durations: list[Time] | None = key(
-        None, "t_p or T_p; default 40 values scaled to the arch", min_length=1, max_length=2000
+        None, "t_p or T_p; default 40 values scaled to the structure", min_length=1, max_length=2000
     )
     amplitudes: int = key(40, "number of amplitudes of the map", ge=2, le=2000)
     max_amplitude: Acceleration = key(1.5 * STANDARD_GRAVITY, "cap of the search", gt=0)

@@ -1,6 +1,19 @@
 """The one table of kinds: what may stand in [structure], [motion] and [[analysis]]."""
 
-from extrados.decks import analyses, block, dem, limit, masonry, motion_analyses, motions, structures, vaults
+from extrados.decks import (
+    analyses,
+    block,
+    dem,
+    limit,
+    masonry,
+    motion_analyses,
+    motions,
+    sla,
+    statistics,
+    structures,
+    vaults,
+    walls,
+)
 from extrados.decks.table import Analysis, Motion, Structure, Table
 
 STRUCTURES: tuple[type[Structure], ...] = (
@@ -11,6 +24,8 @@ STRUCTURES: tuple[type[Structure], ...] = (
     vaults.PointedArch,
     vaults.EllipticalArch,
     vaults.Blocks,
+    walls.Panel,
+    walls.Mesh,
     masonry.Column,
     masonry.BrickWall,
 )
@@ -36,8 +51,14 @@ ANALYSES: tuple[type[Analysis], ...] = (
     analyses.Rocking,
     analyses.FailureDomain,
     analyses.Assessment,
+    sla.Sla,
     motion_analyses.MotionStudy,
     motion_analyses.ShakeTable,
+    statistics.Fragility,
+    statistics.Resonance,
+    statistics.RockingSpectrum,
+    statistics.HarmonicMap,
+    statistics.CodeChecks,
     dem.Dem,
     dem.DemDomain,
     dem.DemParameters,

@@ -40,6 +40,11 @@ class Deck:
     sha256: str = ""
     data: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def identity(self) -> str:
+        """The hash by which results are told from those of another deck."""
+        return self.sha256 or hashlib.sha256(repr(self.data).encode()).hexdigest()
+
     def resolved(self) -> dict[str, Any]:
         """All keys with their defaults, in SI."""
         return {

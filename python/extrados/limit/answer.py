@@ -7,6 +7,7 @@ import numpy as np
 from extrados.limit.graphic import force_polygon, funicular, pier_line
 from extrados.limit.loads import Loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.limit.systems import Sparse
 from extrados.structures.assembly import GROUND, Assembly
 
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
@@ -22,7 +23,8 @@ class Answer:
 
     collapse_state is the state at collapse with the free part of the line at its most central; least and
     most are the states of least and greatest thrust of each chain; central the most central upright line,
-    held by `part` of the joints' length. touching: joints whose end the line touches without a hinge.
+    held by `part` of the joints' length (None and NaN for a wall of many loops, where this takes many large
+    programmes). touching: joints whose end the line touches without a hinge.
     """
 
     assembly: Assembly
@@ -33,7 +35,7 @@ class Answer:
     back_mechanism: Mechanism
     least: dict[str, State]
     most: dict[str, State]
-    central: State
+    central: State | None
     part: float
 
     @property
@@ -50,8 +52,11 @@ class Answer:
 
     @property
     def safety(self) -> float:
-        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line."""
-        return 1.0 / self.part
+        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line.
+
+        Infinite where the line can run through the middles of all joints.
+        """
+        return np.inf if self.part < 1e-9 else 1.0 / self.part
 
     @property
     def touching(self) -> list[int]:
@@ -113,6 +118,11 @@ def assess(
     state, mechanism = limit.collapse(1)
     back, back_mechanism = limit.collapse(-1)
     moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
+    if isinstance(limit.system, Sparse):
+        return Answer(
+            assembly, limit.loads, state, mechanism, back, back_mechanism,
+            {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()}, None, np.nan,
+        )  # fmt: skip
     drawn = limit.recentred(state, moving)
     central, part = limit.central(start=[state for pair in ends.values() for state in pair])
     return Answer(
@@ -137,18 +147,30 @@ def why_not(limit: LimitAnalysis) -> str:
         state, part = limit.central()
     except NoEquilibrium:
         if limit.friction is not None:
-            return (
-                "even with joints of any length it slides apart: the coefficient of friction is too small "
-                "somewhere, or a block hangs in tension"
-            )
+            return _slides(limit)
         return "some block hangs: its joint would have to pull"
-    if part < 1.0 and (limit.strength is not None or limit.friction is not None):
-        what = "strength and friction" if limit.strength and limit.friction is not None else (
-            "strength" if limit.strength else "friction")  # fmt: skip
-        return f"a thrust line lies inside the joints ({part:.3f} of their length), but their {what} does not carry it"
+    if part < 1.0 and limit.strength is not None:
+        return f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
+    if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
+        return _slides(limit)
     off = 2.0 * np.abs(state.position - 0.5)
     worst = [assembly.joint_names[j] for j in np.flatnonzero(off > part * (1.0 - 1e-6))]
     return (
         f"no thrust line stays inside it: the joints would have to be {part:.4f} times as long about their middles, "
         f"the line leaves first at {', '.join(worst[:6])}"
     )
+
+
+def _slides(limit: LimitAnalysis) -> str:
+    """The friction that would hold it, by bisection on one coefficient for all joints."""
+
+    def stands(friction: float) -> bool:
+        return LimitAnalysis(limit.assembly, friction, loads=limit.loads).stands()
+
+    low, high = 0.0, 10.0
+    if not stands(high):
+        return "some block hangs: its joint would have to pull"
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if stands(middle) else (middle, high)
+    return f"it slides apart: a coefficient of friction of at least {high:.3f} is needed"

@@ -98,7 +98,7 @@ class Fit:
 
     @property
     def fits(self) -> bool:
-        return max(self.stroke, self.flow, self.force) <= 1.0
+        return max(self.stroke, self.flow, self.force) <= 1.0 + 1e-9
 
     @property
     def governing(self) -> str:

@@ -89,6 +89,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 ax.set_ylim(high[0] - 0.05 * span, high[1] + 0.15 * span)
                 ax.set_title(f"{when:.3f} s")
                 style.section_axes(ax)
+                ax.locator_params(axis="x", nbins=3 if span > high[0] and low[1] - low[0] < span else 9)
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),
@@ -145,13 +146,13 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
             ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
         ):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
-        ax.set_xlabel("duration t_p of the first part [s]" if r["pulse"] == "step" else "period T_p [s]")
+        ax.set_xlabel({"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r["pulse"], "period T_p [s]"))
         ax.set_ylabel("amplitude [g]")
         ax.set_ylim(0.0, a[-1])
         ax.set_xlim(d[0], d[-1])
         ax.legend(loc="upper right", frameon=True)
         ax.grid(False)
-        title = f"Failure domain of {'step' if r['pulse'] == 'step' else 'sine'} pulses"
+        title = f"Failure domain of {r['pulse']} pulses"
         ax.set_title(title)
         return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest failing amplitudes.")]
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from extrados.structures.assembly import Assembly
-from extrados.structures.builder import BadGeometry
 from extrados.structures.contacts import find_contacts
-from extrados.structures.polygons import crosses_itself, properties, signed_area
+from extrados.structures.polygons import crosses_itself, following, properties, signed_area
+from extrados.structures.builder import BadGeometry
 
 LARGEST_FILE = 20_000_000  # bytes
 MOST_BLOCKS = 20_000
@@ -75,7 +75,7 @@ def _outline(polygon: Polygon, tolerance: float) -> np.ndarray:
     points = np.asarray(polygon.points, dtype=float)
     if len(points) > 1 and np.allclose(points[0], points[-1], atol=tolerance, rtol=0.0):
         points = points[:-1]
-    apart = np.hypot(*(np.roll(points, -1, axis=0) - points).T) > tolerance if len(points) else np.array([], bool)
+    apart = np.hypot(*(following(points) - points).T) > tolerance if len(points) else np.array([], bool)
     points = points[apart]
     if not 3 <= len(points) <= MOST_POINTS:
         raise BadGeometry(f"block '{polygon.name}': {len(points)} distinct vertices, expected 3 to {MOST_POINTS}")

@@ -127,13 +127,13 @@ def springing_path(
     return np.concatenate(path)
 
 
-def fill_loads(assembly: Assembly, chains: dict[str, list[int]], level: float, density: float) -> np.ndarray:
-    """Mass and centroid (nb, 3) of the fill over each voussoir of the chains, from its extrados up to a level."""
+def fill_loads(assembly: Assembly, over: list[tuple[list[int], float]], density: float) -> np.ndarray:
+    """Mass and centroid (nb, 3) of the fill over the voussoirs of chains, each from its extrados up to a level."""
     fill = np.zeros((len(assembly.mass), 3))
     fill[:, 1:] = assembly.centroid
-    for joints in chains.values():
+    for joints, level in over:
         q = assembly.q[joints]
-        for j, (one, two) in zip(joints[:-1], zip(q[:-1], q[1:], strict=True), strict=True):
+        for j, one, two in zip(joints[:-1], q[:-1], q[1:], strict=True):
             if two[0] <= one[0]:
                 continue
             column = np.array([one, two, [two[0], level], [one[0], level]])
@@ -142,4 +142,3 @@ def fill_loads(assembly: Assembly, chains: dict[str, list[int]], level: float, d
                 outline = below if signed_area(below) > 0.0 else below[::-1]
                 fill[assembly.a[j]] = area * density * assembly.depth, *properties(outline)[1]
     return fill
-

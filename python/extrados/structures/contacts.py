@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.structures.builder import BadGeometry
-from extrados.structures.polygons import inside
+from extrados.structures.polygons import following, inside
 
 NEAR = 50.0  # times the tolerance: gaps up to this are reported as near misses
 
@@ -38,7 +38,7 @@ def find_contacts(
     """
     start = np.cumsum([0, *map(len, outlines)])
     first = np.concatenate(outlines)
-    last = np.concatenate([np.roll(o, -1, axis=0) for o in outlines])
+    last = np.concatenate([following(o) for o in outlines])
     owner = np.repeat(np.arange(len(outlines)), np.diff(start))
     one, two = _edge_pairs(outlines, start, NEAR * tolerance)
     _refuse_overlaps(outlines, first, last, owner, one, two, tolerance, names)
@@ -142,24 +142,54 @@ def _refuse_overlaps(outlines, first, last, owner, one, two, tolerance, names) -
     if cross.any():
         k = int(np.flatnonzero(cross)[0])
         raise Overlap(_say(names, owner[one[k]], owner[two[k]], 0.5 * (first[one[k]] + last[one[k]])))
-    for i, j in np.unique(np.column_stack([owner[one], owner[two]]), axis=0) if len(one) else []:
-        for inner, outer in ((i, j), (j, i)):
-            o = outlines[inner]
-            middle = 0.5 * (o + np.roll(o, -1, axis=0))
-            points = np.concatenate([o, middle, o.mean(axis=0, keepdims=True)])
-            if len(o) > 3 and not inside(o, points[-1:])[0]:
-                points = points[:-1]  # the mean of a bent block may lie outside it
-            found = points[inside(outlines[outer], points)]
-            for point in found:
-                if _distance(outlines[outer], point) > tolerance:
-                    raise Overlap(_say(names, inner, outer, point))
+    # No edges cross: then one lies in the other only with all of it. Corners, middles of edges and a place
+    # inside tell, among them those that lie on the other's outline.
+    start = np.searchsorted(owner, np.arange(len(outlines) + 1))
+    pairs = np.unique(np.column_stack([owner[one], owner[two]]), axis=0) if len(one) else np.empty((0, 2), int)
+    pairs = np.concatenate([pairs, pairs[:, ::-1]])
+    probes = [np.concatenate([o, 0.5 * (o + following(o)), _within(o)]) for o in outlines]
+    begin = np.cumsum([0, *map(len, probes)])
+    points = np.concatenate(probes)
+    for some in np.array_split(pairs, max(1, len(pairs) // PAIRS_AT_ONCE)):
+        probe_count, edge_count = np.diff(begin)[some[:, 0]], np.diff(start)[some[:, 1]]
+        pair = np.repeat(np.arange(len(some)), probe_count)
+        probe = begin[some[pair, 0]] + np.arange(len(pair)) - np.repeat(np.cumsum(probe_count) - probe_count, probe_count)
+        edges = edge_count[pair]
+        group = np.cumsum(edges) - edges
+        at = np.repeat(np.arange(len(pair)), edges)
+        edge = start[some[pair[at], 1]] + np.arange(len(at)) - group[at]
+        deep = _depth(points[probe[at]], first[edge], last[edge], group) > tolerance
+        if deep.any():
+            k = int(np.flatnonzero(deep)[0])
+            raise Overlap(_say(names, *some[pair[k]], points[probe[k]]))
+
+
+PAIRS_AT_ONCE = 5000
+
+
+def _within(outline: np.ndarray) -> np.ndarray:
+    """A place inside an outline (1, 2): its mean where that lies inside, else next to an edge's middle."""
+    mean = outline.mean(axis=0, keepdims=True)
+    if inside(outline, mean)[0]:
+        return mean
+    along = following(outline) - outline
+    inward = np.column_stack([-along[:, 1], along[:, 0]])
+    places = outline + 0.5 * along + 1e-3 * inward
+    return places[inside(outline, places)][:1]
+
+
+def _depth(points: np.ndarray, a: np.ndarray, b: np.ndarray, group: np.ndarray) -> np.ndarray:
+    """How deep points lie inside outlines: rows pair each point with each edge, `group` is where points start."""
+    x, y = points.T
+    spans = (a[:, 1] > y) != (b[:, 1] > y)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        right = x < a[:, 0] + (y - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
+    crossed = np.add.reduceat((spans & right).astype(int), group) % 2 == 1
+    along = b - a
+    share = np.clip(((points - a) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    near = np.minimum.reduceat(np.hypot(*(a + share[:, None] * along - points).T), group)
+    return np.where(crossed, near, 0.0)
 
 
 def _say(names: list[str], i: int, j: int, place: np.ndarray) -> str:
     return f"blocks '{names[i]}' and '{names[j]}' overlap near x = {place[0]:.4g} m, y = {place[1]:.4g} m"
-
-
-def _distance(outline: np.ndarray, point: np.ndarray) -> float:
-    along = np.roll(outline, -1, axis=0) - outline
-    share = np.clip(((point - outline) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    return float(np.hypot(*(outline + share[:, None] * along - point).T).min())

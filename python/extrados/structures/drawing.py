@@ -35,7 +35,7 @@ def read_dxf(path: Path, unit: str | None = None, layers: list[str] | None = Non
     scale = UNITS[unit or _unit(path, int(drawing.header.get("$INSUNITS", 0)))]
     polygons: list[Polygon] = []
     ground: list[list[float]] = []
-    known = {layer.dxf.name for layer in drawing.layers}
+    known = {entity.dxf.layer for entity in drawing.modelspace()}
     for missing in [name for name in layers or [] if name not in known]:
         raise BadGeometry(f"{path.name}: no layer '{missing}'; there are {', '.join(sorted(known))}")
     for entity in drawing.modelspace():

@@ -4,13 +4,15 @@ from pathlib import Path
 from typing import Any
 
 from extrados.decks import block as block_models
-from extrados.decks import masonry, vaults
+from extrados.decks import masonry
 from extrados.decks import structures as models
+from extrados.decks import vaults, walls
 from extrados.decks.table import Structure
 from extrados.structures import from_vaults
 from extrados.structures.arch import make_arch
 from extrados.structures.arches import make_elliptical_arch, make_pointed_arch
 from extrados.structures.block import make_block
+from extrados.structures.panel import make_panel
 from extrados.structures.masonry import make_column, make_wall
 
 BLOCK_KEYS = {"width", "height", "depth", "density", "mass", "inertia", "centre_height", "toe_right", "toe_left"}
@@ -44,6 +46,12 @@ def make_structure(model: Structure | None, folder: Path) -> Any:
             return make_elliptical_arch(
                 model.span, model.rise, model.thickness, model.voussoirs, model.density, model.depth
             )
+        case walls.Panel():
+            return make_panel(model, folder)
+        case walls.Mesh():
+            from extrados.structures.mesh_file import read_mesh
+
+            return read_mesh(model, folder)
         case block_models.Block():
             return make_block(**model.model_dump(include=BLOCK_KEYS))
         case masonry.Column():

@@ -26,7 +26,7 @@ def church(model: models.AisledVault) -> Assembly:
             right = _aisle(model, model.right)
     return make_church(
         model.radius, model.thickness, model.embrace, model.voussoirs, model.springing, model.pier_width,
-        left, right, model.pier_top, model.fill_level, model.fill_density, model.density, model.depth,
+        left, right, model.pier_top, model.fill_level, model.aisle_fill_level, model.fill_density, model.density, model.depth,
     )  # fmt: skip
 
 

@@ -3,17 +3,22 @@
 import numpy as np
 
 
+def following(values: np.ndarray) -> np.ndarray:
+    """Each vertex replaced by the next (np.roll is several times slower on a few rows)."""
+    return np.concatenate([values[1:], values[:1]])
+
+
 def signed_area(outline: np.ndarray) -> float:
     """Positive where the vertices (n, 2) run counter-clockwise [m^2]."""
     x, y = outline.T
-    return 0.5 * float(x @ np.roll(y, -1) - np.roll(x, -1) @ y)
+    return 0.5 * float(x @ following(y) - following(x) @ y)
 
 
 def properties(outline: np.ndarray) -> tuple[float, np.ndarray, float]:
     """Area [m^2], centroid [m] and polar moment of area about it [m^4] of a counter-clockwise outline."""
     origin = outline.mean(axis=0)
     p = outline - origin
-    r = np.roll(p, -1, axis=0)
+    r = following(p)
     cross = p[:, 0] * r[:, 1] - p[:, 1] * r[:, 0]
     area = 0.5 * float(cross.sum())
     centre = ((p + r) * cross[:, None]).sum(axis=0) / (6.0 * area)
@@ -40,16 +45,34 @@ def cut(outline: np.ndarray, point: np.ndarray, normal: np.ndarray) -> np.ndarra
 def crossings(outline: np.ndarray, y: float) -> np.ndarray:
     """Sorted x where the horizontal line at y meets the outline."""
     x0, y0 = outline.T
-    x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
+    x1, y1 = following(x0), following(y0)
     met = (np.minimum(y0, y1) <= y) & (y < np.maximum(y0, y1))
     return np.sort(x0[met] + (y - y0[met]) / (y1[met] - y0[met]) * (x1[met] - x0[met]))
+
+
+def below(outline: np.ndarray, levels: np.ndarray) -> np.ndarray:
+    """Area and its first moments, integrals of x and of y (k, 3), of what lies below each level.
+
+    Green's theorem: integrals of x, x^2 / 2 and x y over dy along the counter-clockwise edges, each up to
+    the level; Simpson's rule is exact for them.
+    """
+    x0, y0 = outline.T
+    x1, y1 = following(x0), following(y0)
+    rise = np.where(y1 == y0, 1.0, y1 - y0)
+    start, end = np.minimum(y0, levels[:, None]), np.minimum(y1, levels[:, None])
+    found = np.zeros((len(levels), 3))
+    for y, weight in ((start, 1.0), (0.5 * (start + end), 4.0), (end, 1.0)):
+        x = x0 + (y - y0) / rise * (x1 - x0)
+        share = weight / 6.0 * (end - start)
+        found += np.stack([(x * share).sum(axis=1), (0.5 * x * x * share).sum(axis=1), (x * y * share).sum(axis=1)], axis=1)
+    return found
 
 
 def inside(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Whether each of the points (k, 2) lies in the outline, by counting crossings to its right."""
     x, y = points[:, 0, None], points[:, 1, None]
     x0, y0 = outline.T
-    x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
+    x1, y1 = following(x0), following(y0)
     spans = (y0 > y) != (y1 > y)
     with np.errstate(divide="ignore", invalid="ignore"):
         reach = x0 + (y - y0) / (y1 - y0) * (x1 - x0)
@@ -59,7 +82,7 @@ def inside(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
 def crosses_itself(outline: np.ndarray) -> bool:
     """True where two edges that are not neighbours cross."""
     n = len(outline)
-    a, b = outline, np.roll(outline, -1, axis=0)
+    a, b = outline, following(outline)
 
     def turn(o: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         return (u[..., 0] - o[..., 0]) * (v[..., 1] - o[..., 1]) - (u[..., 1] - o[..., 1]) * (v[..., 0] - o[..., 0])

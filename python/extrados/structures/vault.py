@@ -100,6 +100,7 @@ def make_church(
     right: Aisle | None,
     pier_top: float | None = None,
     fill_level: float | None = None,
+    aisle_fill_level: float | None = None,
     fill_density: float = 1600.0,
     density: float = 2000.0,
     depth: float = 1.0,
@@ -107,7 +108,8 @@ def make_church(
     """A nave on two piers, with side aisles where they are given; ground at y = 0, nave centre at x = 0.
 
     The inner face of a pier is tangent to the nave's intrados, as are the faces about an aisle to its own.
-    Piers and buttresses are monolithic and stand on horizontal joints.
+    Piers and buttresses are monolithic and stand on horizontal joints. Fill lies over the nave vault up to
+    fill_level and over the aisle vaults up to aisle_fill_level [m].
     """
     half = 0.5 * np.radians(embrace)
     inner, outer = radius - 0.5 * thickness, radius + 0.5 * thickness
@@ -138,8 +140,11 @@ def make_church(
     for word, aisle in (("left", left), ("right", right)):
         if aisle is not None:
             measures[f"{word}_aisle_span_m"] = aisle.span
-    fill = None if fill_level is None else fill_loads(assembly, chains, fill_level, fill_density)
-    return replace(assembly, fill=fill, measures=measures)
+    levels = {name: fill_level if name == "nave" else aisle_fill_level for name in chains if "flyer" not in name}
+    if any(level is not None for level in levels.values()):
+        fill = fill_loads(assembly, [(chains[n], level) for n, level in levels.items() if level is not None], fill_density)
+        return replace(assembly, fill=fill, measures=measures)
+    return replace(assembly, measures=measures)
 
 
 def _aisle(

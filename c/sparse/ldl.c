@@ -1,0 +1,374 @@
+/* A sparse LDL' factor that is made once and then only updated (sequentially linear analysis).
+ *
+ * CHOLMOD orders, analyses and factorises (supernodal LL'); the dense blocks of its factor are then
+ * rescaled in place to unit-triangular LDL' and belong to this file: rank-1 changes walk up the tree of
+ * supernodes (Gill, Golub, Murray, Saunders 1974, method C1), solves with an event's sparse vectors go
+ * forward along that path alone and backward through the whole factor.
+ *
+ * The equations come in factor order: the caller renumbers them once by extrados_sparse_order.
+ */
+#include <cholmod.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "extrados.h"
+
+enum { most_vectors = 4, most_ahead = 16384 /* bytes */ };
+
+struct extrados_sparse {
+  cholmod_common common;
+  cholmod_factor *factor;
+  cholmod_sparse matrix; /* over the caller's pattern, with values given at each factorisation */
+  int64_t n, blocks, longest;
+  int64_t *block_of;         /* column -> its supernode */
+  double *d, *column;        /* D; a dense column in factor order, zero between calls */
+  double *buffer;            /* most_vectors rows of one supernode */
+  cholmod_dense *y, *e, *answer; /* workspace of the plain solves of the refactorising algorithm */
+};
+
+/* Four doubles at once, the same operations in the same order whatever the processor offers. */
+typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define FOR_EACH_PROCESSOR __attribute__((target_clones("avx2", "default")))
+#else
+#define FOR_EACH_PROCESSOR
+#endif
+
+static int code_of(const cholmod_common *common) {
+  if (common->status == CHOLMOD_OK) return EXTRADOS_ok;
+  if (common->status == CHOLMOD_NOT_POSDEF) return EXTRADOS_not_positive_definite;
+  if (common->status == CHOLMOD_OUT_OF_MEMORY || common->status == CHOLMOD_TOO_LARGE)
+    return EXTRADOS_out_of_memory;
+  return EXTRADOS_library_failed;
+}
+
+static void settle(cholmod_common *common) {
+  cholmod_l_start(common);
+  common->print = 0;
+  common->supernodal = CHOLMOD_SUPERNODAL;
+  common->final_ll = 1;
+  common->quick_return_if_not_posdef = 1;
+  common->nmethods = 1;
+}
+
+static cholmod_sparse lower(int64_t n, const int64_t *start, const int64_t *row, const double *value) {
+  cholmod_sparse k = {0};
+  k.nrow = k.ncol = (size_t)n;
+  k.nzmax = (size_t)start[n];
+  k.p = (void *)(uintptr_t)start;
+  k.i = (void *)(uintptr_t)row;
+  k.x = (void *)(uintptr_t)value;
+  k.stype = -1;
+  k.itype = CHOLMOD_LONG;
+  k.xtype = value ? CHOLMOD_REAL : CHOLMOD_PATTERN;
+  k.dtype = CHOLMOD_DOUBLE;
+  k.sorted = k.packed = 1;
+  return k;
+}
+
+int extrados_sparse_order(int64_t n, const int64_t *start, const int64_t *row, int ordering, int64_t *order) {
+  cholmod_common common;
+  settle(&common);
+  common.method[0].ordering = ordering ? CHOLMOD_METIS : CHOLMOD_AMD;
+  common.postorder = 1;
+  cholmod_sparse k = lower(n, start, row, NULL);
+  cholmod_factor *factor = cholmod_l_analyze(&k, &common);
+  int code = factor ? EXTRADOS_ok : code_of(&common);
+  if (factor) memcpy(order, factor->Perm, (size_t)n * sizeof *order);
+  cholmod_l_free_factor(&factor, &common);
+  cholmod_l_finish(&common);
+  return code;
+}
+
+int extrados_sparse_new(int64_t n, const int64_t *start, const int64_t *row, void **handle, int64_t *values) {
+  *handle = NULL;
+  *values = 0;
+  if (n < 1) return EXTRADOS_invalid_argument;
+  struct extrados_sparse *self = calloc(1, sizeof *self);
+  if (!self) return EXTRADOS_out_of_memory;
+  *handle = self;
+  settle(&self->common);
+  self->common.method[0].ordering = CHOLMOD_NATURAL;
+  self->common.postorder = 0;
+  self->matrix = lower(n, start, row, NULL);
+  self->factor = cholmod_l_analyze(&self->matrix, &self->common);
+  if (!self->factor) return code_of(&self->common);
+  self->n = n;
+  self->blocks = (int64_t)self->factor->nsuper;
+  *values = (int64_t)self->factor->xsize;
+
+  const int64_t *super = self->factor->super, *pi = self->factor->pi;
+  for (int64_t s = 0; s < self->blocks; s++)
+    if (pi[s + 1] - pi[s] > self->longest) self->longest = pi[s + 1] - pi[s];
+  self->block_of = malloc((size_t)n * sizeof *self->block_of);
+  self->d = malloc((size_t)n * sizeof *self->d);
+  self->column = calloc((size_t)n, sizeof *self->column);
+  self->buffer = malloc((size_t)(most_vectors * self->longest) * sizeof *self->buffer);
+  if (!self->block_of || !self->d || !self->column || !self->buffer) return EXTRADOS_out_of_memory;
+  for (int64_t s = 0; s < self->blocks; s++)
+    for (int64_t j = super[s]; j < super[s + 1]; j++) self->block_of[j] = s;
+  return EXTRADOS_ok;
+}
+
+void extrados_sparse_free(void **handle) {
+  struct extrados_sparse *self = *handle;
+  *handle = NULL;
+  if (!self) return;
+  free(self->block_of);
+  free(self->d);
+  free(self->column);
+  free(self->buffer);
+  cholmod_l_free_dense(&self->y, &self->common);
+  cholmod_l_free_dense(&self->e, &self->common);
+  cholmod_l_free_dense(&self->answer, &self->common);
+  cholmod_l_free_factor(&self->factor, &self->common);
+  cholmod_l_finish(&self->common);
+  free(self);
+}
+
+static int all_finite(int64_t count, const double *x) {
+  for (int64_t i = 0; i < count; i++)
+    if (!isfinite(x[i])) return 0;
+  return 1;
+}
+
+/* LL' of new values; the smallest pivot over the largest in `ratio`, its equation in `weakest`. */
+static int factorise(struct extrados_sparse *self, const double *value, double *ratio, int64_t *weakest) {
+  *ratio = 0.0;
+  *weakest = -1;
+  if (!all_finite((int64_t)self->matrix.nzmax, value)) return EXTRADOS_not_finite;
+  self->matrix.x = (void *)(uintptr_t)value;
+  self->matrix.xtype = CHOLMOD_REAL;
+  cholmod_l_factorize(&self->matrix, self->factor, &self->common);
+  if (self->common.status != CHOLMOD_OK) {
+    int code = code_of(&self->common);
+    *weakest = (int64_t)self->factor->minor;
+    return code;
+  }
+  if (self->factor->minor < self->factor->n) {
+    *weakest = (int64_t)self->factor->minor;
+    return EXTRADOS_not_positive_definite;
+  }
+  const int64_t *super = self->factor->super, *pi = self->factor->pi, *px = self->factor->px;
+  double least = INFINITY, most = 0.0;
+  for (int64_t s = 0; s < self->blocks; s++) {
+    const double *x = (const double *)self->factor->x + px[s];
+    int64_t rows = pi[s + 1] - pi[s];
+    for (int64_t j = super[s]; j < super[s + 1]; j++) {
+      double diagonal = x[(j - super[s]) * (rows + 1)], pivot = diagonal * diagonal;
+      self->d[j] = pivot;
+      if (pivot < least) least = pivot, *weakest = j;
+      if (pivot > most) most = pivot;
+    }
+  }
+  *ratio = least / most;
+  return EXTRADOS_ok;
+}
+
+int extrados_sparse_factor(void *handle, const double *value, double *ratio, int64_t *weakest) {
+  struct extrados_sparse *self = handle;
+  int code = factorise(self, value, ratio, weakest);
+  if (code != EXTRADOS_ok) return code;
+  const int64_t *super = self->factor->super, *pi = self->factor->pi, *px = self->factor->px;
+  for (int64_t s = 0; s < self->blocks; s++) {
+    double *x = (double *)self->factor->x + px[s];
+    int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s];
+    for (int64_t c = 0; c < columns; c++) {
+      double *l = x + c * rows, scale = 1.0 / l[c];
+      for (int64_t i = c; i < rows; i++) l[i] *= scale;
+    }
+  }
+  return EXTRADOS_ok;
+}
+
+/* t[i] -= a l[i] */
+static inline void subtract(int64_t count, double a, const double *restrict l, double *restrict t) {
+  int64_t i = 0;
+  for (; i + 4 <= count; i += 4) *(four *)(t + i) -= a * *(const four *)(l + i);
+  for (; i < count; i++) t[i] -= a * l[i];
+}
+
+/* Forward through supernode s for `vectors` right-hand sides, each n long in z. */
+static inline void forward_block(const struct extrados_sparse *self, int64_t s, int vectors, double *z) {
+  const int64_t *super = self->factor->super, *pi = self->factor->pi;
+  const int64_t *row = (const int64_t *)self->factor->s + pi[s];
+  const double *x = (const double *)self->factor->x + ((const int64_t *)self->factor->px)[s];
+  int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s];
+  for (int v = 0; v < vectors; v++) {
+    double *zv = z + v * self->n, *t = self->buffer;
+    for (int64_t i = 0; i < rows; i++) t[i] = zv[row[i]];
+    for (int64_t c = 0; c < columns; c++)
+      if (t[c] != 0.0) subtract(rows - c - 1, t[c], x + c * rows + c + 1, t + c + 1);
+    for (int64_t i = 0; i < rows; i++) zv[row[i]] = t[i];
+  }
+}
+
+/* Sums l[i] t[i] from `from` on, of two columns and `vectors` right-hand sides at once: what is loaded is used
+ * twice. `columns` and `vectors` are constants at each call, so that the loops over them unroll. */
+__attribute__((always_inline)) static inline void products(int64_t from, int64_t rows, const double *const l[2], const double *t,
+                            const int columns, const int vectors, double total[2][most_vectors]) {
+  four sum[2][most_vectors] = {{{0.0}}};
+  int64_t i = from;
+  for (; i + 4 <= rows; i += 4)
+    for (int v = 0; v < vectors; v++) {
+      const four part = *(const four *)(t + v * rows + i);
+      for (int k = 0; k < columns; k++) sum[k][v] += *(const four *)(l[k] + i) * part;
+    }
+  for (int k = 0; k < columns; k++)
+    for (int v = 0; v < vectors; v++) {
+      total[k][v] = (sum[k][v][0] + sum[k][v][1]) + (sum[k][v][2] + sum[k][v][3]);
+      for (int64_t j = i; j < rows; j++) total[k][v] += l[k][j] * t[v * rows + j];
+    }
+}
+
+/* Backward through supernode s; `vectors` is a constant at each call. */
+__attribute__((always_inline)) static inline void backward_block(const struct extrados_sparse *self, int64_t s, const int vectors, double *z) {
+  const int64_t *super = self->factor->super, *pi = self->factor->pi;
+  const int64_t *row = (const int64_t *)self->factor->s + pi[s];
+  const double *x = (const double *)self->factor->x + ((const int64_t *)self->factor->px)[s];
+  int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s], n = self->n;
+  double *t = self->buffer, total[2][most_vectors];
+  /* The factor is walked from its end, which the processor does not foresee: the next block is asked for now. */
+  if (s > 0) {
+    const char *next = (const char *)((const double *)self->factor->x + ((const int64_t *)self->factor->px)[s - 1]);
+    for (const char *line = next; line < (const char *)x && line < next + most_ahead; line += 64)
+      __builtin_prefetch(line);
+  }
+  for (int v = 0; v < vectors; v++)
+    for (int64_t i = 0; i < rows; i++) t[v * rows + i] = z[v * n + row[i]];
+  int64_t c = columns - 1;
+  for (; c > 0; c -= 2) {
+    const double *l[2] = {x + c * rows, x + (c - 1) * rows};
+    products(c + 1, rows, l, t, 2, vectors, total);
+    for (int v = 0; v < vectors; v++) {
+      t[v * rows + c] -= total[0][v];
+      t[v * rows + c - 1] -= total[1][v] + l[1][c] * t[v * rows + c];
+    }
+  }
+  if (c == 0) {
+    const double *l[2] = {x, x};
+    products(1, rows, l, t, 1, vectors, total);
+    for (int v = 0; v < vectors; v++) t[v * rows] -= total[0][v];
+  }
+  for (int v = 0; v < vectors; v++)
+    memcpy(z + v * n + super[s], t + v * rows, (size_t)columns * sizeof *t);
+}
+
+FOR_EACH_PROCESSOR
+static void backward(const struct extrados_sparse *self, int vectors, double *z) {
+  for (int64_t s = self->blocks - 1; s >= 0; s--) switch (vectors) {
+      case 1: backward_block(self, s, 1, z); break;
+      case 2: backward_block(self, s, 2, z); break;
+      case 3: backward_block(self, s, 3, z); break;
+      default: backward_block(self, s, 4, z);
+    }
+}
+
+/* The supernode above s in the tree, or -1. */
+static int64_t parent(const struct extrados_sparse *self, int64_t s) {
+  const int64_t *super = self->factor->super, *pi = self->factor->pi;
+  int64_t below = pi[s] + super[s + 1] - super[s];
+  return below < pi[s + 1] ? self->block_of[((const int64_t *)self->factor->s)[below]] : -1;
+}
+
+static int64_t first_block(const struct extrados_sparse *self, int count, const int *index) {
+  int first = index[0];
+  for (int i = 1; i < count; i++)
+    if (index[i] < first) first = index[i];
+  return self->block_of[first];
+}
+
+int extrados_sparse_solve(void *handle, int vectors, double *z) {
+  const struct extrados_sparse *self = handle;
+  if (vectors < 1 || vectors > most_vectors) return EXTRADOS_invalid_argument;
+  if (!all_finite(self->n * vectors, z)) return EXTRADOS_not_finite;
+  for (int64_t s = 0; s < self->blocks; s++) forward_block(self, s, vectors, z);
+  for (int v = 0; v < vectors; v++)
+    for (int64_t i = 0; i < self->n; i++) z[v * self->n + i] /= self->d[i];
+  backward(self, vectors, z);
+  return EXTRADOS_ok;
+}
+
+int extrados_sparse_event(void *handle, int vectors, int count, const int *index, const double *w, double *z) {
+  const struct extrados_sparse *self = handle;
+  if (vectors < 1 || vectors > most_vectors || count < 1) return EXTRADOS_invalid_argument;
+  memset(z, 0, (size_t)(self->n * vectors) * sizeof *z);
+  for (int v = 0; v < vectors; v++)
+    for (int i = 0; i < count; i++) z[v * self->n + index[i]] = w[v * count + i];
+  const int64_t *super = self->factor->super;
+  for (int64_t s = first_block(self, count, index); s >= 0; s = parent(self, s)) {
+    forward_block(self, s, vectors, z);
+    for (int v = 0; v < vectors; v++)
+      for (int64_t j = super[s]; j < super[s + 1]; j++) z[v * self->n + j] /= self->d[j];
+  }
+  backward(self, vectors, z);
+  return EXTRADOS_ok;
+}
+
+/* One column of the rank-1 change: w -= wj l, then l += g w. */
+FOR_EACH_PROCESSOR
+static void change_column(int64_t count, double wj, double g, double *restrict l, double *restrict w) {
+  int64_t i = 0;
+  for (; i + 4 <= count; i += 4) {
+    four column = *(four *)(l + i), vector = *(four *)(w + i) - wj * column;
+    *(four *)(w + i) = vector;
+    *(four *)(l + i) = column + g * vector;
+  }
+  for (; i < count; i++) {
+    w[i] -= wj * l[i];
+    l[i] += g * w[i];
+  }
+}
+
+int extrados_sparse_rank1(void *handle, int sign, int count, const int *index, const double *w) {
+  struct extrados_sparse *self = handle;
+  if (count < 1 || (sign != 1 && sign != -1)) return EXTRADOS_invalid_argument;
+  const int64_t *super = self->factor->super, *pi = self->factor->pi, *px = self->factor->px;
+  double *t = self->buffer, a = 1.0;
+  int code = EXTRADOS_ok;
+  for (int i = 0; i < count; i++) self->column[index[i]] = w[i];
+  for (int64_t s = first_block(self, count, index); s >= 0; s = parent(self, s)) {
+    const int64_t *row = (const int64_t *)self->factor->s + pi[s];
+    double *x = (double *)self->factor->x + px[s];
+    int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s];
+    for (int64_t i = 0; i < rows; i++) {
+      t[i] = self->column[row[i]];
+      self->column[row[i]] = 0.0;
+    }
+    for (int64_t c = 0; c < columns && code == EXTRADOS_ok; c++) {
+      double wj = t[c], d = self->d[super[s] + c];
+      if (wj == 0.0) continue;
+      double next = a + sign * wj * wj / d;
+      if (!(next > 0.0)) {
+        code = EXTRADOS_not_positive_definite;
+        break;
+      }
+      self->d[super[s] + c] = d * next / a;
+      change_column(rows - c - 1, wj, sign * wj / (d * next), x + c * rows + c + 1, t + c + 1);
+      a = next;
+    }
+    if (code != EXTRADOS_ok) break;
+    for (int64_t i = columns; i < rows; i++) self->column[row[i]] = t[i];
+  }
+  return code;
+}
+
+int extrados_sparse_plain(void *handle, const double *value, int vectors, double *z) {
+  struct extrados_sparse *self = handle;
+  double ratio;
+  int64_t weakest;
+  int code = factorise(self, value, &ratio, &weakest);
+  if (code != EXTRADOS_ok) return code;
+  cholmod_dense b = {0};
+  b.nrow = b.d = (size_t)self->n;
+  b.ncol = (size_t)vectors;
+  b.nzmax = b.nrow * b.ncol;
+  b.x = z;
+  b.xtype = CHOLMOD_REAL;
+  b.dtype = CHOLMOD_DOUBLE;
+  cholmod_l_solve2(CHOLMOD_A, self->factor, &b, NULL, &self->answer, NULL, &self->y, &self->e, &self->common);
+  if (self->common.status != CHOLMOD_OK) return code_of(&self->common);
+  memcpy(z, self->answer->x, b.nzmax * sizeof *z);
+  return EXTRADOS_ok;
+}

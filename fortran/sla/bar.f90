@@ -1,0 +1,272 @@
+!> Bars of two nodes with saw-tooth softening, and linear springs.
+module sla_bar
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
+   use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, &
+      linear_bound, &
+      code_tension, code_compression
+   use sla_tables, only : tooth_tables
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: bar_group, bar_group_new, spring_group, spring_group_new
+
+   !> Bars; the damage of a bar is its tension and its compression tooth
+   type, extends(point_group) :: bar_group
+      real(wp), allocatable :: gradient(:, :)         !! (4, elements) strain per displacement [1/m]
+      real(wp), allocatable :: volume(:)              !! [m^3]
+      real(wp), allocatable :: young(:)               !! [Pa]
+      integer(c_int), allocatable :: table(:)
+      integer(c_int), allocatable :: crush_table(:)
+      integer(c_int), allocatable :: tooth(:, :)      !! (2, elements) tension, compression
+      real(wp), allocatable :: modulus(:)             !! [Pa]
+      type(tooth_tables) :: teeth
+   contains
+      procedure :: matrix => bar_matrix
+      procedure :: force => bar_force
+      procedure :: scan => bar_scan
+      procedure :: damage => bar_damage
+      procedure :: report => bar_report
+      procedure :: state => bar_state
+   end type bar_group
+
+   !> Springs between two freedoms, or one and the ground; they have no integration points
+   type, extends(element_group) :: spring_group
+      real(wp), allocatable :: stiffness(:)           !! [N/m]
+   contains
+      procedure :: matrix => spring_matrix
+      procedure :: force => spring_force
+   end type spring_group
+
+contains
+
+   !> Bars without damage
+   subroutine bar_group_new(xy, connect, area, young, table, crush_table, teeth, options, group, bad, status)
+      real(wp), intent(in) :: xy(:, :)             !! (2, nodes) [m]
+      integer(c_int), intent(in) :: connect(:, :)  !! (2, elements), 1-based
+      real(wp), intent(in) :: area(:)              !! [m^2]
+      real(wp), intent(in) :: young(:)             !! [Pa]
+      integer(c_int), intent(in) :: table(:)
+      integer(c_int), intent(in) :: crush_table(:)
+      type(tooth_tables), intent(in) :: teeth
+      type(material_options), intent(in) :: options
+      type(bar_group), intent(out) :: group
+      integer(c_int), intent(out) :: bad
+      integer(c_int), intent(out) :: status
+      real(wp) :: d(2), length
+      integer :: e, n, info
+
+      n = size(connect, 2)
+      bad = 0
+      status = status_out_of_memory
+      group%elements = n
+      group%points = n
+      group%freedoms = 4
+      group%options = options
+      group%teeth = teeth
+      allocate (group%gradient(4, n), group%volume(n), group%young(n), group%table(n), group%crush_table(n), &
+         group%tooth(2, n), group%modulus(n), stat=info)
+      if (info /= 0) return
+      group%young(:) = young
+      group%modulus(:) = young
+      group%table(:) = table
+      group%crush_table(:) = crush_table
+      group%tooth = 1
+      do e = 1, n
+         d = xy(:, connect(2, e)) - xy(:, connect(1, e))
+         length = hypot(d(1), d(2))
+         if (.not. length > 0.0_wp) then
+            bad = int(e, c_int)
+            status = status_bad_geometry
+            return
+         end if
+         group%gradient(:, e) = [-d, d] / length**2
+         group%volume(e) = area(e) * length
+      end do
+      status = status_ok
+   end subroutine bar_group_new
+
+   pure subroutine bar_matrix(self, element, k)
+      class(bar_group), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(out) :: k(:, :)
+      integer :: i
+      k = 0.0_wp
+      do i = 1, 4
+         k(1:4, i) = self%volume(element) * self%modulus(element) * self%gradient(:, element) &
+            * self%gradient(i, element)
+      end do
+   end subroutine bar_matrix
+
+   pure subroutine bar_force(self, u, f)
+      class(bar_group), intent(in) :: self
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(inout) :: f(0:)
+      real(wp) :: part(4), local(4)
+      integer :: e, i
+      do e = 1, self%elements
+         call self%gather(e, u, local)
+         part = self%volume(e) * self%modulus(e) * dot_product(self%gradient(:, e), local) * self%gradient(:, e)
+         do i = 1, 4
+            f(self%equation(i, e)) = f(self%equation(i, e)) + part(i) * self%factor(i, e)
+         end do
+      end do
+   end subroutine bar_force
+
+   !> Strengths in tension and compression [Pa]
+   pure function bar_limits(self, e) result(limit)
+      class(bar_group), intent(in) :: self
+      integer, intent(in) :: e
+      real(wp) :: limit(2), tension, compression
+      tension = self%teeth%modulus_of(self%table(e), self%tooth(1, e), self%young(e), self%options%floor)
+      compression = self%teeth%modulus_of(self%crush_table(e), self%tooth(2, e), self%young(e), self%options%floor)
+      limit(1) = self%teeth%strength_of(self%table(e), self%tooth(1, e), self%modulus(e) / tension)
+      limit(2) = self%teeth%strength_of(self%crush_table(e), self%tooth(2, e), self%modulus(e) / compression)
+   end function bar_limits
+
+   pure subroutine bar_scan(self, first, last, ua, ub, lambda, noise, found)
+      class(bar_group), intent(in) :: self
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(inout) :: found
+      real(wp) :: la(4), lb(4), sa, sb, limit(2)
+      integer :: e
+      do e = first, last
+         if (self%table(e) == 0 .and. self%crush_table(e) == 0) cycle
+         call self%gather(e, ua, la)
+         call self%gather(e, ub, lb)
+         sa = self%modulus(e) * dot_product(self%gradient(:, e), la)
+         sb = self%modulus(e) * dot_product(self%gradient(:, e), lb)
+         limit = bar_limits(self, e)
+         if (limit(1) < unbounded) then
+           call linear_bound(sa, sb, limit(1), limit(1), lambda, noise, e, code_tension, found)
+         end if
+         if (limit(2) < unbounded) then
+           call linear_bound(-sa, -sb, limit(2), limit(2), lambda, noise, e, code_compression, found)
+         end if
+      end do
+   end subroutine bar_scan
+
+   pure subroutine bar_damage(self, point, code, lambda, ua, ub, event, tooth)
+      class(bar_group), intent(inout) :: self
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      type(event_vectors), intent(out) :: event
+      integer, intent(out) :: tooth
+      real(wp) :: before
+      integer :: k
+      associate (unused_load => lambda, unused_a => ua, unused_b => ub)   ! a bar's axis is known beforehand
+      end associate
+      k = merge(1, 2, code == code_tension)
+      before = self%modulus(point)
+      self%tooth(k, point) = self%tooth(k, point) + 1_c_int
+      tooth = int(self%tooth(k, point))
+      call bar_refresh(self, point)
+      event%rank = 1
+      event%sign(1) = sign(1.0_wp, before - self%modulus(point))
+      call self%spread(point, sqrt(self%volume(point) * abs(before - self%modulus(point))) * self%gradient(:, point), &
+         event, 1)
+   end subroutine bar_damage
+
+   !> Modulus of a bar from its damage
+   pure subroutine bar_refresh(self, e)
+      class(bar_group), intent(inout) :: self
+      integer, intent(in) :: e
+      self%modulus(e) = min( &
+         self%teeth%modulus_of(self%table(e), self%tooth(1, e), self%young(e), self%options%floor), &
+         self%teeth%modulus_of(self%crush_table(e), self%tooth(2, e), self%young(e), self%options%floor))
+   end subroutine bar_refresh
+
+   pure subroutine bar_state(self, store, values)
+      class(bar_group), intent(inout) :: self
+      logical, intent(in) :: store
+      real(wp), intent(inout) :: values(:, :)
+      integer :: e
+      if (store) then
+         values = 0.0_wp
+         values(4, :) = real(self%tooth(1, :), wp)
+         values(6, :) = real(self%tooth(2, :), wp)
+      else
+         self%tooth(1, :) = nint(values(4, :), c_int)
+         self%tooth(2, :) = nint(values(6, :), c_int)
+         do e = 1, self%elements
+            call bar_refresh(self, e)
+         end do
+      end if
+   end subroutine bar_state
+
+   !> Rows as of a plane point: the strain, the stress and the moduli of the bar's axis
+   pure subroutine bar_report(self, ua, ub, lambda, noise, values)
+      class(bar_group), intent(in) :: self
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      real(wp), intent(out) :: values(:, :)
+      real(wp) :: la(4), lb(4), length
+      type(scan_result) :: found
+      integer :: e
+      values = 0.0_wp
+      do e = 1, self%elements
+         call self%gather(e, ua, la)
+         call self%gather(e, ub, lb)
+         values(1, e) = dot_product(self%gradient(:, e), la + lambda * lb)
+         values(4, e) = self%modulus(e) * values(1, e)
+         length = 1.0_wp / hypot(self%gradient(3, e), self%gradient(4, e))
+         values(7:8, e) = self%gradient(3:4, e) * length
+         values(9, e) = self%modulus(e) / self%young(e)
+         values(10, e) = 1.0_wp
+         values(11, e) = real(self%tooth(1, e), wp)
+         values(12, e) = 1.0_wp
+         found = scan_result()
+         call bar_scan(self, e, e, ua, ub, lambda, noise, found)
+         values(13:14, e) = [found%lo%value, found%hi%value]
+         values(15, e) = self%volume(e)
+         values(16, e) = real(self%tooth(2, e), wp)
+         values(17, e) = 1.0_wp
+      end do
+   end subroutine bar_report
+
+   !> Springs between freedoms of the given equations
+   subroutine spring_group_new(stiffness, group, status)
+      real(wp), intent(in) :: stiffness(:)        !! [N/m]
+      type(spring_group), intent(out) :: group
+      integer(c_int), intent(out) :: status
+      integer :: info
+      group%elements = size(stiffness)
+      group%freedoms = 2
+      allocate (group%stiffness(size(stiffness)), stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info == 0) group%stiffness(:) = stiffness
+   end subroutine spring_group_new
+
+   pure subroutine spring_matrix(self, element, k)
+      class(spring_group), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(out) :: k(:, :)
+      k = 0.0_wp
+      k(1:2, 1:2) = self%stiffness(element) * reshape([1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp], [2, 2])
+   end subroutine spring_matrix
+
+   pure subroutine spring_force(self, u, f)
+      class(spring_group), intent(in) :: self
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(inout) :: f(0:)
+      real(wp) :: local(2), pull
+      integer :: e
+      do e = 1, self%elements
+         call self%gather(e, u, local)
+         pull = self%stiffness(e) * (local(1) - local(2))
+         f(self%equation(1, e)) = f(self%equation(1, e)) + pull * self%factor(1, e)
+         f(self%equation(2, e)) = f(self%equation(2, e)) - pull * self%factor(2, e)
+      end do
+   end subroutine spring_force
+
+end module sla_bar

@@ -1,0 +1,87 @@
+!> The sparse factor of the C part (c/sparse/ldl.c).
+module sla_c_bindings
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_ptr
+   implicit none
+   private
+   public :: extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, extrados_sparse_factor
+   public :: extrados_sparse_solve, extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_plain
+
+   interface
+      function extrados_sparse_order(n, start, row, ordering, order) bind(c) result(status)
+         import :: c_int, c_int64_t
+         implicit none (type, external)
+         integer(c_int64_t), value, intent(in) :: n
+         integer(c_int64_t), intent(in) :: start(*), row(*)
+         integer(c_int), value, intent(in) :: ordering
+         integer(c_int64_t), intent(out) :: order(*)
+         integer(c_int) :: status
+      end function extrados_sparse_order
+
+      function extrados_sparse_new(n, start, row, handle, values) bind(c) result(status)
+         import :: c_int, c_int64_t, c_ptr
+         implicit none (type, external)
+         integer(c_int64_t), value, intent(in) :: n
+         integer(c_int64_t), intent(in) :: start(*), row(*)
+         type(c_ptr), intent(out) :: handle
+         integer(c_int64_t), intent(out) :: values
+         integer(c_int) :: status
+      end function extrados_sparse_new
+
+      subroutine extrados_sparse_free(handle) bind(c)
+         import :: c_ptr
+         implicit none (type, external)
+         type(c_ptr), intent(inout) :: handle
+      end subroutine extrados_sparse_free
+
+      function extrados_sparse_factor(handle, value, ratio, weakest) bind(c) result(status)
+         import :: c_int, c_int64_t, c_double, c_ptr
+         implicit none (type, external)
+         type(c_ptr), value, intent(in) :: handle
+         real(c_double), intent(in) :: value(*)
+         real(c_double), intent(out) :: ratio
+         integer(c_int64_t), intent(out) :: weakest
+         integer(c_int) :: status
+      end function extrados_sparse_factor
+
+      function extrados_sparse_solve(handle, vectors, z) bind(c) result(status)
+         import :: c_int, c_double, c_ptr
+         implicit none (type, external)
+         type(c_ptr), value, intent(in) :: handle
+         integer(c_int), value, intent(in) :: vectors
+         real(c_double), intent(inout) :: z(*)
+         integer(c_int) :: status
+      end function extrados_sparse_solve
+
+      function extrados_sparse_event(handle, vectors, count, index, w, z) bind(c) result(status)
+         import :: c_int, c_double, c_ptr
+         implicit none (type, external)
+         type(c_ptr), value, intent(in) :: handle
+         integer(c_int), value, intent(in) :: vectors, count
+         integer(c_int), intent(in) :: index(*)
+         real(c_double), intent(in) :: w(*)
+         real(c_double), intent(inout) :: z(*)
+         integer(c_int) :: status
+      end function extrados_sparse_event
+
+      function extrados_sparse_rank1(handle, sign, count, index, w) bind(c) result(status)
+         import :: c_int, c_double, c_ptr
+         implicit none (type, external)
+         type(c_ptr), value, intent(in) :: handle
+         integer(c_int), value, intent(in) :: sign, count
+         integer(c_int), intent(in) :: index(*)
+         real(c_double), intent(in) :: w(*)
+         integer(c_int) :: status
+      end function extrados_sparse_rank1
+
+      function extrados_sparse_plain(handle, value, vectors, z) bind(c) result(status)
+         import :: c_int, c_double, c_ptr
+         implicit none (type, external)
+         type(c_ptr), value, intent(in) :: handle
+         real(c_double), intent(in) :: value(*)
+         integer(c_int), value, intent(in) :: vectors
+         real(c_double), intent(inout) :: z(*)
+         integer(c_int) :: status
+      end function extrados_sparse_plain
+   end interface
+
+end module sla_c_bindings

@@ -1,0 +1,412 @@
+!> The event loop of sequentially linear analysis under loads A + lambda B (thesis 4.3.1).
+!>
+!> Each event: apply the last damage (one solve with its vectors, Sherman-Morrison-Woodbury correction of
+!> both displacements, rank-one changes of the factor), scan all points for the admissible range of lambda,
+!> choose the point that leaves it, record the state. The loop knows groups, not materials.
+module sla_events
+   use common_cancel, only : cancel_requested
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
+   use sla_assembly, only : add_event
+   use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
+   use sla_group, only : bound, point_group, scan_result, unbounded, most_entries, most_rank
+   use sla_model, only : model, model_factor, model_solve
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: run_events, scan_model, stop_rules, event_log, log_reals, log_integers
+   public :: stop_none, stop_mechanism, stop_unbounded, stop_all_empty, stop_displacement, stop_load, stop_fraction
+
+   !> Why a run of events ended
+   integer(c_int), parameter :: stop_none = 0, stop_mechanism = 1, stop_unbounded = 2, stop_all_empty = 3, &
+      stop_displacement = 4, stop_load = 5, stop_fraction = 6
+
+   integer, parameter :: log_reals = 9, log_integers = 4
+   real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
+   integer, parameter :: guard_every = 500
+   real(wp), parameter :: most_residual = 1.0e-8_wp
+
+   type :: stop_rules
+      real(wp) :: lambda = unbounded               !! stage ends where it carries this multiplier
+      real(wp) :: displacement = unbounded         !! of monitor 1, absolute [m]
+      real(wp) :: fraction = -1.0_wp               !! of the peak multiplier, after it; negative: never
+      real(wp) :: compliance = 1.0e6_wp            !! fb.ub over its first value: a mechanism
+      logical :: refuse_overload = .false.         !! the first state must carry the constant loads
+   end type stop_rules
+
+   !> What is recorded; monitors are weighted sums of equations
+   type :: event_log
+      integer :: count = 0
+      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub, residual
+      real(wp), allocatable :: reals(:, :)         !! (log_reals, room)
+      !> point (1-based), code, tooth reached by it before, 1 in equilibrium
+      integer(c_int), allocatable :: integers(:, :)  !! (log_integers, room)
+      real(wp), allocatable :: monitors(:, :)      !! (monitors, room)
+   end type event_log
+
+contains
+
+   !> Run up to `room` events and record them; the last one is chosen but not applied yet
+   subroutine run_events(made, rules, first, equation, share, log, reason, status)
+      type(model), intent(inout) :: made
+      type(stop_rules), intent(in) :: rules
+      integer(c_int), intent(in) :: first(:)      !! (monitors + 1) first entry of each monitor
+      integer(c_int), intent(in) :: equation(:)   !! (entries), factor order
+      real(wp), intent(in) :: share(:)
+      type(event_log), intent(inout) :: log
+      integer(c_int), intent(out) :: reason       !! stop_...
+      integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
+      type(scan_result) :: found
+      logical :: equilibrium
+
+      reason = stop_none
+      status = status_ok
+      log%count = 0
+      do while (log%count < size(log%reals, 2))
+         if (cancel_requested()) then
+            status = status_cancelled
+            return
+         end if
+         if (made%pending(1) /= 0) then
+            call apply_event(made, reason, status)
+            if (status /= status_ok .or. reason /= stop_none) return
+         end if
+         call scan_model(made, found)
+         made%hot(:, 1) = [found%hi%group, found%hi%point]
+         made%hot(:, 2) = [found%lo%group, found%lo%point]
+         equilibrium = found%empty%point == 0 .and. found%hi%value >= found%lo%value
+         if (rules%refuse_overload .and. .not. made%recorded .and. .not. equilibrium) then
+            status = status_beyond_strength
+            return
+         end if
+         if (.not. found%bounded) reason = stop_unbounded
+         if (equilibrium .and. rules%lambda < unbounded .and. found%hi%value >= rules%lambda .and. &
+             found%lo%value <= rules%lambda) then
+            reason = stop_load
+         else if (found%empty%point /= 0) then
+            found%empty%value = made%lambda
+            if (found%hi%point == 0 .and. found%lo%point == 0) reason = stop_all_empty
+            call choose(made, found%empty)
+         else if (equilibrium .and. found%hi%value < unbounded) then
+            call choose(made, found%hi)
+         else if (found%lo%value > -unbounded .and. .not. equilibrium) then
+            call choose(made, found%lo)
+         else
+            reason = stop_unbounded    ! only lower limits: the load can grow for ever
+         end if
+         if (reason == stop_load) then
+            made%pending = 0
+            call account(made, rules%lambda)
+         else if (reason == stop_unbounded) then
+            return
+         else
+            call account(made, made%lambda)
+         end if
+         call record(made, found, equilibrium, first, equation, share, log)
+         if (reason /= stop_none) return
+         if (equilibrium) then
+            if (made%lambda > made%peak) then
+               made%peak = made%lambda
+               made%peak_displacement = log%monitors(1, log%count)
+            end if
+            if (abs(log%monitors(1, log%count)) >= rules%displacement) reason = stop_displacement
+            ! A drop on the way back from a small crack is no end: the wall must have gone further than at its peak.
+            if (rules%fraction >= 0.0_wp .and. made%peak > 0.0_wp .and. made%lambda < rules%fraction * made%peak .and. &
+                (log%monitors(1, log%count) - made%peak_displacement) * made%slope > 0.0_wp) reason = stop_fraction
+         end if
+         if (made%work(3) > rules%compliance * made%first_compliance) reason = stop_mechanism
+         if (reason /= stop_none) return
+      end do
+   end subroutine run_events
+
+   !> Limits over all points, the same for any number of threads: pieces are joined in their order
+   subroutine scan_model(made, found)
+      type(model), intent(in) :: made
+      type(scan_result), intent(out) :: found
+      type(scan_result), allocatable :: part(:)
+      type(scan_result) :: guess
+      integer :: k
+
+      allocate (part(size(made%piece, 2)))
+      ! The limits of the point damaged last are near the new ones: loosened, they spare most points the roots.
+      call guess_limits(made, guess)
+      !$omp parallel do schedule(static) default(none) shared(made, part, guess) private(k) &
+      !$omp num_threads(made%threads) if(made%threads > 1)
+      do k = 1, size(made%piece, 2)
+         part(k) = guess
+         select type (group => made%holders(made%piece(1, k))%group)
+         class is (point_group)
+            call group%scan(made%piece(2, k), made%piece(3, k), made%ua, made%ub, made%lambda, made%noise, part(k))
+         end select
+      end do
+      !$omp end parallel do
+      found = scan_result()
+      do k = 1, size(part)
+         associate (g => made%piece(1, k))
+            found%bounded = found%bounded .or. part(k)%bounded
+            if (part(k)%hi%point /= 0 .and. part(k)%hi%value < found%hi%value) then
+               found%hi = part(k)%hi
+               found%hi%group = g
+            end if
+            if (part(k)%lo%point /= 0 .and. part(k)%lo%value > found%lo%value) then
+               found%lo = part(k)%lo
+               found%lo%group = g
+            end if
+            if (part(k)%empty%point /= 0 .and. &
+                (found%empty%point == 0 .or. part(k)%empty%value > found%empty%value)) then
+               found%empty = part(k)%empty
+               found%empty%group = g
+            end if
+         end associate
+      end do
+   end subroutine scan_model
+
+   !> Loosened limits of the points that set the last ones
+   subroutine guess_limits(made, guess)
+      type(model), intent(in) :: made
+      type(scan_result), intent(out) :: guess
+      type(scan_result) :: found
+      integer :: k, g, e
+
+      guess = scan_result()
+      do k = 1, size(made%hot, 2)
+         g = made%hot(1, k)
+         if (g == 0) cycle
+         select type (group => made%holders(g)%group)
+         class is (point_group)
+            e = 1 + (made%hot(2, k) - 1) / (group%points / group%elements)
+            found = scan_result()
+            call group%scan(e, e, made%ua, made%ub, made%lambda, made%noise, found)
+            if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, &
+               found%hi%value + 1.0e-9_wp * abs(found%hi%value))
+            if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, &
+               found%lo%value - 1.0e-9_wp * abs(found%lo%value))
+         end select
+      end do
+   end subroutine guess_limits
+
+   !> The point to damage next and its multiplier
+   pure subroutine choose(made, chosen)
+      type(model), intent(inout) :: made
+      type(bound), intent(in) :: chosen
+      made%pending = [chosen%group, chosen%point, chosen%code]
+      made%lambda = chosen%value
+   end subroutine choose
+
+   !> Damage the pending point; the displacements and the factor follow
+   subroutine apply_event(made, reason, status)
+      type(model), intent(inout) :: made
+      integer(c_int), intent(out) :: reason
+      integer(c_int), intent(out) :: status
+      real(wp) :: m(most_rank, most_rank), wa(most_rank), wb(most_rank)
+      integer(c_int) :: index0(most_entries)
+      integer :: i, j, r, n, tooth
+
+      reason = stop_none
+      status = status_ok
+      n = made%equations
+      select type (group => made%holders(made%pending(1))%group)
+      class is (point_group)
+         call group%damage(made%pending(2), made%pending(3), made%lambda, made%ua, made%ub, made%event, tooth)
+      end select
+      made%pending = 0
+      made%events = made%events + 1
+      associate (event => made%event)
+         r = event%rank
+         if (r == 0) return
+         do i = 1, r
+            made%before(i) = dot_product(event%w(1:event%entries, i), made%ua(event%index(1:event%entries)) + &
+               made%lambda * made%ub(event%index(1:event%entries)))
+            made%cracked = made%cracked + 0.5_wp * event%sign(i) * made%before(i)**2
+         end do
+         if (made%refactor) then
+            call add_event(event, made%start, made%row, made%value)
+            call model_solve(made, status)
+            if (status == status_not_positive_definite) then
+               status = status_ok
+               reason = stop_mechanism
+            end if
+            return
+         end if
+         index0 = event%index - 1_c_int
+         status = extrados_sparse_event(made%handle, int(r, c_int), int(event%entries, c_int), index0, &
+            reshape(event%w(1:event%entries, 1:r), [event%entries * r]), made%z)
+         if (status /= status_ok) return
+         do j = 1, r
+            do i = 1, r
+               m(i, j) = -dot_product(event%w(1:event%entries, i), made%z(event%index(1:event%entries), j))
+            end do
+            m(j, j) = m(j, j) + event%sign(j)
+            wa(j) = dot_product(event%w(1:event%entries, j), made%ua(event%index(1:event%entries)))
+            wb(j) = dot_product(event%w(1:event%entries, j), made%ub(event%index(1:event%entries)))
+         end do
+         call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), reason)
+         if (reason /= stop_none) return
+         do j = 1, r
+            made%ua(1:n) = made%ua(1:n) + wa(j) * made%z(:, j)
+            made%ub(1:n) = made%ub(1:n) + wb(j) * made%z(:, j)
+         end do
+         ! Stiffening first: no way-station is less definite than the ends.
+         do j = 1, 2
+            do i = 1, r
+               if ((event%sign(i) > 0.0_wp) .eqv. (j == 1)) cycle
+               status = extrados_sparse_rank1(made%handle, int(-sign(1.0_wp, event%sign(i)), c_int), &
+                  int(event%entries, c_int), index0, event%w(1:event%entries, i))
+               if (status == status_not_positive_definite) then
+                  status = status_ok
+                  reason = stop_mechanism
+               end if
+               if (status /= status_ok .or. reason /= stop_none) return
+            end do
+         end do
+      end associate
+      if (mod(made%events, guard_every) == 0) call guard_residual(made, status)
+   end subroutine apply_event
+
+   !> Solve m x = wa, m y = wb by elimination without pivoting: m is positive definite for softening events
+   pure subroutine small(m, wa, wb, r, definite, reason)
+      real(wp), intent(inout) :: m(:, :)
+      real(wp), intent(inout) :: wa(:)
+      real(wp), intent(inout) :: wb(:)
+      integer, intent(in) :: r
+      logical, intent(in) :: definite
+      integer(c_int), intent(inout) :: reason
+      real(wp) :: f
+      integer :: i, j
+      do j = 1, r
+         if ((definite .and. .not. m(j, j) > least_pivot) .or. .not. abs(m(j, j)) > least_pivot) then
+            reason = stop_mechanism
+            return
+         end if
+         do i = j + 1, r
+            f = m(i, j) / m(j, j)
+            m(i, j:r) = m(i, j:r) - f * m(j, j:r)
+            wa(i) = wa(i) - f * wa(j)
+            wb(i) = wb(i) - f * wb(j)
+         end do
+      end do
+      do j = r, 1, -1
+         wa(j) = (wa(j) - dot_product(m(j, j + 1:r), wa(j + 1:r))) / m(j, j)
+         wb(j) = (wb(j) - dot_product(m(j, j + 1:r), wb(j + 1:r))) / m(j, j)
+      end do
+   end subroutine small
+
+   !> Residuals of both displacements by the elements; refine, then factorise anew, only where they ask for it
+   subroutine guard_residual(made, status)
+      type(model), intent(inout) :: made
+      integer(c_int), intent(out) :: status
+      integer(c_int) :: node, direction
+      real(wp) :: ratio
+      integer :: n
+
+      status = status_ok
+      n = made%equations
+      made%guard(1) = made%guard(1) + 1
+      call residual(made)
+      if (made%residual <= most_residual) return
+      made%guard(2) = made%guard(2) + 1
+      status = extrados_sparse_solve(made%handle, 2_c_int, made%z)
+      if (status /= status_ok) return
+      made%ua(1:n) = made%ua(1:n) + made%z(:, 1)
+      made%ub(1:n) = made%ub(1:n) + made%z(:, 2)
+      call residual(made)
+      if (made%residual <= most_residual) return
+      made%guard(3) = made%guard(3) + 1
+      call model_factor(made, node, direction, ratio, status)
+      if (status == status_ok) call model_solve(made, status)
+      if (status == status_ok) call residual(made)
+   end subroutine guard_residual
+
+   !> Residual forces into z, the larger relative norm into made%residual
+   subroutine residual(made)
+      type(model), intent(inout) :: made
+      real(wp), allocatable :: f(:)
+      real(wp) :: load
+      integer :: k, g, n
+      n = made%equations
+      allocate (f(0:n))
+      made%residual = 0.0_wp
+      do k = 1, 2
+         f = 0.0_wp
+         do g = 1, size(made%holders)
+            if (k == 1) call made%holders(g)%group%force(made%ua, f)
+            if (k == 2) call made%holders(g)%group%force(made%ub, f)
+         end do
+         if (k == 1) f = made%fa - f
+         if (k == 2) f = made%fb - f
+         made%z(:, k) = f(1:n)
+         load = norm2(merge(made%fa, made%fb, k == 1))
+         if (load > 0.0_wp) made%residual = max(made%residual, norm2(f(1:n)) / load)
+      end do
+   end subroutine residual
+
+   !> Energy ledger up to the state lambda: external work by the trapezium between successive states,
+   !> dissipation at the damaged points alone; the stored energy must close the balance
+   subroutine account(made, lambda)
+      type(model), intent(inout) :: made
+      real(wp), intent(in) :: lambda
+      real(wp) :: new(3), after, was
+      integer :: i
+
+      was = made%lambda_recorded
+      new = [dot_product(made%fa, made%ua), dot_product(made%fa, made%ub), dot_product(made%fb, made%ub)]
+      if (.not. made%recorded) then
+         ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
+         if (.not. made%carried) made%external = made%external + 0.5_wp * new(1)
+         made%external = made%external + lambda * new(2) + 0.5_wp * lambda**2 * new(3)
+         made%recorded = .true.
+      else
+         associate (event => made%event)
+            do i = 1, event%rank
+               after = dot_product(event%w(1:event%entries, i), made%ua(event%index(1:event%entries)) + &
+                  lambda * made%ub(event%index(1:event%entries)))
+               made%dissipated = made%dissipated + 0.5_wp * event%sign(i) * made%before(i) * after
+            end do
+         end associate
+         ! (f_old + f_new) . (u_new - u_old) / 2 with f = A + lambda B, u = ua + lambda ub
+         made%external = made%external + 0.5_wp * ( &
+            2.0_wp * new(1) + (was + 3.0_wp * lambda) * new(2) + (was * lambda + lambda**2) * new(3) &
+            - 2.0_wp * made%work(1) - (lambda + 3.0_wp * was) * made%work(2) - (was * lambda + was**2) * made%work(3))
+      end if
+      made%event%rank = 0
+      made%work = new
+      made%lambda_recorded = lambda
+      made%lambda = lambda
+   end subroutine account
+
+   !> One row of the log
+   subroutine record(made, found, equilibrium, first, equation, share, log)
+      type(model), intent(inout) :: made
+      type(scan_result), intent(in) :: found
+      logical, intent(in) :: equilibrium
+      integer(c_int), intent(in) :: first(:)
+      integer(c_int), intent(in) :: equation(:)
+      real(wp), intent(in) :: share(:)
+      type(event_log), intent(inout) :: log
+      real(wp) :: stored
+      integer :: k, i, offset
+
+      log%count = log%count + 1
+      stored = 0.5_wp * (made%work(1) + made%lambda * (2.0_wp * made%work(2) + made%lambda * made%work(3)))
+      log%reals(:, log%count) = [made%lambda, found%hi%value, found%lo%value, stored, made%external, made%dissipated, &
+         made%cracked, made%work(3), made%residual]
+      offset = 0
+      if (made%pending(1) /= 0) then
+         select type (group => made%holders(made%pending(1))%group)
+         class is (point_group)
+            offset = group%offset
+         end select
+      end if
+      log%integers(:, log%count) = [int(offset + made%pending(2), c_int), int(made%pending(3), c_int), &
+         int(made%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
+      do k = 1, size(log%monitors, 1)
+         log%monitors(k, log%count) = 0.0_wp
+         do i = int(first(k)), int(first(k + 1)) - 1
+            log%monitors(k, log%count) = log%monitors(k, log%count) + &
+               share(i) * (made%ua(equation(i)) + made%lambda * made%ub(equation(i)))
+            if (k == 1) made%slope = merge(0.0_wp, made%slope, i == first(1)) + share(i) * made%ub(equation(i))
+         end do
+      end do
+   end subroutine record
+
+end module sla_events

@@ -1,0 +1,249 @@
+!> What the event loop of sequentially linear analysis knows of elements and materials.
+!>
+!> A group holds elements of one formulation with their integration points and their damage. The loop asks
+!> it for the range of the load multiplier its points admit, tells it which point to damage and how, and
+!> gets back the vectors by which the stiffness changes. New elements and materials are new groups.
+module sla_group
+   use common_kinds, only : wp
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: element_group, point_group, group_holder, bound, scan_result, event_vectors, material_options
+   public :: unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, report_rows, state_rows
+   public :: code_tension, code_compression, code_close, code_open
+
+   real(wp), parameter :: unbounded = huge(1.0_wp)
+   integer, parameter :: most_entries = 24, most_rank = 4
+   !> Rows of a point's report, see plane and bar
+   integer, parameter :: report_rows = 18
+
+   !> Kinds of event; the code of an event is kind + direction (0 first, 1 second crack direction)
+   integer, parameter :: code_tension = 1, code_compression = 3, code_close = 5, code_open = 7
+
+   !> A limit of the load multiplier and the point that sets it
+   type :: bound
+      real(wp) :: value = 0.0_wp
+      integer :: group = 0
+      integer :: point = 0
+      integer :: code = 0
+   end type bound
+
+   !> Limits over many points; `empty` is the most overloaded point that no multiplier can relieve
+   type :: scan_result
+      type(bound) :: hi = bound(value=unbounded)
+      type(bound) :: lo = bound(value=-unbounded)
+      type(bound) :: empty = bound(value=0.0_wp)
+      logical :: bounded = .false.   !! some point is limited
+   end type scan_result
+
+   !> Change of the stiffness by one event: K_new = K - sum sign(k) w(:, k) w(:, k)'
+   type :: event_vectors
+      integer :: rank = 0
+      integer :: entries = 0
+      integer(c_int) :: index(most_entries) = 0      !! equations, 1-based
+      real(wp) :: w(most_entries, most_rank) = 0.0_wp
+      real(wp) :: sign(most_rank) = 0.0_wp           !! +1 softens, -1 stiffens
+   end type event_vectors
+
+   !> How cracked material behaves, the same for the whole model
+   type :: material_options
+      logical :: isotropic = .false.       !! one damage for all directions
+      real(wp) :: retention = -1.0_wp      !! constant shear retention, negative: thesis Eq. 4.11
+      logical :: closure = .false.         !! closed cracks regain their stiffness
+      integer :: most_changes = 10         !! openings and closings of a crack before it is left open
+      real(wp) :: floor = 1.0e-6_wp        !! stiffness left after the last tooth over the initial one
+   end type material_options
+
+   !> Elements that give stiffness
+   type, abstract :: element_group
+      integer :: elements = 0
+      integer :: freedoms = 0              !! per element
+      integer(c_int), allocatable :: equation(:, :)  !! (freedoms, elements), 0 held
+      real(wp), allocatable :: factor(:, :)          !! share of the equation's displacement
+      logical :: tied = .false.            !! a factor differs from one
+   contains
+      procedure(matrix_interface), deferred :: matrix
+      procedure(force_interface), deferred :: force
+      procedure :: gather
+      procedure :: spread
+   end type element_group
+
+   !> Elements with integration points that can be damaged
+   type, abstract, extends(element_group) :: point_group
+      integer :: points = 0                !! of the group
+      integer :: offset = 0                !! points of the groups before it
+      type(material_options) :: options
+   contains
+      procedure(scan_interface), deferred :: scan
+      procedure(damage_interface), deferred :: damage
+      procedure(report_interface), deferred :: report
+      procedure(state_interface), deferred :: state
+   end type point_group
+
+   type :: group_holder
+      class(element_group), allocatable :: group
+   end type group_holder
+
+   !> Rows of a point's stored damage: cosine, sine, cracked, tension teeth (2), compression teeth (2),
+   !> shut (2), changes (2)
+   integer, parameter :: state_rows = 11
+
+   abstract interface
+
+      !> Stiffness matrix of an element in its own freedoms
+      pure subroutine matrix_interface(self, element, k)
+         import :: element_group, wp
+         implicit none (type, external)
+         class(element_group), intent(in) :: self
+         integer, intent(in) :: element
+         real(wp), intent(out) :: k(:, :)
+      end subroutine matrix_interface
+
+      !> Add the internal forces of all elements under the displacements u
+      pure subroutine force_interface(self, u, f)
+         import :: element_group, wp
+         implicit none (type, external)
+         class(element_group), intent(in) :: self
+         real(wp), intent(in) :: u(0:)
+         real(wp), intent(inout) :: f(0:)
+      end subroutine force_interface
+
+      !> Limits of the load multiplier over a range of elements
+      pure subroutine scan_interface(self, first, last, ua, ub, lambda, noise, found)
+         import :: point_group, wp, scan_result
+         implicit none (type, external)
+         class(point_group), intent(in) :: self
+         integer, intent(in) :: first
+         integer, intent(in) :: last
+         real(wp), intent(in) :: ua(0:)
+         real(wp), intent(in) :: ub(0:)
+         real(wp), intent(in) :: lambda     !! where an overload is measured
+         real(wp), intent(in) :: noise      !! stress under load B that counts as none [Pa]
+         type(scan_result), intent(inout) :: found
+      end subroutine scan_interface
+
+      !> Damage (or close, or open) a point in the state ua + lambda ub
+      pure subroutine damage_interface(self, point, code, lambda, ua, ub, event, tooth)
+         import :: point_group, wp, event_vectors
+         implicit none (type, external)
+         class(point_group), intent(inout) :: self
+         integer, intent(in) :: point
+         integer, intent(in) :: code
+         real(wp), intent(in) :: lambda
+         real(wp), intent(in) :: ua(0:)
+         real(wp), intent(in) :: ub(0:)
+         type(event_vectors), intent(out) :: event
+         integer, intent(out) :: tooth      !! the tooth reached
+      end subroutine damage_interface
+
+      !> State of all points at ua + lambda ub, rows as documented in the group
+      pure subroutine report_interface(self, ua, ub, lambda, noise, values)
+         import :: point_group, wp
+         implicit none (type, external)
+         class(point_group), intent(in) :: self
+         real(wp), intent(in) :: ua(0:)
+         real(wp), intent(in) :: ub(0:)
+         real(wp), intent(in) :: lambda
+         real(wp), intent(in) :: noise
+         real(wp), intent(out) :: values(:, :)
+      end subroutine report_interface
+
+      !> Put the damage of all points into `values`, or take it from there
+      pure subroutine state_interface(self, store, values)
+         import :: point_group, wp
+         implicit none (type, external)
+         class(point_group), intent(inout) :: self
+         logical, intent(in) :: store
+         real(wp), intent(inout) :: values(:, :)   !! (state_rows, points)
+      end subroutine state_interface
+
+   end interface
+
+contains
+
+   !> Displacements of an element's own freedoms
+   pure subroutine gather(self, element, u, local)
+      class(element_group), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(out) :: local(:)
+      integer :: i
+      do i = 1, self%freedoms
+         local(i) = u(self%equation(i, element))
+      end do
+      if (self%tied) local(1:self%freedoms) = local(1:self%freedoms) * self%factor(1:self%freedoms, element)
+   end subroutine gather
+
+   !> A vector over the element's freedoms as entries by equation, those of one equation merged
+   pure subroutine spread(self, element, local, event, k)
+      class(element_group), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(in) :: local(:)
+      type(event_vectors), intent(inout) :: event
+      integer, intent(in) :: k              !! which vector
+      integer :: i, j
+      integer(c_int) :: equation
+      do i = 1, self%freedoms
+         equation = self%equation(i, element)
+         if (equation == 0) cycle
+         do j = 1, event%entries
+            if (event%index(j) == equation) exit
+         end do
+         if (j > event%entries) then
+            event%entries = j
+            event%index(j) = equation
+         end if
+         event%w(j, k) = event%w(j, k) + local(i) * self%factor(i, element)
+      end do
+   end subroutine spread
+
+   !> A new upper limit; the first of equals stays
+   pure subroutine offer_hi(found, value, point, code)
+      type(scan_result), intent(inout) :: found
+      real(wp), intent(in) :: value
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      found%bounded = .true.
+      if (value < found%hi%value) found%hi = bound(value, 0, point, code)
+   end subroutine offer_hi
+
+   !> A new lower limit; the first of equals stays
+   pure subroutine offer_lo(found, value, point, code)
+      type(scan_result), intent(inout) :: found
+      real(wp), intent(in) :: value
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      found%bounded = .true.
+      if (value > found%lo%value) found%lo = bound(value, 0, point, code)
+   end subroutine offer_lo
+
+   !> A point that no multiplier relieves; the greatest overload counts, the first of equals
+   pure subroutine offer_empty(found, value, point, code)
+      type(scan_result), intent(inout) :: found
+      real(wp), intent(in) :: value        !! stress over strength, less one
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      found%bounded = .true.
+      if (found%empty%point == 0 .or. value > found%empty%value) then
+        found%empty = bound(value, 0, point, code)
+      end if
+   end subroutine offer_empty
+
+   !> Limits of lambda from sa + lambda sb <= f
+   pure subroutine linear_bound(sa, sb, f, scale, lambda, noise, point, code, found)
+      real(wp), intent(in) :: sa, sb, f
+      real(wp), intent(in) :: scale        !! strength an overload is measured by
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      integer, intent(in) :: point, code
+      type(scan_result), intent(inout) :: found
+      if (abs(sb) <= noise) then
+         if (sa > f + 1.0e-9_wp * scale) call offer_empty(found, (sa + lambda * sb - f) / scale, point, code)
+      else if (sb > 0.0_wp) then
+         call offer_hi(found, (f - sa) / sb, point, code)
+      else
+         call offer_lo(found, (f - sa) / sb, point, code)
+      end if
+   end subroutine linear_bound
+
+end module sla_group

@@ -1,0 +1,298 @@
+!> A finite-element model of sequentially linear analysis: groups, equations, loads, factor, displacements.
+!>
+!> Equations are renumbered once into the order of the factor, so that vectors need no permutation after.
+module sla_model
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory, status_invalid_argument, status_too_large, &
+      status_not_positive_definite
+   use sla_assembly, only : build_pattern, assemble
+   use sla_c_bindings, only : extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, &
+      extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
+   use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, most_rank, &
+      report_rows
+   use sla_tables, only : tooth_tables
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
+   implicit none
+   private
+   public :: model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
+
+   !> Pivot ratio below which the structure counts as a mechanism
+   real(wp), parameter :: least_ratio = 1.0e-13_wp
+   integer, parameter :: chunk = 128   !! elements scanned in one piece, whatever the threads
+
+   type :: model
+      integer :: nodes = 0
+      integer :: equations = 0
+      integer :: points = 0
+      real(wp), allocatable :: xy(:, :)                  !! (2, nodes) [m]
+      integer(c_int), allocatable :: equation(:, :)      !! (2, nodes), 0 held
+      real(wp), allocatable :: factor(:, :)              !! (2, nodes) share of the equation
+      type(group_holder), allocatable :: holders(:)
+      type(tooth_tables) :: teeth
+      type(material_options) :: options
+      integer(c_int64_t), allocatable :: start(:), row(:)
+      real(wp), allocatable :: value(:)
+      type(c_ptr) :: handle = c_null_ptr
+      integer(c_int64_t) :: factor_values = 0
+      integer, allocatable :: piece(:, :)                !! (3, pieces) group, first and last element of a scan
+      real(wp), allocatable :: fa(:), fb(:)              !! (0:n) constant and reference load [N]
+      real(wp), allocatable :: ua(:), ub(:)              !! (0:n) their displacements [m]
+      real(wp), allocatable :: z(:, :)                   !! (n, most_rank)
+      ! How the loop runs
+      logical :: refactor = .false.                      !! factorise at each event, to compare
+      integer :: threads = 1
+      ! Where the loop stands
+      type(event_vectors) :: event                       !! of the last event
+      integer :: pending(3) = 0                          !! group, point, code not yet applied
+      real(wp) :: lambda = 0.0_wp
+      real(wp) :: noise = 0.0_wp                         !! stress under B that counts as none [Pa]
+      real(wp) :: work(3) = 0.0_wp                       !! fa.ua, fa.ub, fb.ub of the last state [J]
+      real(wp) :: before(most_rank) = 0.0_wp             !! w.u before the last event
+      real(wp) :: external = 0.0_wp                      !! [J]
+      real(wp) :: dissipated = 0.0_wp                    !! [J] along the straight way between events
+      real(wp) :: cracked = 0.0_wp                       !! [J] at constant strain: the area of the teeth
+      real(wp) :: first_compliance = 0.0_wp              !! fb.ub at the start of the stage
+      real(wp) :: peak = 0.0_wp                          !! greatest |lambda| in equilibrium of the stage
+      real(wp) :: peak_displacement = 0.0_wp             !! of monitor 1 there [m]
+      real(wp) :: slope = 0.0_wp                         !! of monitor 1 per unit lambda [m]
+      real(wp) :: residual = 0.0_wp                      !! the last found by the guard
+      integer :: guard(3) = 0                            !! residual checks, re-solutions, new factors
+      integer :: events = 0
+      logical :: recorded = .false.                      !! the stage has a state to count energy from
+      logical :: carried = .false.                       !! the work of the constant loads is counted already
+      real(wp) :: lambda_recorded = 0.0_wp               !! of the last state
+      integer :: hot(2, 2) = 0                           !! group and point of the last upper and lower limit
+   end type model
+
+contains
+
+   !> An empty model on nodes whose freedoms belong to equations
+   subroutine model_new(xy, equation, factor, options, made, status)
+      real(wp), intent(in) :: xy(:, :)               !! (2, nodes) [m]
+      integer(c_int), intent(in) :: equation(:, :)   !! (2, nodes), 0 held
+      real(wp), intent(in) :: factor(:, :)           !! (2, nodes)
+      type(material_options), intent(in) :: options
+      type(model), intent(inout) :: made
+      integer(c_int), intent(out) :: status
+      integer :: info
+
+      made%nodes = size(xy, 2)
+      made%equations = int(maxval(equation))
+      made%options = options
+      status = status_invalid_argument
+      if (made%equations < 1 .or. minval(equation) < 0) return
+      allocate (made%xy(2, made%nodes), made%equation(2, made%nodes), made%factor(2, made%nodes), made%holders(0), &
+         stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
+      made%xy(:, :) = xy
+      made%equation(:, :) = equation
+      made%factor(:, :) = factor
+   end subroutine model_new
+
+   !> Take a group over; freedom i of an element is freedom `of` (node, direction) or held where it is 0
+   subroutine model_add(made, group, node, direction, status)
+      type(model), intent(inout) :: made
+      class(element_group), allocatable, intent(inout) :: group
+      integer(c_int), intent(in) :: node(:, :)       !! (freedoms, elements), 1-based, 0 ground
+      integer(c_int), intent(in) :: direction(:, :)  !! (freedoms, elements), 1 or 2
+      integer(c_int), intent(out) :: status
+      type(group_holder), allocatable :: longer(:)
+      integer :: i, e, info
+
+      status = status_invalid_argument
+      if (minval(node) < 0 .or. maxval(node) > made%nodes) return
+      allocate (group%equation(group%freedoms, group%elements), group%factor(group%freedoms, group%elements), &
+         longer(size(made%holders) + 1), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      do e = 1, group%elements
+         do i = 1, group%freedoms
+            group%equation(i, e) = 0
+            group%factor(i, e) = 1.0_wp
+            if (node(i, e) == 0) cycle
+            group%equation(i, e) = made%equation(direction(i, e), node(i, e))
+            group%factor(i, e) = made%factor(direction(i, e), node(i, e))
+         end do
+      end do
+      group%tied = any(group%factor /= 1.0_wp)
+      do i = 1, size(made%holders)
+         call move_alloc(made%holders(i)%group, longer(i)%group)
+      end do
+      select type (group)
+      class is (point_group)
+         group%offset = made%points
+         made%points = made%points + group%points
+      end select
+      call move_alloc(group, longer(size(longer))%group)
+      call move_alloc(longer, made%holders)
+      status = status_ok
+   end subroutine model_add
+
+   !> Order the equations, fix the pattern, allocate
+   subroutine model_prepare(made, ordering, most_values, status)
+      type(model), intent(inout) :: made
+      integer(c_int), intent(in) :: ordering           !! 0 AMD, 1 METIS
+      integer(c_int64_t), intent(in) :: most_values    !! doubles the factor may take
+      integer(c_int), intent(out) :: status
+      integer(c_int64_t), allocatable :: order(:)
+      integer(c_int), allocatable :: new(:)
+      integer :: n, i, e, g, info, pieces, k
+
+      n = made%equations
+      call build_pattern(made%holders, n, made%start, made%row, status)
+      if (status /= status_ok) return
+      allocate (order(n), new(0:n), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      status = extrados_sparse_order(int(n, c_int64_t), made%start, made%row, ordering, order)
+      if (status /= status_ok) return
+      new(0) = 0
+      do i = 1, n
+         new(order(i) + 1) = int(i, c_int)
+      end do
+      do i = 1, made%nodes
+         made%equation(1, i) = new(made%equation(1, i))
+         made%equation(2, i) = new(made%equation(2, i))
+      end do
+      pieces = 0
+      do g = 1, size(made%holders)
+         associate (group => made%holders(g)%group)
+            do e = 1, group%elements
+               do i = 1, group%freedoms
+                  group%equation(i, e) = new(group%equation(i, e))
+               end do
+            end do
+            pieces = pieces + (group%elements + chunk - 1) / chunk
+         end associate
+      end do
+      call build_pattern(made%holders, n, made%start, made%row, status)
+      if (status /= status_ok) return
+      status = extrados_sparse_new(int(n, c_int64_t), made%start, made%row, made%handle, made%factor_values)
+      if (status /= status_ok) return
+      if (made%factor_values > most_values) then
+         status = status_too_large
+         return
+      end if
+      allocate (made%value(made%start(n + 1)), made%fa(0:n), made%fb(0:n), made%ua(0:n), made%ub(0:n), &
+         made%z(n, most_rank), made%piece(3, pieces), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      made%fa = 0.0_wp
+      made%fb = 0.0_wp
+      made%ua = 0.0_wp
+      made%ub = 0.0_wp
+      k = 0
+      do g = 1, size(made%holders)
+         do e = 1, made%holders(g)%group%elements, chunk
+            k = k + 1
+            made%piece(:, k) = [g, e, min(e + chunk - 1, made%holders(g)%group%elements)]
+         end do
+      end do
+   end subroutine model_prepare
+
+   !> Assemble and factorise; names the node that is free to move
+   subroutine model_factor(made, node, direction, ratio, status)
+      type(model), intent(inout) :: made
+      integer(c_int), intent(out) :: node        !! 1-based, 0 none
+      integer(c_int), intent(out) :: direction   !! 1 x, 2 y
+      real(wp), intent(out) :: ratio             !! smallest over largest pivot
+      integer(c_int), intent(out) :: status
+      integer(c_int64_t) :: weakest
+      integer :: i, k
+
+      node = 0
+      direction = 0
+      call assemble(made%holders, made%start, made%row, made%value)
+      status = extrados_sparse_factor(made%handle, made%value, ratio, weakest)
+      if (status == status_ok .and. ratio < least_ratio) status = status_not_positive_definite
+      if (status /= status_not_positive_definite) return
+      do i = 1, made%nodes
+         do k = 1, 2
+            if (made%equation(k, i) /= weakest + 1 .or. node /= 0) cycle
+            node = int(i, c_int)
+            direction = int(k, c_int)
+         end do
+      end do
+   end subroutine model_factor
+
+   !> Displacements of the constant and the reference load by the factor in use
+   subroutine model_solve(made, status)
+      type(model), intent(inout) :: made
+      integer(c_int), intent(out) :: status
+      integer :: n
+      n = made%equations
+      made%z(:, 1) = made%fa(1:n)
+      made%z(:, 2) = made%fb(1:n)
+      if (made%refactor) then
+         status = extrados_sparse_plain(made%handle, made%value, 2_c_int, made%z)
+      else
+         status = extrados_sparse_solve(made%handle, 2_c_int, made%z)
+      end if
+      if (status /= status_ok) return
+      made%ua(1:n) = made%z(:, 1)
+      made%ub(1:n) = made%z(:, 2)
+   end subroutine model_solve
+
+   !> Start a stage: constant load A and reference load B as nodal forces
+   subroutine model_loads(made, load_a, load_b, carried, status)
+      type(model), intent(inout) :: made
+      real(wp), intent(in) :: load_a(:, :)     !! (2, nodes) [N]
+      real(wp), intent(in) :: load_b(:, :)     !! (2, nodes) [N]
+      logical, intent(in) :: carried           !! the stage before ended under these constant loads
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: values(:, :), zero(:)
+      integer :: i, k, info
+
+      made%fa = 0.0_wp
+      made%fb = 0.0_wp
+      do i = 1, made%nodes
+         do k = 1, 2
+            made%fa(made%equation(k, i)) = made%fa(made%equation(k, i)) + made%factor(k, i) * load_a(k, i)
+            made%fb(made%equation(k, i)) = made%fb(made%equation(k, i)) + made%factor(k, i) * load_b(k, i)
+         end do
+      end do
+      made%fa(0) = 0.0_wp
+      made%fb(0) = 0.0_wp
+      if (made%refactor) call assemble(made%holders, made%start, made%row, made%value)
+      call model_solve(made, status)
+      if (status /= status_ok) return
+      made%pending = 0
+      made%lambda = 0.0_wp
+      made%peak = 0.0_wp
+      made%event%rank = 0
+      made%hot = 0
+      made%recorded = .false.
+      made%carried = carried
+      made%first_compliance = dot_product(made%fb, made%ub)
+
+      made%noise = 0.0_wp
+      allocate (zero(0:made%equations), stat=info)
+      if (info == 0) zero = 0.0_wp
+      do i = 1, size(made%holders)
+         if (info /= 0) exit
+         select type (group => made%holders(i)%group)
+         class is (point_group)
+            if (allocated(values)) deallocate (values)
+            allocate (values(report_rows, group%points), stat=info)
+            if (info /= 0) exit
+            call group%report(zero, made%ub, 1.0_wp, 0.0_wp, values)
+            made%noise = max(made%noise, 1.0e-13_wp * maxval(abs(values(4:6, :))))
+         end select
+      end do
+      if (info /= 0) status = status_out_of_memory
+   end subroutine model_loads
+
+   !> Give the factor back
+   subroutine model_free(made)
+      type(model), intent(inout) :: made
+      call extrados_sparse_free(made%handle)
+   end subroutine model_free
+
+end module sla_model

@@ -1,0 +1,563 @@
+!> Plane-stress elements of fixed orthogonal cracks with saw-tooth softening (thesis 4.3.2).
+!>
+!> In the crack axes (n, s) the compliance is [[1/En, -nu/E], [-nu/E, 1/Es]] (Eqs 4.9, 4.10) and the shear
+!> modulus follows the smaller of the two (Eq. 4.11) or keeps a constant part. One tooth changes one
+!> diagonal term of the compliance and the shear modulus: the stiffness changes by rank two.
+!>
+!> The damage of a point is kept per direction: tension tooth, compression tooth, crack shut or open.
+module sla_plane
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory, status_invalid_argument
+   use sla_element, only : element_rule, element_rule_new, element_gradients, most_nodes, most_points
+   use sla_group, only : point_group, scan_result, event_vectors, material_options, unbounded, &
+      offer_hi, offer_lo, offer_empty, linear_bound, code_tension, code_compression, code_close, code_open
+   use sla_interval, only : cone_interval, overload
+   use sla_tables, only : tooth_tables
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: plane_group, plane_group_new
+
+   type, extends(point_group) :: plane_group
+      type(element_rule) :: rule
+      logical :: selective = .false.                     !! shear strain from the element's middle
+      real(wp), allocatable :: gradient(:, :, :)         !! (2, nodes, points) [1/m]
+      real(wp), allocatable :: shear_gradient(:, :, :)   !! (2, nodes, elements), if selective
+      real(wp), allocatable :: weight(:)                 !! volume of a point [m^3]
+      real(wp), allocatable :: young(:)                  !! (elements) [Pa]
+      real(wp), allocatable :: nu(:)
+      integer(c_int), allocatable :: table(:)            !! tension teeth, 0 none
+      integer(c_int), allocatable :: crush_table(:)      !! compression teeth, 0 none
+      real(wp), allocatable :: lateral(:)                !! compressive strength that reduces ft, 0 none [Pa]
+      type(tooth_tables) :: teeth
+      integer(c_int), allocatable :: axis(:)             !! 1: only one crack direction, given beforehand
+      ! The damage: everything else below follows from it.
+      real(wp), allocatable :: turn(:, :)                !! (2, points) cosine and sine of the crack normal
+      integer(c_int), allocatable :: cracked(:)          !! 1 once the crack axes are fixed
+      integer(c_int), allocatable :: tooth(:, :)         !! (2, points), 1 virgin
+      integer(c_int), allocatable :: crush(:, :)         !! (2, points), 1 virgin
+      integer(c_int), allocatable :: shut(:, :)          !! (2, points), 1 closed
+      integer(c_int), allocatable :: changes(:, :)       !! (2, points) openings and closings
+      real(wp), allocatable :: stiff(:, :)               !! (4, points) Dnn, Dns, Dss, G [Pa]
+      real(wp), allocatable :: limit(:, :)               !! (4, points) tension n, s, compression n, s [Pa]
+   contains
+      procedure :: matrix
+      procedure :: force
+      procedure :: scan
+      procedure :: damage
+      procedure :: report
+      procedure :: state
+      procedure :: refresh
+   end type plane_group
+
+contains
+
+   !> A group of one element kind; the damage is set to none
+   subroutine plane_group_new(kind, nx, ny, selective, xy, connect, thickness, young, nu, table, crush_table, &
+                              lateral, axis, axis_angle, teeth, options, group, bad, status)
+      integer(c_int), intent(in) :: kind            !! element_t3 ...
+      integer(c_int), intent(in) :: nx              !! Gauss points of quadrilaterals
+      integer(c_int), intent(in) :: ny
+      logical, intent(in) :: selective
+      real(wp), intent(in) :: xy(:, :)              !! (2, nodes) [m]
+      integer(c_int), intent(in) :: connect(:, :)   !! (nodes of an element, elements), 1-based
+      real(wp), intent(in) :: thickness(:)          !! [m]
+      real(wp), intent(in) :: young(:)              !! [Pa]
+      real(wp), intent(in) :: nu(:)
+      integer(c_int), intent(in) :: table(:)
+      integer(c_int), intent(in) :: crush_table(:)
+      real(wp), intent(in) :: lateral(:)            !! [Pa]
+      integer(c_int), intent(in) :: axis(:)
+      real(wp), intent(in) :: axis_angle(:)         !! of the crack normal [rad]
+      type(tooth_tables), intent(in) :: teeth
+      type(material_options), intent(in) :: options
+      type(plane_group), intent(out) :: group
+      integer(c_int), intent(out) :: bad            !! the offending element, 1-based
+      integer(c_int), intent(out) :: status
+      integer :: e, k, p, ne, per, info
+      real(wp) :: area(most_points), middle(2, most_nodes)
+
+      bad = 0
+      call element_rule_new(kind, nx, ny, group%rule, status)
+      if (status /= status_ok) return
+      if (selective .and. kind /= 4) then
+         status = status_invalid_argument
+         return
+      end if
+      ne = size(connect, 2)
+      per = group%rule%points
+      group%elements = ne
+      group%points = ne * per
+      group%freedoms = 2 * group%rule%nodes
+      group%selective = selective
+      group%options = options
+      group%teeth = teeth
+      allocate (group%gradient(2, group%rule%nodes, group%points), group%weight(group%points), &
+         group%shear_gradient(2, group%rule%nodes, merge(ne, 0, selective)), &
+         group%young(ne), group%nu(ne), group%table(ne), group%crush_table(ne), group%lateral(ne), group%axis(ne), &
+         group%turn(2, group%points), group%cracked(group%points), group%tooth(2, group%points), &
+         group%crush(2, group%points), group%shut(2, group%points), group%changes(2, group%points), &
+         group%stiff(4, group%points), group%limit(4, group%points), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      group%young(:) = young
+      group%nu(:) = nu
+      group%table(:) = table
+      group%crush_table(:) = crush_table
+      group%lateral(:) = lateral
+      group%axis(:) = axis
+      do e = 1, ne
+         p = per * (e - 1)
+         call element_gradients(group%rule, xy(:, connect(:, e)), group%gradient(:, :, p + 1:p + per), area, &
+            middle(:, 1:group%rule%nodes), status)
+         if (status /= status_ok) then
+            bad = int(e, c_int)
+            return
+         end if
+         if (selective) group%shear_gradient(:, :, e) = middle(:, 1:group%rule%nodes)
+         group%weight(p + 1:p + per) = area(1:per) * thickness(e)
+         do k = p + 1, p + per
+            group%turn(:, k) = [1.0_wp, 0.0_wp]
+            if (axis(e) /= 0) group%turn(:, k) = [cos(axis_angle(e)), sin(axis_angle(e))]
+            group%cracked(k) = merge(1_c_int, 0_c_int, axis(e) /= 0)
+         end do
+      end do
+      group%tooth = 1
+      group%crush = 1
+      group%shut = 0
+      group%changes = 0
+      do k = 1, group%points
+         call group%refresh(k)
+      end do
+   end subroutine plane_group_new
+
+   !> Stiffness and strengths of a point from its damage
+   pure subroutine refresh(self, p)
+      class(plane_group), intent(inout) :: self
+      integer, intent(in) :: p
+      integer :: e, k
+      real(wp) :: e0, nu, modulus(2), tension, compression, ratio, least
+
+      e = (p - 1) / self%rule%points + 1
+      e0 = self%young(e)
+      nu = self%nu(e)
+      self%limit(:, p) = unbounded
+      do k = 1, 2
+         tension = self%teeth%modulus_of(self%table(e), self%tooth(k, p), e0, self%options%floor)
+         compression = self%teeth%modulus_of(self%crush_table(e), self%crush(k, p), e0, self%options%floor)
+         modulus(k) = min(tension, compression)
+         if (self%shut(k, p) /= 0) modulus(k) = compression
+         ! A tooth ends at its strain: where the other sign's damage governs, the stress is less.
+         if (self%shut(k, p) == 0) self%limit(k, p) = &
+            self%teeth%strength_of(self%table(e), self%tooth(k, p), modulus(k) / tension)
+         self%limit(k + 2, p) = self%teeth%strength_of(self%crush_table(e), self%crush(k, p), modulus(k) / compression)
+      end do
+      if (self%options%isotropic) modulus(2) = modulus(1)
+      ratio = 1.0_wp / (1.0_wp - nu**2 * modulus(1) * modulus(2) / e0**2)
+      if (self%options%isotropic) then
+         ratio = 1.0_wp / (1.0_wp - nu**2)
+         self%stiff(:, p) = modulus(1) * [ratio, nu * ratio, ratio, 0.5_wp / (1.0_wp + nu)]
+         return
+      end if
+      self%stiff(1:3, p) = ratio * [modulus(1), nu / e0 * modulus(1) * modulus(2), modulus(2)]
+      least = minval(modulus)
+      if (self%options%retention < 0.0_wp .or. least >= e0) then
+         self%stiff(4, p) = 0.5_wp * least / (1.0_wp + nu * least / e0)
+      else
+         self%stiff(4, p) = self%options%retention * 0.5_wp * e0 / (1.0_wp + nu)
+      end if
+   end subroutine refresh
+
+   !> Strain at a point from its element's displacements, in the crack axes
+   pure function strain_at(self, e, p, local) result(eps)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp), intent(in) :: local(:)
+      real(wp) :: eps(3), x, y, g, c, s
+      integer :: i
+
+      x = 0.0_wp
+      y = 0.0_wp
+      g = 0.0_wp
+      do i = 1, self%rule%nodes
+         x = x + self%gradient(1, i, p) * local(2 * i - 1)
+         y = y + self%gradient(2, i, p) * local(2 * i)
+         g = g + self%gradient(2, i, p) * local(2 * i - 1) + self%gradient(1, i, p) * local(2 * i)
+      end do
+      if (self%selective) then
+         g = 0.0_wp
+         do i = 1, self%rule%nodes
+            g = g + self%shear_gradient(2, i, e) * local(2 * i - 1) + self%shear_gradient(1, i, e) * local(2 * i)
+         end do
+      end if
+      if (self%cracked(p) == 0) then
+         eps = [x, y, g]
+      else
+         c = self%turn(1, p)
+         s = self%turn(2, p)
+         eps = [c**2 * x + s**2 * y + c * s * g, s**2 * x + c**2 * y - c * s * g, &
+            2.0_wp * c * s * (y - x) + (c**2 - s**2) * g]
+      end if
+   end function strain_at
+
+   !> Stress from strain, both in the crack axes [Pa]
+   pure function stress_at(self, p, eps) result(sigma)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: p
+      real(wp), intent(in) :: eps(3)
+      real(wp) :: sigma(3)
+      sigma = [self%stiff(1, p) * eps(1) + self%stiff(2, p) * eps(2), &
+         self%stiff(2, p) * eps(1) + self%stiff(3, p) * eps(2), self%stiff(4, p) * eps(3)]
+   end function stress_at
+
+   !> B' R' v: nodal forces of a unit volume under the stress v in the crack axes
+   pure subroutine nodal(self, e, p, v, local)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp), intent(in) :: v(3)
+      real(wp), intent(out) :: local(:)
+      real(wp) :: c, s, x, y, t
+      integer :: i
+
+      c = self%turn(1, p)
+      s = self%turn(2, p)
+      if (self%cracked(p) == 0) then
+         c = 1.0_wp
+         s = 0.0_wp
+      end if
+      x = c**2 * v(1) + s**2 * v(2) - 2.0_wp * c * s * v(3)
+      y = s**2 * v(1) + c**2 * v(2) + 2.0_wp * c * s * v(3)
+      t = c * s * (v(1) - v(2)) + (c**2 - s**2) * v(3)
+      do i = 1, self%rule%nodes
+         if (self%selective) then
+            local(2 * i - 1) = self%gradient(1, i, p) * x + self%shear_gradient(2, i, e) * t
+            local(2 * i) = self%gradient(2, i, p) * y + self%shear_gradient(1, i, e) * t
+         else
+            local(2 * i - 1) = self%gradient(1, i, p) * x + self%gradient(2, i, p) * t
+            local(2 * i) = self%gradient(2, i, p) * y + self%gradient(1, i, p) * t
+         end if
+      end do
+   end subroutine nodal
+
+   pure subroutine matrix(self, element, k)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: element
+      real(wp), intent(out) :: k(:, :)
+      real(wp) :: b(2 * most_nodes, 3), db(2 * most_nodes, 3)
+      integer :: p, i, n
+
+      n = self%freedoms
+      k = 0.0_wp
+      do p = (element - 1) * self%rule%points + 1, element * self%rule%points
+         call nodal(self, element, p, [1.0_wp, 0.0_wp, 0.0_wp], b(1:n, 1))
+         call nodal(self, element, p, [0.0_wp, 1.0_wp, 0.0_wp], b(1:n, 2))
+         call nodal(self, element, p, [0.0_wp, 0.0_wp, 1.0_wp], b(1:n, 3))
+         db(1:n, 1) = self%weight(p) * (self%stiff(1, p) * b(1:n, 1) + self%stiff(2, p) * b(1:n, 2))
+         db(1:n, 2) = self%weight(p) * (self%stiff(2, p) * b(1:n, 1) + self%stiff(3, p) * b(1:n, 2))
+         db(1:n, 3) = self%weight(p) * self%stiff(4, p) * b(1:n, 3)
+         do i = 1, n
+            k(1:n, i) = k(1:n, i) + b(1:n, 1) * db(i, 1) + b(1:n, 2) * db(i, 2) + b(1:n, 3) * db(i, 3)
+         end do
+      end do
+   end subroutine matrix
+
+   pure subroutine force(self, u, f)
+      class(plane_group), intent(in) :: self
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(inout) :: f(0:)
+      real(wp) :: local(2 * most_nodes), part(2 * most_nodes)
+      integer :: e, p, i
+
+      do e = 1, self%elements
+         call self%gather(e, u, local)
+         do p = (e - 1) * self%rule%points + 1, e * self%rule%points
+            call nodal(self, e, p, self%weight(p) * stress_at(self, p, strain_at(self, e, p, local)), part)
+            do i = 1, self%freedoms
+               f(self%equation(i, e)) = f(self%equation(i, e)) + part(i) * self%factor(i, e)
+            end do
+         end do
+      end do
+   end subroutine force
+
+   pure subroutine scan(self, first, last, ua, ub, lambda, noise, found)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(inout) :: found
+      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), sa(3), sb(3)
+      logical :: simple
+      integer :: e, p, i
+
+      do e = first, last
+         if (self%table(e) == 0 .and. self%crush_table(e) == 0) cycle
+         do i = 1, self%freedoms
+            la(i) = ua(self%equation(i, e))
+            lb(i) = ub(self%equation(i, e))
+         end do
+         if (self%tied) then
+            la(1:self%freedoms) = la(1:self%freedoms) * self%factor(:, e)
+            lb(1:self%freedoms) = lb(1:self%freedoms) * self%factor(:, e)
+         end if
+         simple = self%table(e) /= 0 .and. self%crush_table(e) == 0 .and. self%lateral(e) <= 0.0_wp
+         do p = (e - 1) * self%rule%points + 1, e * self%rule%points
+            sa = stress_at(self, p, strain_at(self, e, p, la))
+            sb = stress_at(self, p, strain_at(self, e, p, lb))
+            if (simple .and. self%cracked(p) == 0 .and. found%hi%value < unbounded .and. &
+                found%lo%value > -unbounded) then
+               ! Nearly all points end here: they admit both limits found so far, see cone.
+               if (inside_cone(self%limit(1, p), 1.0_wp, sa + found%hi%value * sb)) then
+                  if (inside_cone(self%limit(1, p), 1.0_wp, sa + found%lo%value * sb)) cycle
+               end if
+            end if
+            call scan_point(self, e, p, sa, sb, lambda, noise, found)
+         end do
+      end do
+   end subroutine scan
+
+   !> Limits of one point from its stresses in the crack axes
+   pure subroutine scan_point(self, e, p, sa, sb, lambda, noise, found)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp), intent(in) :: sa(3)       !! constant loads [Pa]
+      real(wp), intent(in) :: sb(3)       !! per unit multiplier [Pa]
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(inout) :: found
+      real(wp) :: f, fc
+      integer :: k
+
+      if (self%cracked(p) == 0 .or. (self%options%isotropic .and. self%axis(e) == 0)) then
+         f = self%limit(1, p)
+         if (f < unbounded) then
+            call cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
+            fc = self%lateral(e)
+            if (fc > 0.0_wp) call cone(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda, noise, p, &
+               code_tension, found)
+         end if
+         f = self%limit(3, p)
+         if (f < unbounded) call cone(f, -1.0_wp, sa, sb, lambda, noise, p, code_compression + 1, found)
+         return
+      end if
+      do k = 1, merge(1, 2, self%axis(e) /= 0)
+         f = self%limit(k, p)
+         if (f < unbounded) call linear_bound(sa(k), sb(k), f, f, lambda, noise, p, code_tension + k - 1, found)
+         fc = self%limit(k + 2, p)
+         if (fc < unbounded) then
+           call linear_bound(-sa(k), -sb(k), fc, fc, lambda, noise, p, code_compression + k - 1, found)
+         end if
+         if (.not. self%options%closure .or. self%tooth(k, p) == 1) cycle
+         f = self%teeth%strength_of(self%table(e), 1_c_int, 1.0_wp)
+         if (self%shut(k, p) /= 0) then
+            call linear_bound(sa(k), sb(k), 0.0_wp, f, lambda, noise, p, code_open + k - 1, found)
+         else if (self%changes(k, p) < self%options%most_changes) then
+            call linear_bound(-sa(k), -sb(k), 0.0_wp, f, lambda, noise, p, code_close + k - 1, found)
+         end if
+      end do
+
+   end subroutine scan_point
+
+   !> Limits of an uncracked point under one criterion
+   pure subroutine cone(alpha, beta, sa, sb, lambda, noise, p, code, found)
+      real(wp), intent(in) :: alpha, beta        !! r <= alpha - beta m, see sla_interval
+      real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      integer, intent(in) :: p, code
+      type(scan_result), intent(inout) :: found
+      real(wp) :: lo, hi
+
+      found%bounded = .true.
+      if (maxval(abs(sb)) <= noise) then
+         if (overload(alpha, beta, sa) > 1.0e-9_wp) call offer_empty(found, overload(alpha, beta, sa), p, code)
+         return
+      end if
+      ! The set is convex: a point that admits both limits found so far cannot tighten them.
+      if (found%hi%value < unbounded .and. found%lo%value > -unbounded) then
+         if (inside_cone(alpha, beta, sa + found%hi%value * sb)) then
+            if (inside_cone(alpha, beta, sa + found%lo%value * sb)) return
+         end if
+      end if
+      call cone_interval(alpha, beta, sa, sb, lo, hi)
+      if (lo > hi) then
+         call offer_empty(found, overload(alpha, beta, sa + lambda * sb), p, code)
+      else
+         if (hi < unbounded) call offer_hi(found, hi, p, code)
+         if (lo > -unbounded) call offer_lo(found, lo, p, code)
+      end if
+   end subroutine cone
+
+   !> True where the stress lies safely inside r <= alpha - beta m; in this module so that it is inlined
+   pure function inside_cone(alpha, beta, s) result(inside)
+      real(wp), intent(in) :: alpha, beta
+      real(wp), intent(in) :: s(3)    !! sx, sy, txy [Pa]
+      logical :: inside
+      real(wp) :: margin
+      margin = alpha - beta * 0.5_wp * (s(1) + s(2))
+      inside = margin >= 0.0_wp .and. margin**2 >= 0.25_wp * (s(1) - s(2))**2 + s(3)**2
+   end function inside_cone
+
+   pure subroutine damage(self, point, code, lambda, ua, ub, event, tooth)
+      class(plane_group), intent(inout) :: self
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      type(event_vectors), intent(out) :: event
+      integer, intent(out) :: tooth
+      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), s(3), v(3), old(4), phi
+      real(wp) :: before, after, alpha, change
+      integer :: e, k, p
+
+      p = point
+      e = (p - 1) / self%rule%points + 1
+      if (self%cracked(p) == 0) then
+         call self%gather(e, ua, la)
+         call self%gather(e, ub, lb)
+         s = stress_at(self, p, strain_at(self, e, p, la + lambda * lb))
+         phi = 0.5_wp * atan2(2.0_wp * s(3), s(1) - s(2))     ! thesis Eq. 4.7
+         self%turn(:, p) = [cos(phi), sin(phi)]
+         self%cracked(p) = 1
+      end if
+      k = 1 + mod(code - 1, 2)
+      old = self%stiff(:, p)
+      before = direction_modulus(self, e, p, k)
+      select case (code - k + 1)
+      case (code_tension)
+         self%tooth(k, p) = self%tooth(k, p) + 1_c_int
+      case (code_compression)
+         self%crush(k, p) = self%crush(k, p) + 1_c_int
+      case (code_close)
+         self%shut(k, p) = 1
+         self%changes(k, p) = self%changes(k, p) + 1_c_int
+      case default
+         self%shut(k, p) = 0
+         self%changes(k, p) = self%changes(k, p) + 1_c_int
+      end select
+      tooth = int(merge(self%crush(k, p), self%tooth(k, p), code - k + 1 == code_compression))
+      if (self%options%isotropic) then
+         self%tooth(2, p) = self%tooth(1, p)
+         self%crush(1, p) = maxval(self%crush(:, p))
+         self%crush(2, p) = self%crush(1, p)
+      end if
+      after = direction_modulus(self, e, p, k)
+      call self%refresh(p)
+
+      if (self%options%isotropic) then
+         ! All of D changes in proportion: the Cholesky factor of the change, three vectors.
+         change = (1.0_wp - after / before) * self%weight(p)
+         v = [sqrt(old(1)), old(2) / sqrt(old(1)), 0.0_wp]
+         call add_vector(self, e, p, v, change, event)
+         call add_vector(self, e, p, [0.0_wp, sqrt(old(3) - v(2)**2), 0.0_wp], change, event)
+         call add_vector(self, e, p, [0.0_wp, 0.0_wp, sqrt(old(4))], change, event)
+         return
+      end if
+      if (before /= after) then
+         alpha = 1.0_wp / (1.0_wp / (1.0_wp / after - 1.0_wp / before) + merge(old(1), old(3), k == 1))
+         v = [merge(old(1), old(2), k == 1), merge(old(2), old(3), k == 1), 0.0_wp]
+         call add_vector(self, e, p, v, alpha * self%weight(p), event)
+      end if
+      change = old(4) - self%stiff(4, p)
+      if (abs(change) > 1.0e-14_wp * old(4)) then
+        call add_vector(self, e, p, [0.0_wp, 0.0_wp, 1.0_wp], change * self%weight(p), event)
+      end if
+
+   end subroutine damage
+
+   !> One more vector sqrt(|size|) B' R' v, softening where size > 0
+   pure subroutine add_vector(self, e, p, v, size, event)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp), intent(in) :: v(3)           !! stress in the crack axes
+      real(wp), intent(in) :: size
+      type(event_vectors), intent(inout) :: event
+      real(wp) :: local(2 * most_nodes)
+      event%rank = event%rank + 1
+      event%sign(event%rank) = sign(1.0_wp, size)
+      call nodal(self, e, p, sqrt(abs(size)) * v, local)
+      call self%spread(e, local, event, event%rank)
+   end subroutine add_vector
+
+   pure subroutine state(self, store, values)
+      class(plane_group), intent(inout) :: self
+      logical, intent(in) :: store
+      real(wp), intent(inout) :: values(:, :)
+      integer :: p
+      if (store) then
+         values(1:2, :) = self%turn
+         values(3, :) = real(self%cracked, wp)
+         values(4:5, :) = real(self%tooth, wp)
+         values(6:7, :) = real(self%crush, wp)
+         values(8:9, :) = real(self%shut, wp)
+         values(10:11, :) = real(self%changes, wp)
+      else
+         self%turn(:, :) = values(1:2, :)
+         self%cracked(:) = nint(values(3, :), c_int)
+         self%tooth(:, :) = nint(values(4:5, :), c_int)
+         self%crush(:, :) = nint(values(6:7, :), c_int)
+         self%shut(:, :) = nint(values(8:9, :), c_int)
+         self%changes(:, :) = nint(values(10:11, :), c_int)
+         do p = 1, self%points
+            call self%refresh(p)
+         end do
+      end if
+   end subroutine state
+
+   !> Secant modulus of one crack direction [Pa]
+   pure function direction_modulus(self, e, p, k) result(modulus)
+      class(plane_group), intent(in) :: self
+      integer, intent(in) :: e, p, k
+      real(wp) :: modulus
+      modulus = self%teeth%modulus_of(self%crush_table(e), self%crush(k, p), self%young(e), self%options%floor)
+      if (self%shut(k, p) == 0) modulus = min(modulus, &
+         self%teeth%modulus_of(self%table(e), self%tooth(k, p), self%young(e), self%options%floor))
+   end function direction_modulus
+
+   !> Rows: 1-3 strain and 4-6 stress in the crack axes, 7-8 cosine and sine of the first crack's normal,
+   !> 9-10 moduli over the initial one, 11-12 tension teeth, 13-14 admitted range of lambda, 15 volume,
+   !> 16-17 compression teeth, 18 shut (1 first, 2 second direction, 3 both)
+   pure subroutine report(self, ua, ub, lambda, noise, values)
+      class(plane_group), intent(in) :: self
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      real(wp), intent(out) :: values(:, :)     !! (report_rows, points)
+      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), ea(3), eb(3)
+      type(scan_result) :: found
+      integer :: e, p
+
+      do e = 1, self%elements
+         call self%gather(e, ua, la)
+         call self%gather(e, ub, lb)
+         do p = (e - 1) * self%rule%points + 1, e * self%rule%points
+            ea = strain_at(self, e, p, la)
+            eb = strain_at(self, e, p, lb)
+            values(1:3, p) = ea + lambda * eb
+            values(4:6, p) = stress_at(self, p, ea + lambda * eb)
+            values(7:8, p) = self%turn(:, p)
+            values(9, p) = direction_modulus(self, e, p, 1) / self%young(e)
+            values(10, p) = direction_modulus(self, e, p, merge(1, 2, self%options%isotropic)) / self%young(e)
+            values(11:12, p) = real(self%tooth(:, p), wp)
+            found = scan_result()
+            call scan_point(self, e, p, stress_at(self, p, ea), stress_at(self, p, eb), lambda, noise, found)
+            values(13:14, p) = [found%lo%value, found%hi%value]
+            if (found%empty%point /= 0) values(13:14, p) = [unbounded, -unbounded]
+            values(15, p) = self%weight(p)
+            values(16:17, p) = real(self%crush(:, p), wp)
+            values(18, p) = real(self%shut(1, p) + 2 * self%shut(2, p), wp)
+         end do
+      end do
+   end subroutine report
+
+end module sla_plane

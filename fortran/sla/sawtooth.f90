@@ -1,0 +1,338 @@
+!> Saw-tooth approximations of a softening law (thesis 4.2, Fig. 4-1b).
+!>
+!> A tooth is a secant modulus E_i with the peak stress f_i that ends it. Two recipes: the ripple (Rots,
+!> Belletti, Invernizzi 2008), whose teeth run between two lines at +-p ft about the law, and the
+!> energy-exact teeth, whose peaks lie on the same upper line while each secant carries exactly the energy
+!> of its strain interval. Curves are followed by a parameter x: the total strain, or the crack strain of
+!> Hordijk's law, in which it is explicit.
+module sla_sawtooth
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_invalid_argument, status_snap_back, status_too_many_steps
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: softening, softening_new, make_teeth, largest_band
+   public :: law_linear, law_exponential, law_hordijk
+
+   integer(c_int), parameter :: law_linear = 1, law_exponential = 2, law_hordijk = 3
+   !> Hordijk (1991): (1 + (c1 x)^3) exp(-c2 x) - x (1 + c1^3) exp(-c2), x = crack strain / ultimate
+   real(wp), parameter :: c1 = 3.0_wp, c2 = 6.93_wp
+   real(wp), parameter :: hordijk_area = 5.136_wp   !! ultimate opening times ft over Gf
+
+   !> Teeth end where the lower line falls below this part of ft
+   real(wp), parameter :: least_stress = 1.0e-3_wp
+
+   !> Stress-strain law of a band of width h
+   type :: softening
+      integer(c_int) :: kind = law_linear
+      real(wp) :: e = 0.0_wp      !! modulus [Pa]
+      real(wp) :: ft = 0.0_wp     !! strength [Pa]
+      real(wp) :: peak = 0.0_wp   !! strain at the strength
+      real(wp) :: range = 0.0_wp  !! ultimate strain, decay strain, or ultimate crack strain
+      real(wp) :: total = 0.0_wp  !! energy to complete failure [J/m^3]
+      logical :: clipped = .true. !! the linear law stops at zero stress
+   contains
+      procedure :: first
+      procedure :: strain
+      procedure :: stress
+      procedure :: energy
+   end type softening
+
+contains
+
+   !> Largest crack band width for which the law does not snap back [m]
+   pure function largest_band(kind, e, ft, gf) result(h)
+      integer(c_int), intent(in) :: kind
+      real(wp), intent(in) :: e   !! [Pa]
+      real(wp), intent(in) :: ft  !! [Pa]
+      real(wp), intent(in) :: gf  !! [N/m]
+      real(wp) :: h
+      h = 2.0_wp * e * gf / ft**2
+      if (kind == law_hordijk) h = hordijk_area * e * gf / (ft**2 * (c2 + (1.0_wp + c1**3) * exp(-c2)))
+   end function largest_band
+
+   !> The law of a band of width h
+   pure subroutine softening_new(kind, e, ft, gf, h, law, status)
+      integer(c_int), intent(in) :: kind     !! law_linear, law_exponential, law_hordijk
+      real(wp), intent(in) :: e              !! [Pa]
+      real(wp), intent(in) :: ft             !! [Pa]
+      real(wp), intent(in) :: gf             !! [N/m]
+      real(wp), intent(in) :: h              !! [m]
+      type(softening), intent(out) :: law
+      integer(c_int), intent(out) :: status  !! status_snap_back where h is too large
+
+      status = status_invalid_argument
+      if (.not. (e > 0.0_wp .and. ft > 0.0_wp .and. gf > 0.0_wp .and. h > 0.0_wp)) return
+      if (kind < law_linear .or. kind > law_hordijk) return
+      status = status_snap_back
+      if (.not. h < largest_band(kind, e, ft, gf)) return
+      law%kind = kind
+      law%e = e
+      law%ft = ft
+      law%peak = ft / e
+      select case (kind)
+      case (law_linear)
+         law%range = 2.0_wp * gf / (ft * h)
+         law%total = gf / h
+      case (law_exponential)
+         law%range = gf / (ft * h) - 0.5_wp * law%peak
+         law%total = gf / h
+      case default
+         law%range = hordijk_area * gf / (ft * h)
+         law%total = ft * law%range * hordijk_integral(1.0_wp)
+      end select
+      status = status_ok
+   end subroutine softening_new
+
+   !> Parameter at the peak
+   pure function first(self) result(x)
+      class(softening), intent(in) :: self
+      real(wp) :: x
+      x = merge(0.0_wp, self%peak, self%kind == law_hordijk)
+   end function first
+
+   !> Total strain at parameter x, beyond the peak
+   pure function strain(self, x) result(eps)
+      class(softening), intent(in) :: self
+      real(wp), intent(in) :: x
+      real(wp) :: eps
+      eps = x
+      if (self%kind == law_hordijk) eps = x + self%stress(x) / self%e
+   end function strain
+
+   !> Stress at parameter x, beyond the peak [Pa]
+   pure function stress(self, x) result(sigma)
+      class(softening), intent(in) :: self
+      real(wp), intent(in) :: x
+      real(wp) :: sigma, r
+      select case (self%kind)
+      case (law_linear)
+         sigma = self%ft * (self%range - x) / (self%range - self%peak)
+         if (self%clipped) sigma = max(sigma, 0.0_wp)
+      case (law_exponential)
+         sigma = self%ft * exp(-(x - self%peak) / self%range)
+      case default
+         r = min(x / self%range, 1.0_wp)
+         sigma = max(self%ft * ((1.0_wp + (c1 * r)**3) * exp(-c2 * r) - r * (1.0_wp + c1**3) * exp(-c2)), 0.0_wp)
+      end select
+   end function stress
+
+   !> Area under the law up to parameter x, the elastic branch included [J/m^3]
+   pure function energy(self, x) result(area)
+      class(softening), intent(in) :: self
+      real(wp), intent(in) :: x
+      real(wp) :: area, sigma
+      select case (self%kind)
+      case (law_linear)
+         sigma = self%stress(x)
+         area = self%total - 0.5_wp * sigma * (self%range - x)
+      case (law_exponential)
+         area = self%total - self%stress(x) * self%range
+      case default
+         area = self%ft * self%range * hordijk_integral(min(x / self%range, 1.0_wp)) &
+            + 0.5_wp * self%stress(x)**2 / self%e
+      end select
+   end function energy
+
+   !> Integral of Hordijk's curve from 0 to r, both axes relative
+   pure function hordijk_integral(r) result(area)
+      real(wp), intent(in) :: r
+      real(wp) :: area
+      area = primitive(r) - primitive(0.0_wp) - 0.5_wp * r**2 * (1.0_wp + c1**3) * exp(-c2)
+   contains
+      pure function primitive(y) result(f)
+         real(wp), intent(in) :: y
+         real(wp) :: f
+         f = -exp(-c2 * y) * (1.0_wp / c2 + c1**3 * (y**3 / c2 + 3.0_wp * y**2 / c2**2 + 6.0_wp * y / c2**3 + &
+            6.0_wp / c2**4))
+      end function primitive
+   end function hordijk_integral
+
+   !> Parameter beyond `from` where the ray of modulus `ray` meets the upper line
+   pure function meets_upper(law, ray, p, from) result(x)
+      type(softening), intent(in) :: law
+      real(wp), intent(in) :: ray   !! [Pa]
+      real(wp), intent(in) :: p     !! ripple half-width over ft
+      real(wp), intent(in) :: from
+      real(wp) :: x, low, high
+      integer :: k
+      low = from
+      high = max(from, law%peak)
+      do k = 1, 2000
+         if (ray * law%strain(high) >= law%stress(high) + p * law%ft) exit
+         low = high
+         high = 1.2_wp * high
+      end do
+      do k = 1, 200
+         x = 0.5_wp * (low + high)
+         if (x <= low .or. x >= high) exit
+         if (ray * law%strain(x) < law%stress(x) + p * law%ft) then
+            low = x
+         else
+            high = x
+         end if
+      end do
+   end function meets_upper
+
+   !> Teeth of a law: secant moduli and the stresses that end them
+   pure subroutine make_teeth(kind, e, ft, gf, h, p, exact, overshoot, n, modulus, strength, status)
+      integer(c_int), intent(in) :: kind      !! law_linear, law_exponential, law_hordijk
+      real(wp), intent(in) :: e               !! [Pa]
+      real(wp), intent(in) :: ft              !! [Pa]
+      real(wp), intent(in) :: gf              !! [N/m]
+      real(wp), intent(in) :: h               !! crack band width [m]
+      real(wp), intent(in) :: p               !! ripple half-width over ft, 0 < p < 1
+      logical, intent(in) :: exact            !! energy-exact teeth, else the ripple
+      logical, intent(in) :: overshoot        !! first peak on the upper line, else at ft
+      integer(c_int), intent(out) :: n        !! number of teeth
+      real(wp), intent(out) :: modulus(:)     !! [Pa]
+      real(wp), intent(out) :: strength(:)    !! [Pa]
+      integer(c_int), intent(out) :: status   !! status_too_many_steps where the room does not suffice
+      type(softening) :: law
+      real(wp) :: eps, x, low
+
+      n = 0
+      modulus = 0.0_wp
+      strength = 0.0_wp
+      call softening_new(kind, e, ft, gf, h, law, status)
+      if (status /= status_ok) return
+      status = status_invalid_argument
+      if (.not. (p > 0.0_wp .and. p < 1.0_wp)) return
+      if (exact) then
+         call exact_teeth(law, p, overshoot, n, modulus, strength, status)
+         return
+      end if
+      law%clipped = .false.
+      status = status_too_many_steps
+      modulus(1) = e
+      do n = 1, int(size(modulus), c_int)
+         if (n == 1 .and. .not. overshoot) then
+            strength(1) = ft
+            eps = law%peak
+            low = ft * (1.0_wp - p)
+         else
+            x = meets_upper(law, modulus(n), p, law%first())
+            eps = law%strain(x)
+            strength(n) = modulus(n) * eps
+            low = strength(n) - 2.0_wp * p * ft
+         end if
+         if (low <= least_stress * ft) then
+            status = status_ok
+            return
+         end if
+         if (n < size(modulus)) modulus(n + 1) = low / eps
+      end do
+      n = int(size(modulus), c_int)
+   end subroutine make_teeth
+
+   !> Teeth that dissipate the energy of the law exactly (our own recipe)
+   pure subroutine exact_teeth(law, p, overshoot, n, modulus, strength, status)
+      type(softening), intent(in) :: law
+      real(wp), intent(in) :: p
+      logical, intent(in) :: overshoot
+      integer(c_int), intent(out) :: n
+      real(wp), intent(inout) :: modulus(:)
+      real(wp), intent(inout) :: strength(:)
+      integer(c_int), intent(out) :: status
+      real(wp) :: x, eps, carry, trial, step, low
+      logical :: found
+      integer :: k
+
+      status = status_too_many_steps
+      n = 1
+      modulus(1) = law%e
+      x = law%first()
+      if (overshoot) x = meets_upper(law, law%e, p, x)
+      eps = law%strain(x)
+      strength(1) = law%e * eps
+      carry = 0.5_wp * law%e * eps**2 - law%energy(x)   ! dissipated too much so far: the next ray pays
+      do while (n < size(modulus))
+         found = .false.
+         if (law%stress(x) > p * law%ft) then
+            ! The surplus of a ray over the law rises from `carry`, then falls through zero: the root wanted.
+            low = x
+            step = 1.0e-3_wp * max(x, law%peak)
+            do k = 1, 400
+               trial = low + step
+               if (surplus(trial) < 0.0_wp) then
+                  found = .true.
+                  exit
+               end if
+               if (law%stress(trial) <= 0.0_wp .and. law%kind /= law_exponential) exit
+               if (law%stress(trial) <= 1.0e-9_wp * law%ft) exit
+               low = trial
+               step = 1.05_wp * step
+            end do
+         end if
+         if (found) then
+            trial = root(low, trial, .true.)
+            ! The linear law ends at zero: what a ray near its foot would leave is a crumb, so it takes all.
+            found = law%kind /= law_linear .or. law%stress(trial) > p * law%ft
+         end if
+         if (.not. found) then
+            ! One last ray carries what is left.
+            low = x
+            trial = 2.0_wp * max(x, law%peak)
+            do k = 1, 2000
+               if (last(trial) > 0.0_wp) exit
+               low = trial
+               trial = 1.3_wp * trial
+            end do
+            trial = root(low, trial, .false.)
+         end if
+         n = n + 1_c_int
+         eps = law%strain(trial)
+         strength(n) = law%stress(trial) + p * law%ft
+         modulus(n) = strength(n) / eps
+         x = trial
+         carry = 0.0_wp
+         if (.not. found) then
+            status = status_ok
+            return
+         end if
+      end do
+
+   contains
+
+      pure function surplus(y) result(s)
+         real(wp), intent(in) :: y
+         real(wp) :: s, e1, e0
+         e0 = law%strain(x)
+         e1 = law%strain(y)
+         s = 0.5_wp * (law%stress(y) + p * law%ft) * (e1 - e0**2 / e1) - (law%energy(y) - law%energy(x)) + carry
+      end function surplus
+
+      pure function last(y) result(s)
+         real(wp), intent(in) :: y
+         real(wp) :: s, e1, e0
+         e0 = law%strain(x)
+         e1 = law%strain(y)
+         s = 0.5_wp * (law%stress(y) + p * law%ft) * (e1 - e0**2 / e1) - (law%total - law%energy(x)) + carry
+      end function last
+
+      pure function root(from, to, falling) result(y)
+         real(wp), intent(in) :: from, to
+         logical, intent(in) :: falling
+         real(wp) :: y, a, b, s
+         integer :: j
+         a = from
+         b = to
+         do j = 1, 200
+            y = 0.5_wp * (a + b)
+            if (y <= a .or. y >= b) exit
+            if (falling) then
+               s = -surplus(y)
+            else
+               s = last(y)
+            end if
+            if (s < 0.0_wp) then
+               a = y
+            else
+               b = y
+            end if
+         end do
+      end function root
+
+   end subroutine exact_teeth
+
+end module sla_sawtooth

@@ -1,0 +1,106 @@
+!> Tooth tables of a model, one behind the other.
+module sla_tables
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
+   use sla_sawtooth, only : make_teeth
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: tooth_tables, tooth_tables_new
+
+   type :: tooth_tables
+      integer, allocatable :: first(:)       !! (tables + 1) first tooth of each
+      real(wp), allocatable :: modulus(:)    !! [Pa]
+      real(wp), allocatable :: strength(:)   !! [Pa]
+   contains
+      procedure :: modulus_of
+      procedure :: strength_of
+   end type tooth_tables
+
+   integer, parameter :: most_teeth = 4096
+
+contains
+
+   !> Tables from rows of (kind, E, ft, Gf, h, p, exact, overshoot)
+   subroutine tooth_tables_new(rows, tables, bad, status)
+      real(wp), intent(in) :: rows(:, :)        !! (8, tables)
+      type(tooth_tables), intent(out) :: tables
+      integer(c_int), intent(out) :: bad        !! the row that failed, 1-based
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: modulus(:), strength(:), all_moduli(:), all_strengths(:), longer(:)
+      integer(c_int) :: n
+      integer :: k, used, info
+
+      bad = 0
+      status = status_ok
+      allocate (tables%first(size(rows, 2) + 1), modulus(most_teeth), strength(most_teeth), &
+         all_moduli(64 * (size(rows, 2) + 64)), all_strengths(64 * (size(rows, 2) + 64)), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      used = 0
+      tables%first(1) = 1
+      do k = 1, size(rows, 2)
+         call make_teeth(nint(rows(1, k), c_int), rows(2, k), rows(3, k), rows(4, k), rows(5, k), rows(6, k), &
+            rows(7, k) > 0.5_wp, rows(8, k) > 0.5_wp, n, modulus, strength, status)
+         if (status /= status_ok) then
+            bad = int(k, c_int)
+            return
+         end if
+         if (used + n > size(all_moduli)) then
+            allocate (longer(2 * size(all_moduli) + n), stat=info)
+            if (info /= 0) exit
+            longer(1:used) = all_moduli(1:used)
+            call move_alloc(longer, all_moduli)
+            allocate (longer(size(all_moduli)), stat=info)
+            if (info /= 0) exit
+            longer(1:used) = all_strengths(1:used)
+            call move_alloc(longer, all_strengths)
+         end if
+         all_moduli(used + 1:used + n) = modulus(1:n)
+         all_strengths(used + 1:used + n) = strength(1:n)
+         used = used + n
+         tables%first(k + 1) = used + 1
+      end do
+      if (info == 0) allocate (tables%modulus(used), tables%strength(used), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      tables%modulus(:) = all_moduli(1:used)
+      tables%strength(:) = all_strengths(1:used)
+   end subroutine tooth_tables_new
+
+   !> Secant modulus of a tooth; the floor after the last, the initial modulus without a table [Pa]
+   pure function modulus_of(self, table, tooth, initial, floor) result(modulus)
+      class(tooth_tables), intent(in) :: self
+      integer(c_int), intent(in) :: table     !! 0: none
+      integer(c_int), intent(in) :: tooth     !! from 1
+      real(wp), intent(in) :: initial         !! [Pa]
+      real(wp), intent(in) :: floor           !! over the initial modulus
+      real(wp) :: modulus
+      modulus = initial
+      if (table == 0 .or. tooth == 1) return
+      if (self%first(table) + tooth - 1 < self%first(table + 1)) then
+         modulus = self%modulus(self%first(table) + tooth - 1)
+      else
+         modulus = floor * initial
+      end if
+   end function modulus_of
+
+   !> Strength of a tooth times `share`, huge after the last and without a table [Pa]
+   pure function strength_of(self, table, tooth, share) result(strength)
+      class(tooth_tables), intent(in) :: self
+      integer(c_int), intent(in) :: table
+      integer(c_int), intent(in) :: tooth
+      real(wp), intent(in) :: share
+      real(wp) :: strength
+      strength = huge(1.0_wp)
+      if (table == 0) return
+      if (self%first(table) + tooth - 1 < self%first(table + 1)) then
+        strength = share * self%strength(self%first(table) + tooth - 1)
+      end if
+   end function strength_of
+
+end module sla_tables

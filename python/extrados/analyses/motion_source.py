@@ -1,0 +1,113 @@
+"""The many motions of a deck, batch by batch; a broken one is its reason and the others go on."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from extrados.analyses.run import Context, Refused
+from extrados.core import motion as core_motion
+from extrados.core.rocking import Ground
+from extrados.decks import motions as models
+from extrados.motions.from_deck import generated_set, make_motion, suite_files
+from extrados.motions.generated import GeneratedSet
+from extrados.motions.motion import Motion
+from extrados.motions.records import RecordError
+
+
+class Source(Protocol):
+    """Motions 0 .. of a deck."""
+
+    def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]: ...
+
+
+@dataclass(frozen=True)
+class GeneratedSource:
+    """Generated earthquakes by seed."""
+
+    made: GeneratedSet
+
+    def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]:
+        rows = self.made.batch(first, count, threads)
+        return [Ground(samples=row[None, :], step=self.made.step) for row in rows]
+
+
+@dataclass(frozen=True)
+class ListSource:
+    """Motions held in memory, used again from the start when more are asked for; text is why one is missing."""
+
+    motions: list[Ground | str]
+    names: list[str]
+
+    def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]:
+        return [self.motions[k % len(self.motions)] for k in range(first, first + count)]
+
+
+@dataclass(frozen=True)
+class CompatibleSource:
+    """Spectrum-compatible motions of a deck's table, made where they are needed."""
+
+    model: models.Compatible
+    folder: str
+
+    def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]:
+        return [_try(self.model.model_copy(update={"member": k + 1}), Path(self.folder)) for k in range(first, first + count)]
+
+
+def _try(model: models.Motion, folder: Path) -> Ground | str:
+    try:
+        return make_motion(model, folder).ground
+    except RecordError as error:
+        return str(error)
+
+
+def source_of(context: Context, seed: int | None, duration: float | None = None) -> tuple[Source, int | None]:
+    """The motions of the deck and how many there are (None: as many as asked for); Refused where there are none."""
+    model, folder = context.deck.motion, context.deck.folder
+    if duration is not None and not isinstance(model, models.Generated):
+        raise Refused("durations need a [motion] of kind 'generated'")
+    try:
+        if isinstance(model, models.Generated):
+            if duration is not None:
+                model = model.model_copy(update={"duration": duration})
+            return GeneratedSource(generated_set(model, folder, seed)), None
+        if isinstance(model, models.Compatible):
+            if seed is not None:
+                model = model.model_copy(update={"seed": seed})
+            return CompatibleSource(model, str(folder)), None
+        if isinstance(model, models.Suite):
+            paths = suite_files(model, folder)
+            members = [_try(model.model_copy(update={"member": k + 1}), folder) for k in range(len(paths))]
+            if all(isinstance(m, str) for m in members):
+                raise Refused(f"none of the {len(members)} records of the suite can be read; the first: {members[0]}")
+            return ListSource(members, [p.stem for p in paths]), len(members)
+        return ListSource([make_motion(model, folder).ground], ["motion"]), 1
+    except RecordError as error:
+        raise Refused(str(error)) from None
+
+
+#: Names of the intensity measures that `measures` gives, in SI.
+MEASURES = ("pga", "pgv", "arias")
+
+
+def measures(grounds: list[Ground], sa: tuple[float, float] | None, threads: int) -> dict[str, np.ndarray]:
+    """pga [m/s^2], pgv [m/s], arias [m/s] and, with sa = (period, damping), sa [m/s^2] of each motion."""
+    out = {name: np.zeros(len(grounds)) for name in (*MEASURES, *(("sa",) if sa else ()))}
+    series: dict[tuple[int, float], list[int]] = {}
+    values: dict[int, np.ndarray] = {}
+    for i, ground in enumerate(grounds):
+        if ground.samples is not None:
+            step, values[i] = ground.step, ground.samples[0]
+        else:
+            time, values[i] = Motion("", ground).series()
+            step = float(time[1] - time[0])
+        series.setdefault((len(values[i]), step), []).append(i)
+    for (_, step), index in series.items():
+        batch = np.stack([values[i] for i in index])
+        found = core_motion.measures(batch, step, threads)
+        for name in MEASURES:
+            out[name][index] = getattr(found, name)
+        if sa:
+            out["sa"][index] = core_motion.response_spectra(batch, step, [sa[0]], [sa[1]], threads=threads).psa.reshape(len(index))
+    return out

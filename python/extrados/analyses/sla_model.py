@@ -1,0 +1,292 @@
+"""A wall and the options of its deck made into a model of the core: freedoms, groups, nodal loads."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.run import Refused
+from extrados.core import sla as core
+from extrados.decks.sla import Load, Sla
+from extrados.decks.walls import Material, Placed
+from extrados.structures.wall import BadWall, Block, WallMesh, corner_count, element_areas
+
+AXES = {"x": 0, "y": 1}
+POINTS_PER_THREAD = 20_000
+
+
+@dataclass
+class SlaModel:
+    """A wall ready for the core. constant, reference: nodal forces (nodes, 2) [N]; unit: resultant of the
+    reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
+
+    wall: WallMesh
+    freedoms: core.Freedoms
+    groups: list
+    behaviour: core.Behaviour
+    constant: np.ndarray
+    reference: np.ndarray
+    unit: float
+    control: core.Monitor
+    bands: list[np.ndarray]  # crack band of the elements of each plane group [m]
+    point_xy: np.ndarray  # (points, 2) of the plane groups [m]
+
+    def open(self, options: Sla, threads: int) -> core.Model:
+        """The model in the core; Refused names a free node or a bad element."""
+        # Below this many points a thread costs more than it saves; results are the same for any number
+        threads = max(1, min(threads, len(self.point_xy) // POINTS_PER_THREAD))
+        try:
+            return core.Model(
+                self.wall.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads
+            )
+        except core.Mechanism as error:
+            x, y = self.wall.xy[error.node]
+            raise Refused(
+                f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
+                f"{error.direction}; add supports"
+            ) from None
+        except core.BadElement as error:
+            raise Refused(str(error)) from None
+
+
+def build(wall: WallMesh, options: Sla, strength: np.ndarray | None = None) -> SlaModel:
+    """Model of a wall; `strength` factors of the tensile strength by element, block after block."""
+    try:
+        return _build(wall, options, strength)
+    except BadWall as error:
+        raise Refused(str(error)) from None
+
+
+def _build(wall: WallMesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
+    model = wall.model
+    held, springs = set(), []
+    for i, support in enumerate(model.supports):
+        for node in wall.nodes_at(support, f"supports[{i}]").tolist():
+            for letter in support.fix:
+                if support.stiffness is None:
+                    held.add((node, AXES[letter]))
+                else:
+                    springs.append((node, AXES[letter], support.stiffness))
+    ties = [
+        [(int(n), AXES[tie.direction], 1.0) for n in wall.nodes_at(tie, f"ties[{i}]")]
+        for i, tie in enumerate(model.ties)
+    ]
+    moved = next((load for load in options.reference if load.kind == "displacement"), None)
+    if moved is not None:
+        tie = []
+        for part in moved.parts:
+            tie += [(int(n), AXES[moved.direction], part.ratio) for n in wall.nodes_at(part, "displacement")]
+        if len({n for n, _, _ in tie}) < len(tie):
+            raise BadWall("the parts of the displacement share nodes")
+        ties.append(tie)
+    tied = {(n, d) for tie in ties for n, d, _ in tie}
+    if clash := held & tied:
+        node, direction = min(clash)
+        raise BadWall(
+            f"node {node + 1} at x {wall.xy[node, 0]:g} m, y {wall.xy[node, 1]:g} m is held and tied in "
+            f"{'xy'[direction]}"
+        )
+    try:
+        freedoms = core.Freedoms.make(len(wall.xy), sorted(held), ties)
+    except ValueError as error:
+        raise BadWall(str(error)) from None
+    if not (freedoms.equation >= 0).any():
+        raise BadWall("every node is held: nothing can move")
+
+    groups, bands, points = [], [], []
+    start = 0
+    for block in wall.blocks:
+        count = len(block.connect)
+        factors = np.ones(count) if strength is None else strength[start : start + count]
+        start += count
+        band = crack_band(wall, block, options)
+        groups.append(_plane(wall, block, band, factors, options))
+        bands.append(band)
+        points.append(point_positions(wall.xy, block))
+    for bar in model.bars:
+        groups.append(_bar(wall, bar, options))
+    if springs:
+        node, direction, stiffness = (np.array(column) for column in zip(*springs, strict=True))
+        ground = np.full(len(node), -1)
+        groups.append(
+            core.Springs(
+                np.column_stack([node, ground]), np.column_stack([direction, direction]), stiffness.astype(float)
+            )
+        )
+    constant = nodal_forces(wall, options.constant, "constant")
+    reference = nodal_forces(wall, options.reference, "reference")
+    if moved is not None:
+        node, direction, _ = ties[-1][0]
+        reference[node, direction] = 1.0 / ties[-1][0][2]  # unit force on the common displacement
+        unit = 1.0
+    else:
+        total = float(np.hypot(*reference.sum(axis=0)))
+        unit = total if total > 1e-9 * np.abs(reference).sum() else 0.5 * float(np.abs(reference).sum())
+    if not unit > 0.0:
+        raise BadWall("the reference load is zero")
+    if (freedoms.equation[np.abs(reference) > 0] < 0).all():
+        raise BadWall("the reference load acts on held nodes only")
+    return SlaModel(
+        wall, freedoms, groups,
+        core.Behaviour(options.cracking == "isotropic", options.shear_retention, options.crack_closure),
+        constant, reference, unit, _control(wall, options, reference, unit), bands, np.concatenate(points),
+    )  # fmt: skip
+
+
+def crack_band(wall: WallMesh, block: Block, options: Sla) -> np.ndarray:
+    """h of each element [m]: given, or sqrt(2 A) of linear and sqrt(A) of quadratic elements."""
+    if options.crack_band is not None:
+        return np.full(len(block.connect), options.crack_band)
+    area = element_areas(wall.xy, block.kind, block.connect)
+    return np.sqrt(area if block.kind in ("T6", "Q8") else 2.0 * area)
+
+
+def _softening(material: Material, options: Sla, factor: float = 1.0) -> core.Softening | None:
+    if material.tensile_strength is None:
+        return None
+    return core.Softening(
+        material.tensile_strength * factor, material.fracture_energy, material.softening, options.ripple,
+        options.teeth == "exact", options.overshoot,
+    )  # fmt: skip
+
+
+def _crushing(material: Material, options: Sla) -> core.Softening | None:
+    if material.crushing_energy is None:
+        return None
+    return core.Softening(
+        material.compressive_strength, material.crushing_energy, material.crushing, options.ripple,
+        options.teeth == "exact", options.overshoot,
+    )  # fmt: skip
+
+
+def _plane(wall: WallMesh, block: Block, band: np.ndarray, factors: np.ndarray, options: Sla) -> core.Plane:
+    materials = [wall.materials[m] for m in block.material]
+    crushing = [None if s else _crushing(m, options) for m, s in zip(materials, block.linear, strict=True)]
+    tension = [
+        None if s else _softening(m, options, float(f))
+        for m, s, f in zip(materials, block.linear, factors, strict=True)
+    ]
+    for law in ("tension", "crushing"):
+        rows = tension if law == "tension" else crushing
+        for k in np.argsort(-band):
+            if rows[k] is not None:
+                limit = core.largest_band(rows[k], materials[k].young)
+                if band[k] >= limit:
+                    energy = "fracture_energy" if law == "tension" else "crushing_energy"
+                    raise BadWall(
+                        f"{energy} is too small for the elements: a crack band of {band[k]:.4g} m snaps back, the "
+                        f"largest is {limit:.4g} m; use smaller elements"
+                    )
+    return core.Plane(
+        block.kind, block.connect, block.thickness,
+        np.array([m.young for m in materials]), np.array([m.poisson for m in materials]), band,
+        tension if any(t is not None for t in tension) else None,
+        crushing if any(c is not None for c in crushing) else None,
+        np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
+        block.axis, block.gauss, wall.model.selective,
+    )  # fmt: skip
+
+
+def _bar(wall: WallMesh, bar, options: Sla) -> core.Bars:
+    ends = [int(np.hypot(*(wall.xy - at).T).argmin()) for at in (bar.start, bar.end)]
+    if ends[0] == ends[1]:
+        raise BadWall(f"a bar from {bar.start} to {bar.end} begins and ends at the same node")
+    material = wall.model.materials[bar.material]
+    length = float(np.hypot(*(wall.xy[ends[1]] - wall.xy[ends[0]])))
+    return core.Bars(
+        np.array([ends]), bar.area, material.young, options.crack_band or length,
+        _softening(material, options), _crushing(material, options),
+    )  # fmt: skip
+
+
+def point_positions(xy: np.ndarray, block: Block) -> np.ndarray:
+    """Integration points (points, 2) [m], as the core orders them; sides are straight."""
+    corners = xy[block.connect[:, : corner_count(block.kind)]]
+    if block.kind == "T3":
+        share = np.full((1, 3), 1.0 / 3.0)
+    elif block.kind == "T6":
+        share = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6.0
+    else:
+        gx, gy = (np.polynomial.legendre.leggauss(n)[0] for n in block.gauss)
+        r, s = (a.ravel() for a in np.meshgrid(gx, gy))
+        share = 0.25 * np.column_stack([(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s), (1 - r) * (1 + s)])
+    return np.einsum("pc,ecx->epx", share, corners).reshape(-1, 2)
+
+
+def nodal_forces(wall: WallMesh, loads: Sequence[Load], word: str) -> np.ndarray:
+    """Consistent nodal forces (nodes, 2) [N]."""
+    force = np.zeros_like(wall.xy)
+    for i, load in enumerate(loads):
+        what = f"{word}[{i}]"
+        if load.kind == "gravity":
+            heavy = False
+            for block in wall.blocks:
+                density = np.array([m.density for m in wall.materials])[block.material]
+                heavy |= bool((density > 0).any())
+                per_area = (density * block.thickness)[:, None] * [load.ax, load.ay]
+                force += core.body_force(block.kind, block.gauss, wall.xy, block.connect, per_area)
+            if not heavy:
+                raise BadWall(f"{what}: gravity without weight: give the material a density")
+        elif load.kind == "point":
+            nodes = wall.nodes_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
+            force[nodes] += np.array([load.fx, load.fy]) / len(nodes)
+        elif load.kind != "displacement":
+            force += _edge_load(wall, load, what)
+    return force
+
+
+def _edge_load(wall: WallMesh, load: Load, what: str) -> np.ndarray:
+    nodes = wall.nodes_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
+    chosen = np.zeros(len(wall.xy), dtype=bool)
+    chosen[nodes] = True
+    edges, thickness = wall.boundary()
+    mine = chosen[edges[:, 0]] & chosen[edges[:, 1]]
+    edges, thickness = edges[mine], thickness[mine]
+    if not len(edges):
+        raise BadWall(f"{what}: no boundary edge lies there")
+    along = wall.xy[edges[:, 1]] - wall.xy[edges[:, 0]]
+    length = np.hypot(*along.T)
+    if load.kind == "pressure":
+        normal = np.column_stack([along[:, 1], -along[:, 0]])  # outward, times the length
+        total = -load.value * thickness[:, None] * normal
+    else:
+        per = np.array([load.px, load.py]) if load.kind == "line" else np.array([load.fx, load.fy]) / length.sum()
+        total = length[:, None] * per
+    force = np.zeros_like(wall.xy)
+    quadratic = edges[:, 2] >= 0
+    for column, share in ((0, np.where(quadratic, 1 / 6, 0.5)), (1, np.where(quadratic, 1 / 6, 0.5))):
+        np.add.at(force, edges[:, column], share[:, None] * total)
+    if quadratic.any():
+        np.add.at(force, edges[quadratic, 2], (4 / 6) * total[quadratic])
+    return force
+
+
+def _control(wall: WallMesh, options: Sla, reference: np.ndarray, unit: float) -> core.Monitor:
+    """The control displacement; by default the one on which the reference load does its work."""
+    if not options.control:
+        node, direction = np.nonzero(reference)
+        return core.Monitor(node, direction, reference[node, direction] / unit)
+    parts = []
+    for i, term in enumerate(options.control):
+        nodes = wall.nodes_at(term, f"control[{i}]")
+        parts.append((nodes, np.full(len(nodes), AXES[term.direction]), np.full(len(nodes), term.weight / len(nodes))))
+    return core.Monitor(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def strength_factors(wall: WallMesh, options: Sla, seed: int) -> np.ndarray | None:
+    """Lognormal factors of ft with mean 1 by element, correlated over strength_length; None without scatter."""
+    if options.strength_variation == 0.0:
+        return None
+    centres = np.concatenate([wall.xy[b.connect[:, : corner_count(b.kind)]].mean(axis=1) for b in wall.blocks])
+    rng = np.random.default_rng(seed)
+    sigma = np.sqrt(np.log1p(options.strength_variation**2))
+    length = options.strength_length
+    if length is None or length <= wall.size:
+        field = rng.standard_normal(len(centres))
+    else:
+        # Spectral representation of a Gaussian correlation exp(-r^2 / length^2)
+        waves = 400
+        number = rng.normal(0.0, np.sqrt(2.0) / length, (waves, 2))
+        phase = rng.uniform(0.0, 2.0 * np.pi, waves)
+        field = np.sqrt(2.0 / waves) * np.cos(centres @ number.T + phase).sum(axis=1)
+    return np.exp(sigma * field - 0.5 * sigma**2)

@@ -1,0 +1,234 @@
+"""Figures of sequentially linear analysis: curve, cracks, stresses, ranges of the load, energies."""
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import Normalize
+
+from extrados.plots import style
+from extrados.results.store import Stored
+
+LOST, ENVELOPE = "#d9822b", "#1f4e79"
+CORNERS = {3: 3, 6: 3, 4: 4, 8: 4}
+
+
+def _polygons(run: Stored, name: str, xy: np.ndarray) -> list[np.ndarray]:
+    blocks = [a for n, a in sorted(run.arrays[name].items()) if n.startswith("elements_") and n[9:].isdigit()]
+    return [p for a in blocks for p in xy[a.data[:, : CORNERS[a.data.shape[1]]]]]
+
+
+def _scale(span: np.ndarray, moved: np.ndarray, part: float = 0.06) -> float:
+    """A round factor that makes the largest displacement a small part of the wall."""
+    most = np.hypot(*moved.T).max()
+    if not most > 0.0:
+        return 1.0
+    exact = part * span.max() / most
+    power = 10.0 ** np.floor(np.log10(exact))
+    return float(max(s for s in (1.0, 2.0, 5.0) if s * power <= exact or s == 1.0) * power)
+
+
+def _wall(ax: Axes, polygons: list[np.ndarray], **options) -> PolyCollection:
+    style_of = {"facecolors": style.STONE, "edgecolors": "#cfc6b4", "linewidths": 0.25, **options}
+    drawn = PolyCollection(polygons, **style_of)
+    ax.add_collection(drawn)
+    ax.autoscale_view()
+    return drawn
+
+
+def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """All figures of one analysis."""
+    figures = [_curve(run, name, folder)]
+    for prefix in ("", "minus_"):
+        if f"{prefix}state_event" in run.arrays[name]:
+            figures += [_cracks(run, name, folder, prefix), _stresses(run, name, folder, prefix)]
+    i = 0
+    while f"section_{i}_y" in run.arrays[name]:
+        figures.append(_section(run, name, folder, i))
+        i += 1
+    figures.append(_energy(run, name, folder))
+    return figures
+
+
+def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    get, r = lambda n: run.array(name, n), run[name]
+    with style.figure(7.0, 4.2) as (fig, (ax,)):
+        if "scatter_load" in run.arrays[name]:
+            grid, rows = get("scatter_displacement") * 1e3, get("scatter_load") / 1e3
+            ax.fill_between(grid, rows.min(axis=0), rows.max(axis=0), color="#dfe7ef", label=f"{len(rows)} repetitions")
+            ax.plot(grid, rows.mean(axis=0), color="#7b93ab", linestyle=":", label="their mean")
+        for prefix, label in (("", "load to +"), ("minus_", "load to -")):
+            if f"{prefix}event_load" not in run.arrays[name]:
+                continue
+            d, p = get(f"{prefix}event_displacement") * 1e3, get(f"{prefix}event_load") / 1e3
+            fine = get(f"{prefix}event_equilibrium") > 0
+            color = style.THRUST if not prefix else style.SAFE
+            ax.plot(np.append(0, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.35, alpha=0.55)
+            if (~fine).any():
+                ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
+            ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
+                    linewidth=1.4, label=f"envelope, {label}")  # fmt: skip
+            idea = (r if not prefix else r["minus"]).get("bilinear")
+            if idea:
+                ax.plot(
+                    np.array([0, idea["yield_displacement_m"], idea["ultimate_displacement_m"]]) * 1e3,
+                    np.array([0, idea["yield_load_N"], idea["yield_load_N"]]) / 1e3,
+                    color=ENVELOPE, linestyle="--", linewidth=0.9, label="bilinear of equal area" if not prefix else None,
+                )  # fmt: skip
+        # Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve
+        there = [p for p in ("", "minus_") if f"{p}envelope_load" in run.arrays[name]]
+        far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
+        loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
+        ax.set_xlim(0.0, 1.05e3 * max(far.max(), 1e-12))
+        if len(loads):
+            low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
+            ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
+        ax.axhline(0.0, color="#999", linewidth=0.5)
+        ax.set_xlabel("control displacement [mm]")
+        ax.set_ylabel("load [kN]")
+        ax.legend()
+        return style.save(fig, folder, f"{name}-curve"), (
+            "Load against displacement: every event (thin), the monotone envelope and its bilinear idealisation."
+        )
+
+
+def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
+    """The states to draw: at the greatest load and the last."""
+    load = run.array(name, f"{prefix}state_load")
+    return sorted({int(load.argmax()), len(load) - 1})
+
+
+def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
+    xy, at, band = (run.array(name, n) for n in ("node", "point_xy", "point_band"))
+    states = _peak_state(run, name, prefix)
+    span = np.ptp(xy, axis=0)
+    with _panels(span, len(states)) as (fig, axes):
+        for ax, s in zip(axes, states, strict=True):
+            moved = run.array(name, f"{prefix}state_displacement")[s]
+            event = run.array(name, f"{prefix}state_event")[s]
+            load = run.array(name, f"{prefix}state_load")[s]
+            factor = _scale(span, moved)
+            _wall(ax, _polygons(run, name, xy + factor * moved), facecolors="#f6f2ea")
+            angle = run.array(name, f"{prefix}state_angle")[s]
+            widths = [run.array(name, f"{prefix}state_width_{d}")[s] for d in "ns"]
+            most = max(w.max() for w in widths)
+            place = at + factor * _at_points(run, name, moved, at, xy)
+            for width, turn in zip(widths, (0.5 * np.pi, 0.0), strict=True):
+                # A crack runs across its normal; those too fine to matter are left out
+                shown = width > max(1e-3 * most, 1e-9)
+                if not shown.any():
+                    continue
+                along = angle[shown] + turn
+                half = 0.42 * band[shown][:, None] * np.column_stack([np.cos(along), np.sin(along)])
+                lines = LineCollection(
+                    np.stack([place[shown] - half, place[shown] + half], axis=1), cmap="inferno_r",
+                    norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * width[shown] / most,
+                )  # fmt: skip
+                lines.set_array(1e3 * width[shown])
+                ax.add_collection(lines)
+                drawn = lines
+            if most > 1e-9:
+                fig.colorbar(drawn, ax=ax, shrink=0.7, label="crack width [mm]")
+            style.section_axes(ax)
+            ax.set_title(f"event {event}, {load / 1e3:.4g} kN, displacements x {factor:g}")
+        title = style.save(fig, folder, f"{name}-{prefix.replace('_', '-')}cracks")
+    return title, "Cracks on the deformed wall, at the peak and at the end; colour and thickness give the width."
+
+
+def _at_points(run: Stored, name: str, moved: np.ndarray, at: np.ndarray, xy: np.ndarray) -> np.ndarray:
+    """Displacements carried from the nodes to the points: that of the element's corners on the mean."""
+    rows = []
+    blocks = [a.data for n, a in sorted(run.arrays[name].items()) if n.startswith("elements_") and n[9:].isdigit()]
+    for connect in blocks:
+        rows.append(moved[connect[:, : CORNERS[connect.shape[1]]]].mean(axis=1))
+    per_element = np.concatenate(rows)
+    centres = np.concatenate([xy[c[:, : CORNERS[c.shape[1]]]].mean(axis=1) for c in blocks])
+    from scipy.spatial import cKDTree
+
+    return per_element[cKDTree(centres).query(at)[1]]
+
+
+def _panels(span: np.ndarray, count: int):
+    """Panels side by side for upright walls, one below the other for long ones."""
+    if span[0] > 2.2 * span[1]:
+        return style.figure(8.0, count * min(8.0 * span[1] / span[0] + 1.1, 5.0), rows=count)
+    return style.figure(4.8 * count, min(4.8 * span[1] / span[0], 9.0) + 0.6, columns=count)
+
+
+def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
+    xy, at = run.array(name, "node"), run.array(name, "point_xy")
+    load = run.array(name, f"{prefix}state_load")
+    s = int(load.argmax())
+    span = np.ptp(xy, axis=0)
+    with _panels(span, 2) as (fig, axes):
+        for ax, key, title, cmap in zip(
+            axes, ("stress_1", "stress_2"), ("greater", "lesser"), ("Reds", "Blues_r"), strict=True
+        ):
+            value = run.array(name, f"{prefix}state_{key}")[s] / 1e6
+            low, high = np.percentile(value, [2, 98])
+            limits = (0.0, max(high, 1e-9)) if key == "stress_1" else (min(low, -1e-9), 0.0)
+            _wall(ax, _polygons(run, name, xy), facecolors="none", linewidths=0.1)
+            size = np.clip(9000.0 / len(at), 0.3, 40.0)
+            drawn = ax.scatter(*at.T, c=value, s=size, cmap=cmap, vmin=limits[0], vmax=limits[1], linewidths=0)
+            fig.colorbar(drawn, ax=ax, shrink=0.7, label="stress [MPa]")
+            style.section_axes(ax)
+            ax.set_title(f"{title} principal stress")
+        title = style.save(fig, folder, f"{name}-{prefix.replace('_', '-')}stress")
+    return title, f"Principal stresses at the peak load ({load[s] / 1e3:.4g} kN); tension is positive."
+
+
+def _section(run: Stored, name: str, folder: Path, i: int) -> tuple[str, str]:
+    y, about = run.array(name, f"section_{i}_y"), run.arrays[name][f"section_{i}_y"].about
+    lo, hi = (run.array(name, f"section_{i}_{end}") / 1e3 for end in ("lo", "hi"))
+    events = run.array(name, "state_event")
+    # A section that is cracked through admits everything: nothing to show
+    shown = np.flatnonzero((np.isfinite(lo) | np.isfinite(hi)).any(axis=1))[:6]
+    lo, hi, events = lo[shown], hi[shown], events[shown]
+    count = max(len(events), 1)
+    with style.figure(2.4 * count + 1.0, 4.0, columns=count, sharey=True) as (fig, axes):
+        for ax, low, high, event in zip(axes, lo, hi, events, strict=True):
+            ends = np.concatenate([low[np.isfinite(low)], high[np.isfinite(high)]])
+            reach = 1.2 * np.abs(ends).max() if len(ends) else 1.0
+            bounded = np.isfinite(low) | np.isfinite(high)
+            left, right = np.where(np.isfinite(low), low, -reach), np.where(np.isfinite(high), high, reach)
+            ax.hlines(y[bounded], left[bounded], right[bounded], color="#9fb7c9", linewidth=2.0)
+            ax.plot(low, y, "<", color=style.SAFE, markersize=4, label="lower limit")
+            ax.plot(high, y, ">", color=style.THRUST, markersize=4, label="upper limit")
+            for value, color in ((np.nanmax(low), style.SAFE) if np.isfinite(low).any() else (None, ""),
+                                 (np.nanmin(high), style.THRUST) if np.isfinite(high).any() else (None, "")):  # fmt: skip
+                if value is not None:
+                    ax.axvline(value, color=color, linestyle=":", linewidth=1.0)
+            ax.set_title(f"event {event}")
+            ax.set_xlabel("load [kN]")
+        axes[0].set_ylabel("y [m]")
+        axes[0].legend(fontsize=7)
+        title = style.save(fig, folder, f"{name}-section-{i}")
+    return title, (
+        f"Range of the load that each point admits, {about}: equilibrium where the greatest lower limit (dotted, green) "
+        "stays below the least upper limit (dotted, red)."
+    )
+
+
+def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    get = lambda n: run.array(name, f"event_{n}")  # noqa: E731
+    with style.figure(7.0, 3.4) as (fig, (ax,)):
+        fine = np.flatnonzero(get("equilibrium") > 0)
+        upto = slice(0, fine[-1] + 1 if len(fine) else None)  # what follows has no equilibrium, and no energy either
+        number = np.arange(1, len(get("load")) + 1)[upto]
+        ax.stackplot(
+            number, get("stored")[upto], get("dissipated")[upto], colors=["#cfe3d6", "#f2c28b"],
+            labels=["stored", "dissipated"],
+        )  # fmt: skip
+        ax.plot(
+            number, get("external")[upto], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads"
+        )
+        ax.plot(number, get("crack")[upto], color=style.THRUST, linewidth=0.9, label="area of the teeth")
+        ax.set_xlabel("event")
+        ax.set_ylabel("energy [J]")
+        ax.legend(loc="upper left")
+        title = style.save(fig, folder, f"{name}-energy")
+    return title, (
+        f"Energy ledger: stored and dissipated energy make up the work of the loads to "
+        f"{run[name]['energy_residual_ratio']:.1e}."
+    )

@@ -1,0 +1,228 @@
+"""Free polygons: contacts, complaints, JSON and DXF."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from extrados.limit.programme import LimitAnalysis
+from extrados.structures.arch import make_arch
+from extrados.structures.assembly import GROUND
+from extrados.structures.blocks import Polygon, make_blocks, read_json
+from extrados.structures.builder import BadGeometry
+from extrados.structures.contacts import Overlap, find_contacts
+from extrados.structures.drawing import read_dxf
+from extrados.structures.polygons import crossings, crosses_itself, cut, inside, properties, signed_area
+
+SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+
+
+def square(name: str, x: float, y: float, w: float = 1.0, h: float = 1.0) -> Polygon:
+    return Polygon(name, SQUARE * [w, h] + [x, y])
+
+
+def trapezoids() -> tuple[list[Polygon], np.ndarray]:
+    """Oppenheim's arch with straight-sided voussoirs, and its springings as ground."""
+    a = make_arch(10.0, 1.5, 157.5, 7)
+    blocks = [Polygon(f"stone {i}", np.array([a.p[i], a.q[i], a.q[i + 1], a.p[i + 1]])) for i in range(7)]
+    return blocks, np.array([[*a.p[0], *a.q[0]], [*a.q[7], *a.p[7]]])
+
+
+def wall(rows: int, columns: int) -> list[Polygon]:
+    """Running bond of half-metre stones."""
+    blocks = []
+    for r in range(rows):
+        edges = [0.5 * c for c in range(columns + 1)]
+        if r % 2:
+            edges = [0.0, *(0.25 + 0.5 * c for c in range(columns)), 0.5 * columns]
+        blocks += [
+            square(f"{r}/{c}", x0, 0.25 * r, x1 - x0, 0.25)
+            for c, (x0, x1) in enumerate(zip(edges[:-1], edges[1:], strict=True))
+        ]
+    return blocks
+
+
+def test_polygon_properties() -> None:
+    area, centre, polar = properties(SQUARE * [2.0, 3.0] + [5.0, -4.0])
+    assert area == pytest.approx(6.0) and centre == pytest.approx([6.0, -2.5])
+    assert polar == pytest.approx(6.0 * (2.0**2 + 3.0**2) / 12.0)
+    assert signed_area(SQUARE[::-1]) == -1.0
+    half = cut(SQUARE, np.array([0.0, 0.25]), np.array([0.0, 1.0]))
+    assert properties(half)[0] == pytest.approx(0.75)
+    assert crossings(SQUARE, 0.5) == pytest.approx([0.0, 1.0])
+    assert inside(SQUARE, np.array([[0.5, 0.5], [1.5, 0.5]])).tolist() == [True, False]
+    assert crosses_itself(SQUARE[[0, 2, 1, 3]]) and not crosses_itself(SQUARE)
+
+
+def test_straight_sided_voussoirs() -> None:
+    """Trapezoids of the same joints weigh differently: .3736 in place of .3700."""
+    blocks, ground = trapezoids()
+    arch = make_blocks(blocks, ground)
+    state, mechanism = LimitAnalysis(arch).collapse()
+    assert state.gamma == pytest.approx(0.3736, abs=5.1e-5) and len(mechanism.hinges) == 4
+    assert len(arch.a) == 8 and (arch.b == GROUND).sum() == 2
+    # However the polygons are ordered and turned, the joints are the same.
+    turned = [Polygon(b.name, np.roll(b.points[::-1], 1, axis=0)) for b in blocks[::-1]]
+    again = make_blocks(turned, ground[::-1])
+    assert LimitAnalysis(again).collapse()[0].gamma == pytest.approx(state.gamma, abs=1e-12)
+
+
+def test_wall_tilts_as_one_or_slides() -> None:
+    """Six courses of four stones: a column split off rocks alone; with little friction the wall slides at mu."""
+    section = make_blocks(wall(6, 4), None)
+    assert LimitAnalysis(section, 0.2).collapse()[0].gamma == pytest.approx(0.2, abs=1e-9)
+    for form in ("reduced", "sparse"):
+        state, mechanism = LimitAnalysis(section, 0.7, form=form).collapse()
+        assert state.gamma == pytest.approx(LimitAnalysis(section, 0.7).collapse()[0].gamma, abs=1e-9)
+        assert abs(state.gamma - mechanism.upper_bound) < 1e-9 and mechanism.defect < 1e-7
+    assert state.gamma < 2.0 / 1.5  # the whole wall about its toe
+    # As one stone it turns about its toe.
+    one = make_blocks([square("wall", 0.0, 0.0, 2.0, 1.5)], None)
+    assert LimitAnalysis(one).collapse()[0].gamma == pytest.approx(2.0 / 1.5)
+
+
+def test_contacts_of_many_stones() -> None:
+    blocks = wall(10, 8)
+    found = find_contacts([b.points for b in blocks], np.array([[-1.0, 0.0, 9.0, 0.0]]), 1e-4, [b.name for b in blocks])
+    # Bed joints: 15 between two courses of 8 and 9; heads: 7 or 8 in a course; base: 8
+    heads = 5 * 7 + 5 * 8
+    beds = 9 * 16
+    assert (found.b == GROUND).sum() == 8
+    assert len(found.a) - 8 == heads + beds
+    length = np.hypot(*(found.q - found.p).T)
+    assert length.min() == pytest.approx(0.25)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "words"),
+    [
+        ([square("low", 0, 0), square("high", 0, 0.9)], "'low' and 'high' overlap"),
+        ([square("big", 0, 0, 3, 3), square("small", 1, 1, 0.5, 0.5)], "'small' and 'big' overlap"),
+        ([square("one", 0, 0), square("same", 0, 0)], "overlap"),
+        ([square("base", 0, 0), square("afloat", 5, 5)], "no joint leads from the ground to block 'afloat'"),
+        ([square("base", 0, 0), square("gap", 0, 1.002)], "'base' and 'gap' are 2 mm apart"),
+        ([square("base", 0, 0), Polygon("bow", SQUARE[[0, 2, 1, 3]])], "'bow': its outline crosses itself"),
+        ([square("base", 0, 0), Polygon("line", np.array([[0, 1], [1, 1], [0.5, 1.0]]))], "'line'"),
+        ([Polygon("two", SQUARE[:2])], "'two': 2 distinct vertices"),
+        ([square("twin", 0, 0), square("twin", 1, 0)], "two blocks are called 'twin'"),
+        ([square("base", 0, 0), square("corner", 1, 1)], "block 'corner'"),  # they touch at a point: no joint
+        ([], "no blocks"),
+    ],
+)
+def test_bad_blocks_are_named(blocks: list, words: str) -> None:
+    with pytest.raises(BadGeometry, match=words):
+        make_blocks(blocks, None)
+
+
+def test_ground_out_of_reach() -> None:
+    with pytest.raises(BadGeometry, match="no block touches the ground"):
+        make_blocks([square("base", 0, 0)], np.array([[0.0, -1.0, 1.0, -1.0]]))
+
+
+def test_json(tmp_path: Path) -> None:
+    blocks, ground = trapezoids()
+    data = {
+        "unit": "mm",
+        "blocks": [{"name": b.name, "points": (1e3 * b.points).tolist()} for b in blocks],
+        "ground": (1e3 * ground).tolist(),
+    }
+    path = tmp_path / "arch.json"
+    path.write_text(json.dumps(data))
+    arch = make_blocks(*read_json(path))
+    assert LimitAnalysis(arch).collapse()[0].gamma == pytest.approx(0.3736, abs=5.1e-5)
+    for change, words in (
+        ({"unit": "furlong"}, "unit 'furlong'"),
+        ({"blocks": [{"name": "bad", "points": [[0, 0], [1]]}]}, "'bad': points"),
+        ({"blocks": [{"points": [[0, 0], [1, 0], [1, 1]], "density": -5}]}, "density -5"),
+        ({"colour": "red"}, "unknown key 'colour'"),
+        ({"ground": [[0, 0, 1]]}, "ground"),
+    ):
+        path.write_text(json.dumps({**data, **change}))
+        with pytest.raises(BadGeometry, match=words):
+            read_json(path)
+    for text in ("[1, 2", "[]", '{"blocks": 5}', "[" * 100000):
+        path.write_text(text)
+        with pytest.raises(BadGeometry, match=r"arch\.json"):
+            read_json(path)
+
+
+ezdxf = pytest.importorskip("ezdxf")
+
+
+def drawing(path: Path, units: int, extra=None) -> Path:
+    blocks, ground = trapezoids()
+    document = ezdxf.new(units=units)
+    space = document.modelspace()
+    scale = {4: 1e3, 6: 1.0, 0: 1e3}[units]
+    for b in blocks:
+        space.add_lwpolyline((scale * b.points).tolist(), close=True, dxfattribs={"layer": "STONE"})
+    for x1, y1, x2, y2 in scale * ground:
+        space.add_line((x1, y1), (x2, y2), dxfattribs={"layer": "ground"})
+    if extra:
+        extra(space)
+    document.saveas(path)
+    return path
+
+
+def test_dxf(tmp_path: Path) -> None:
+    path = drawing(tmp_path / "arch.dxf", 4)
+    arch = make_blocks(*read_dxf(path))
+    assert LimitAnalysis(arch).collapse()[0].gamma == pytest.approx(0.3736, abs=5.1e-5)
+    assert arch.block_names[0].startswith("STONE #")
+
+
+def test_dxf_without_units_asks(tmp_path: Path) -> None:
+    path = drawing(tmp_path / "arch.dxf", 0)
+    with pytest.raises(BadGeometry, match=r"has no unit .*unit = \"mm\""):
+        read_dxf(path)
+    arch = make_blocks(*read_dxf(path, "mm"))
+    assert max(arch.p[:, 0].max(), arch.q[:, 0].max()) == pytest.approx(10.75 * np.sin(np.radians(78.75)), abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("extra", "words"),
+    [
+        (lambda s: s.add_spline([(0, 0), (1, 2), (3, 1)], dxfattribs={"layer": "CURVES"}), "layer 'CURVES', SPLINE #"),
+        (lambda s: s.add_lwpolyline([(0, 0), (1, 2)], dxfattribs={"layer": "OPEN"}), "layer 'OPEN'.*is open"),
+        (lambda s: s.add_circle((0, 0), 1, dxfattribs={"layer": "ROUND"}), "layer 'ROUND', CIRCLE #"),
+        (lambda s: s.add_arc((0, 0), 1, 0, 90, dxfattribs={"layer": "GROUND"}), "ground is drawn with lines"),
+    ],
+)
+def test_dxf_complaints_name_the_layer(tmp_path: Path, extra, words: str) -> None:
+    path = drawing(tmp_path / "arch.dxf", 6, extra)
+    with pytest.raises(BadGeometry, match=words):
+        read_dxf(path)
+    if "GROUND" not in words and "ground" not in words:  # naming the layers leaves the others out
+        assert len(read_dxf(path, layers=["STONE"])[0]) == 7
+    with pytest.raises(BadGeometry, match="no layer 'BRICK'"):
+        read_dxf(path, layers=["BRICK"])
+
+
+def test_curved_voussoirs_of_a_drawing(tmp_path: Path) -> None:
+    """Polylines with bulges: ring sectors, so the capacity is that of sector voussoirs."""
+    a = make_arch(10.0, 1.5, 157.5, 7)
+    document = ezdxf.new(units=6)
+    bulge = np.tan(np.radians(157.5 / 7) / 4)
+    for i in range(7):
+        p0, q0, q1, p1 = a.p[i], a.q[i], a.q[i + 1], a.p[i + 1]
+        document.modelspace().add_lwpolyline(
+            [(*p0, 0.0), (*q0, -bulge), (*q1, 0.0), (*p1, bulge)], format="xyb", close=True
+        )
+    for j in (0, 7):
+        document.modelspace().add_line(a.p[j], a.q[j], dxfattribs={"layer": "GROUND"})
+    document.saveas(tmp_path / "sectors.dxf")
+    arch = make_blocks(*read_dxf(tmp_path / "sectors.dxf"))
+    assert LimitAnalysis(arch).collapse()[0].gamma == pytest.approx(0.3700, abs=1e-4)
+
+
+def test_not_a_drawing(tmp_path: Path) -> None:
+    (tmp_path / "a.dxf").write_text("no drawing at all")
+    with pytest.raises(BadGeometry, match=r"a\.dxf"):
+        read_dxf(tmp_path / "a.dxf")
+    with pytest.raises(BadGeometry, match=r"none\.dxf"):
+        read_dxf(tmp_path / "none.dxf")
+
+
+def test_overlap_is_a_complaint_about_geometry() -> None:
+    assert issubclass(Overlap, BadGeometry)

@@ -1,0 +1,279 @@
+"""The event loop on small walls: the beam of the thesis, two algorithms, threads, going on, loads both ways."""
+
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from extrados.analyses.run import Context, Refused, run_analyses
+from extrados.analyses.sla_curve import bilinear, envelope
+from extrados.analyses.sla_model import build
+from extrados.analyses.sla_run import damage_before, run_curves
+from extrados.core.sla import Behaviour, Model, Monitor, Stop
+from extrados.decks.reader import DeckError, make_deck
+
+CASES = Path(__file__).resolve().parents[2] / "cases" / "sla"
+
+
+def wall(size: float = 0.15, **analysis) -> dict:
+    """A wall with an opening under its weight, a pressure and a push at the top."""
+    return {
+        "structure": {
+            "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "size": size,
+            "openings": [{"x": [1.05, 1.95], "y": [0.9, 2.1]}],
+            "material": {
+                "young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 0.2e6, "fracture_energy": 50.0,
+            },
+            "regions": [{"y": [2.85, 3.0], "linear": True}],
+            "supports": [{"edge": "bottom"}],
+        },
+        "analysis": [{
+            "kind": "sla", "ripple": 0.2, "events": 300,
+            "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
+            "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}],
+            **analysis,
+        }],
+    }  # fmt: skip
+
+
+def curves(data: dict, threads: int = 1):
+    deck = make_deck(data)
+    context = Context(deck)
+    model = build(context.structure, deck.analyses[0])
+    return model, run_curves(model, deck.analyses[0], threads, lambda *_: None)
+
+
+def run_deck(data: dict):
+    return run_analyses(Context(make_deck(data)))[0]
+
+
+def beam(prestress: float, cracking: str) -> dict:
+    data = tomllib.loads((CASES / "beam.toml").read_text(encoding="utf-8"))
+    for load in data["analysis"][0]["constant"]:
+        load["value"] = -1e6 * prestress
+    data["analysis"][0] |= {"cracking": cracking, "states": [], "section_x": []}
+    return data
+
+
+@pytest.mark.parametrize(
+    ("prestress", "cracking", "peak", "cycle", "lost"),
+    [
+        (0, "isotropic", 4.821, 32, None), (0, "orthotropic", 4.809, 33, None),
+        (-1, "isotropic", 6.366, 44, None), (-1, "orthotropic", 6.415, 44, None),
+        (1, "isotropic", 3.244, 21, 162), (1, "orthotropic", 3.271, 31, 161),
+    ],
+)  # fmt: skip
+def test_beam_of_the_thesis(prestress, cracking, peak, cycle, lost) -> None:
+    """Thesis 4.3.1; peaks and cycles by an independent script on the same assumed outline."""
+    r = run_deck(beam(prestress, cracking)).results
+    assert r["peak_load_N"] / 1e3 == pytest.approx(peak, abs=6e-4)
+    assert (r["peak_event"], r["first_event_without_equilibrium"]) == (cycle, lost)
+    assert r["energy_residual_ratio"] < 1e-9
+
+
+def test_lost_equilibrium_under_tensile_prestress() -> None:
+    """Equilibrium is lost at cycle 162 (thesis: 162 still, 163 not), back in between, and for good from 205."""
+    lost = np.flatnonzero(run_deck(beam(1, "isotropic"))["event_equilibrium"] == 0) + 1
+    assert lost[:9].tolist() == [162, 165, 170, 190, 192, 195, 197, 201, 205]
+    assert (np.diff(lost[8:]) == 1).all()
+    assert 218 in lost
+
+
+def test_residual_of_the_prestressed_beam_is_the_couple_of_the_prestress() -> None:
+    """All but the top points gone under -1 N/mm2: 5 kN x 48.3 mm = F/2 x 160 mm, F = 3.02 kN."""
+    r = run_deck(beam(-1, "isotropic"))
+    assert r["event_load"][-1] == pytest.approx(3.02e3, rel=0.012)
+
+
+def test_updated_factor_and_refactorisation_agree() -> None:
+    _, (update,) = curves(wall())
+    _, (refactor,) = curves(wall(algorithm="refactor"))
+    np.testing.assert_allclose(update.events.load, refactor.events.load, rtol=1e-9)
+    assert (update.events.point == refactor.events.point).all()
+    assert update.events.ledger_error < 1e-11
+
+
+def test_threads_do_not_change_a_bit() -> None:
+    deck = make_deck(wall(0.05))
+    model = build(Context(deck).structure, deck.analyses[0])
+    found = []
+    for threads in (1, 2, 3):
+        with Model(model.wall.xy, model.freedoms, model.groups, threads=threads) as core:
+            core.loads(model.constant, model.reference)
+            found.append(core.run(120, [model.control]))
+    for other in found[1:]:
+        for name in ("load", "limit_c", "stored", "dissipated", "point"):
+            assert getattr(found[0], name).tobytes() == getattr(other, name).tobytes()
+
+
+def test_batches_do_not_matter() -> None:
+    deck = make_deck(wall())
+    model = build(Context(deck).structure, deck.analyses[0])
+    loads = []
+    for room in (7, 210):
+        with Model(model.wall.xy, model.freedoms, model.groups) as core:
+            core.loads(model.constant, model.reference)
+            loads.append(np.concatenate([core.run(room, [model.control]).load for _ in range(210 // room)]))
+    assert loads[0].tobytes() == loads[1].tobytes()
+
+
+def test_many_events_keep_the_residual_small() -> None:
+    """Downdates alone for 3000 events: the guard never asks for more."""
+    _, (curve,) = curves(wall(0.1, events=3000))
+    assert curve.events.guard[0] == 5
+    assert curve.events.guard[1:] == (0, 0)
+    assert 0.0 < curve.events.residual[-1] < 1e-9
+
+
+def test_going_on_from_a_stored_event() -> None:
+    _, (whole,) = curves(wall(events=260))
+    event = 140
+    damage = damage_before(
+        whole.damage_start, whole.damage_end, whole.events.point[: event - 1], whole.events.code[: event - 1]
+    )
+    deck = make_deck(wall(events=120))
+    model = build(Context(deck).structure, deck.analyses[0])
+    (rest,) = run_curves(model, deck.analyses[0], 1, lambda *_: None, damage)
+    np.testing.assert_allclose(rest.events.load, whole.events.load[event - 1 : event + 119], rtol=1e-9)
+
+
+def test_both_senses_of_a_symmetric_wall_agree() -> None:
+    """From the same start: the '+' run leaves nothing behind."""
+    _, (plus, minus) = curves(wall(directions=["+", "-"], events=60))
+    assert minus.events.load[0] == pytest.approx(plus.events.load[0], rel=1e-9)
+    assert minus.events.monitors[0, 0] == pytest.approx(plus.events.monitors[0, 0], rel=1e-9)
+    assert minus.events.load.max() == pytest.approx(plus.events.load.max(), rel=0.01)
+
+
+def test_constant_loads_with_damage() -> None:
+    """A lintel too heavy for the strength: A cracks it on the way from 0 to 1, B starts from there."""
+    data = wall(events=900)
+    data["structure"]["material"]["density"] = 26000.0
+    _, (curve,) = curves(data)
+    stage = curve.stage_a
+    assert stage.reason == "target load"
+    assert len(stage) > 3
+    assert (stage.load[:-1] < 1.0).any()
+    assert stage.load[-1] == 1.0
+    # the ledger goes through both stages
+    assert curve.events.external[0] > stage.external[-1]
+    assert curve.events.ledger_error < 1e-11
+
+
+def test_constant_loads_beyond_strength_are_refused() -> None:
+    data = wall(constant_damage=False)
+    data["analysis"][0]["constant"] = [
+        {"kind": "line", "edge": "left", "py": "5 MN/m"},
+        {"kind": "line", "edge": "right", "py": "-5 MN/m"},
+    ]
+    result = run_deck(data)
+    assert (result.status, "constant loads alone exceed the strength" in result.reason) == ("refused", True)
+    data = wall()
+    data["analysis"][0]["constant"] = [{"kind": "spread", "edge": "top", "fx": "900 kN"}]
+    result = run_deck(data)
+    assert (result.status, "are not carried" in result.reason) == ("refused", True)
+
+
+def test_prescribed_displacement_with_ratios() -> None:
+    """Roof and floor moved together, the floor by 0.8: the load that comes out is their common reaction."""
+    data = wall(events=5, constant=[])
+    data["analysis"][0]["reference"] = [
+        {
+            "kind": "displacement",
+            "direction": "x",
+            "parts": [{"edge": "top"}, {"edge": "left", "y": [1.5, 1.5], "ratio": 0.8}],
+        }
+    ]
+    result = run_deck(data)
+    u = result["state_displacement"][-1]
+    xy = result["node"]
+    top, floor = np.abs(xy[:, 1] - 3.0) < 1e-9, (np.abs(xy[:, 1] - 1.5) < 1e-9) & (xy[:, 0] < 1e-9)
+    assert np.ptp(u[top, 0]) == 0.0
+    assert u[floor, 0] == pytest.approx(0.8 * u[top, 0][0], rel=1e-12)
+    # work: the unit force acts on the common displacement
+    # the load does its work on the common displacement
+    assert result["event_external"][0] == pytest.approx(0.5 * result["event_load"][0] * u_first(result), rel=1e-9)
+
+
+def u_first(result) -> float:
+    """Control displacement at the first event."""
+    return float(result["event_displacement"][0])
+
+
+@pytest.mark.parametrize(("stop", "reason"), [
+    ({"target_displacement": "0.2 mm"}, "target displacement"), ({"events": 40}, "number of events"),
+    ({"stop_fraction": 0.97, "events": 4000}, "load fell below the fraction of its peak"),
+    ({"mechanism_ratio": 10, "events": 9000}, "mechanism"),
+])  # fmt: skip
+def test_stops_are_named(stop, reason) -> None:
+    assert run_deck(wall(**stop)).results["stop"] == reason
+
+
+def bad(path: str, value) -> dict:
+    data = wall()
+    place = data
+    *way, last = path.split(".")
+    for part in way:
+        place = place[int(part)] if part.isdigit() else place[part]
+    place[last] = value
+    return data
+
+
+@pytest.mark.parametrize(("path", "value", "says"), [
+    ("structure.supports", [{"x": 0.0, "y": 0.0}], "is a mechanism: node"),
+    ("structure.material.fracture_energy", 0.004, "snaps back, the largest is"),
+    ("analysis.0.reference", [{"kind": "line", "x": [0.07, 0.08], "y": [0.01, 0.02], "px": 1.0}], "a mesh line is missing"),
+    ("structure.openings", [{"x": [-1, 4], "y": [-1, 4]}], "leaves|no elements|nothing"),
+    ("structure.ties", [{"edge": "bottom", "direction": "x"}], "is held and tied in x"),
+    ("analysis.0.reference", [{"kind": "point", "edge": "bottom", "fx": "1 kN"}], "acts on held nodes only"),
+    ("analysis.0.reference", [{"kind": "point", "edge": "top", "fx": 0.0}], "reference load is zero"),
+    ("structure.material.density", 0.0, "give the material a density"),
+])  # fmt: skip
+def test_refusals(path, value, says) -> None:
+    import re
+
+    result = run_deck(bad(path, value))
+    assert result.status == "refused", result
+    assert re.search(says, result.reason)
+
+
+@pytest.mark.parametrize(("path", "value", "says"), [
+    ("structure.size", "0.5 mm", "use larger elements"),
+    ("structure.regions", [{"x": [0, 1], "material": "steel"}], "unknown material 'steel'"),
+    ("structure.mesh", "random", 'expected "T3" or "T6"'),
+    ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "lies outside the panel"),
+    ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "needs a width and a height"),
+    ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
+    ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
+    ("analysis.0.reference", [], "at least 1 item"),
+    ("structure.material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
+    ("structure.supports", [{"fix": "x"}], "the place is missing"),
+    ("structure.supports", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
+    ("structure.supports", [{"x": [2, 1], "y": 0}], "the range runs backward"),
+])  # fmt: skip
+def test_deck_complaints(path, value, says) -> None:
+    with pytest.raises(DeckError) as error:
+        make_deck(bad(path, value))
+    assert says in str(error.value)
+
+
+def test_envelope_and_bilinear() -> None:
+    """A saw-toothed elastic-plastic curve with a snap-back: the envelope keeps its upper side."""
+    d = np.array([1.0, 1.7, 1.4, 2.9, 4.1])
+    p = np.array([10.0, 9.0, 11.0, 10.5, 7.7])
+    x, y = envelope(d, p)
+    assert y.max() == 11.0
+    assert np.interp(1.4, x, y) == pytest.approx(11.0)
+    assert np.interp(0.5, x, y) == pytest.approx(5.0, rel=0.02)
+    idea = bilinear(np.array([0.0, 1.3, 5.2]), np.array([0.0, 13.0, 13.0]))
+    assert idea.stiffness == pytest.approx(10.0)
+    assert idea.yield_load == pytest.approx(13.0)
+    assert idea.ductility == pytest.approx(4.0)
+
+
+def test_monitor_and_behaviour_defaults() -> None:
+    assert Behaviour().floor == 1e-6
+    assert Stop().fraction < 0
+    assert Monitor.of(3, 1).share[0] == 1.0
+    assert issubclass(Refused, Exception)
