@@ -17,6 +17,7 @@ from extrados.results.model import Array, Result, TableData
 
 MOST_POINTS = 2_000_000
 MOST_SPECTRA = 1000  # of a set: what percentiles are taken over
+MOST_IMPULSES = 60  # of a set: whose primary impulse is fitted
 SHOWN = 4  # motions of a set that are stored and drawn
 PERCENTILES = (16, 50, 84)
 
@@ -187,11 +188,12 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
                 periods = _periods(options, step)
             if k < MOST_SPECTRA:
                 psa.append(core.response_spectra(a, step, periods, [damping], threads=context.threads).psa[0])
-                found = primary_impulses(step * np.arange(len(a)), a, 1, None, options.max_period)
-                impulses.append((abs(found[0].amplitude) / GRAVITY, found[0].period) if found else (np.nan, np.nan))
                 if not suite:
                     frequency, amplitude = fourier_spectrum(a, step)
                     squares = amplitude**2 if squares is None else squares + amplitude**2
+            if k < MOST_IMPULSES:
+                found = primary_impulses(step * np.arange(len(a)), a, 1, None, options.max_period)
+                impulses.append((abs(found[0].amplitude) / GRAVITY, found[0].period) if found else (np.nan, np.nan))
             if k < SHOWN:
                 shown.append((motion.name, a, step))
             warnings += motion.notes[:1] if len(warnings) < 10 else []
