@@ -11,7 +11,8 @@ import time
 import numba
 import numpy as np
 from scipy.integrate import solve_ivp
-from tests.bench.rocking_peers import GRAVITY, reference, rk4_many
+from tests.bench.rocking_peers import GRAVITY, rk4_many
+from tests.verification.rocking_oracle import reference
 
 from extrados.analyses.block_model import BlockModel
 from extrados.core import rocking
