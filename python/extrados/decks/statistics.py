@@ -20,6 +20,7 @@ class Fragility(Analysis):
     kind: Literal["fragility"]
     structures: ClassVar = ROCKING
     needs_motion: ClassVar = True
+    starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole suite", ge=1, le=10_000_000)
     seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
     durations: list[Time] | None = key(
