@@ -187,6 +187,28 @@ def test_rocking_spectrum_of_one_block_is_its_response() -> None:
     assert one.outcome == "recovery" and found == pytest.approx(one.peak_ratio, rel=1e-9)
 
 
+def test_rocking_spectrum_of_arches() -> None:
+    """The arch of the deck itself is one point of its own spectrum."""
+    from extrados.analyses.rocking_model import rocking_model
+
+    arch = {
+        "kind": "arch",
+        "radius": 1.0,
+        "thickness": 0.15,
+        "embrace": 157.5,
+        "voussoirs": 21,
+        "restitution": "energy-safe",
+    }
+    motion = {"kind": "step-pulse", "amplitude": "0.6 g", "duration": 0.1}
+    context = Context(make_deck({"structure": arch, "motion": motion, "analysis": {"kind": "rocking"}}))
+    period = 2.0 * np.pi * rocking_model(context).time_unit
+    single = run_analyses(context)[0].results
+    found = run({"kind": "rocking-spectrum", "periods": [period, 2.0 * period]}, arch, motion)
+    assert found.results["size_m"] == pytest.approx([1.0, 4.0])
+    assert single["outcome"] == "recovery"
+    assert found.arrays["peak_ratio"].data[0, 0] == pytest.approx(single["peak_rotation_ratio"], rel=1e-6)
+
+
 def test_harmonic_map() -> None:
     result = run({"kind": "harmonic-map", "frequencies": [1.0, 3.0], "amplitudes": 12, "cycles": 10}, motion=None)
     outcome = result.arrays["outcome"].data
