@@ -61,7 +61,9 @@ CASES = {
 }
 
 
-def ours(case: Case, end: float, stiffness: float, beta: float, fraction: float, threads: int = 1) -> tuple[float, dem.Run]:
+def ours(
+    case: Case, end: float, stiffness: float, beta: float, fraction: float, threads: int = 1
+) -> tuple[float, dem.Run]:
     """Wall time of the motion alone (settling is timed by a run of one step and taken off), and the run."""
     bodies = case.bodies(stiffness, beta)
     times = np.linspace(0.0, end, 401)
@@ -125,7 +127,11 @@ def one(name: str, case: Case) -> None:
             return error(axis, moved, reference, case.window)
 
     def told(answer: dem_peers.Answer) -> str:
-        return f"{wrong(answer.time, answer.moved):.1e}" if answer.time[-1] > 0.99 * case.window else "- (too slow to run that far)"
+        return (
+            f"{wrong(answer.time, answer.moved):.1e}"
+            if answer.time[-1] > 0.99 * case.window
+            else "- (too slow to run that far)"
+        )
 
     mine = wrong(run.time, displacement(run, case.follow))
     print(f"{name}: {n} blocks")
@@ -139,13 +145,17 @@ def one(name: str, case: Case) -> None:
             length, dt = (0.3, dt) if dt == 1e-3 else (0.02, dt)
         peer = dem_peers.mujoco(case.bodies(1e11, 1e-3), case.ground, length, dt, case.follow)
         rate = peer.time[-1] / peer.seconds
-        print(f"  MuJoCo    step {dt:.0e} s    {rate:9.2f} x real time  error {told(peer)}  extrados {ahead / rate:.1f} x as fast")
+        print(
+            f"  MuJoCo    step {dt:.0e} s    {rate:9.2f} x real time  error {told(peer)}  extrados {ahead / rate:.1f} x as fast"
+        )
     slow = _lmgc90(name, case.slow, 1e-3)
     if slow is None:
         print("  LMGC90    did not run")
         return
     rate = slow.time[-1] / slow.seconds
-    print(f"  LMGC90    step 1e-03 s    {rate:9.3f} x real time  error {told(slow)}  extrados {ahead / rate:.0f} x as fast")
+    print(
+        f"  LMGC90    step 1e-03 s    {rate:9.3f} x real time  error {told(slow)}  extrados {ahead / rate:.0f} x as fast"
+    )
 
 
 def sizes() -> None:

@@ -35,7 +35,9 @@ class Fragility(Analysis):
     uncertain: dict[str, float] = key(
         {}, "coefficients of variation of width, height, thickness, restitution, ..., sampled by a Sobol sequence"
     )
-    initial_rotation_ratio: float | None = key(None, "rotation at the start over the critical one; default that of the structure")
+    initial_rotation_ratio: float | None = key(
+        None, "rotation at the start over the critical one; default that of the structure"
+    )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "draws for the band of the fitted curve", ge=0, le=100_000)
     bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
@@ -60,7 +62,9 @@ class Fragility(Analysis):
             if name not in known:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(known)}")
             if not 0.0 < value <= 0.5:
-                raise ValueError(f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5")
+                raise ValueError(
+                    f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5"
+                )
         return self
 
 
@@ -69,7 +73,9 @@ class Resonance(Analysis):
 
     kind: Literal["resonance"]
     structures: ClassVar = ROCKING
-    cap: Acceleration | None = key(None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5")
+    cap: Acceleration | None = key(
+        None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5"
+    )
     initial_rotation_ratio: float = key(0.1, "rotation at the start over the critical one", gt=0, lt=1)
     half_cycles: int = key(40, "at most so many", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
@@ -93,7 +99,7 @@ class RockingSpectrum(Analysis):
         if not all(0.0 < a < 45.0 for a in self.slenderness):
             raise ValueError("slenderness is alpha in degrees, expected above 0 and below 45")
         if not isinstance(self.restitution, str) and not 0.0 <= self.restitution <= 1.0:
-            raise ValueError(f"restitution is {self.restitution:g}, expected 0 to 1 or \"housner\"")
+            raise ValueError(f'restitution is {self.restitution:g}, expected 0 to 1 or "housner"')
         return self
 
 
@@ -102,7 +108,9 @@ class HarmonicMap(Analysis):
 
     kind: Literal["harmonic-map"]
     structures: ClassVar = ROCKING
-    frequencies: list[Frequency] | None = key(None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000)
+    frequencies: list[Frequency] | None = key(
+        None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000
+    )
     max_amplitude: Acceleration | None = key(None, "default 6 times uplift", gt=0)
     amplitudes: int = key(48, "number of amplitudes", ge=2, le=1000)
     cycles: int = key(30, "cycles of the motion", ge=2, le=1000, source="Spanos and Koh 1984")

@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.limit.equilibrium import spanning_tree
 from extrados.limit.loads import Loads, tilt_loads
-from extrados.limit.solver import BOUND, NoAnswer, NoEquilibrium, Programme, Solution
+from extrados.limit.solver import BOUND, Immovable, NoAnswer, NoEquilibrium, Programme, Solution
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
 from extrados.structures.assembly import Assembly
@@ -150,7 +150,7 @@ class LimitAnalysis:
         """
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
         if abs(solution.value) > 0.99 * BOUND:
-            raise NoEquilibrium("no such load brings it down: the joints hold it from all sides")
+            raise Immovable("no such load brings it down: the joints hold it from all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
         if isinstance(self.system, Reduced):
             twist, defect = self.system.velocities(motion)
