@@ -37,7 +37,7 @@ def primary_impulses(
     """
     step = float(time[1] - time[0])
     low = max(min_period or 4.0 * step, 4.0 * step)
-    high = min(max_period, 0.98 * (time[-1] - time[0]))
+    high = min(max_period, float(time[-1] - time[0]))
     total = float(acceleration @ acceleration)
     if high <= low or total <= 0.0:
         return []
@@ -83,7 +83,7 @@ def _best_on_grid(rest: np.ndarray, free: np.ndarray, step: float, periods: np.n
         lengths, squares, waves = _waves(some, step, size) if size <= _CACHED else _waves.__wrapped__(some, step, size)
         products = np.fft.irfft(spectrum * waves, size)
         for period, length, square, product in zip(some, lengths, squares, products, strict=True):
-            if length >= n:
+            if length > n:
                 continue
             gain = product[: n - length + 1] ** 2 / square
             gain[blocked[length : length + len(gain)] > blocked[: len(gain)]] = 0.0
@@ -103,7 +103,7 @@ def _waves(periods: tuple[float, ...], step: float, size: int) -> tuple[list[int
     lengths, squares, transforms = [], [], np.empty((len(periods), size // 2 + 1), dtype=complex)
     for k, period in enumerate(periods):
         length = int(period / step) + 1
-        wave = np.sin(2.0 * np.pi * np.arange(min(length, size)) * step / period)
+        wave = np.sin(2.0 * np.pi * np.arange(length) * step / period)
         lengths.append(length)
         squares.append(float(wave @ wave))
         transforms[k] = np.conj(np.fft.rfft(wave, size))
@@ -130,7 +130,7 @@ def _polish(
 
     def loss(x: np.ndarray) -> float:
         p, s = x
-        if not low <= p <= high or s < 0.0 or s + p > (len(rest) - 1) * step:
+        if not low <= p <= high or s < 0.0 or s + p > (len(rest) - 1 + 1e-9) * step:
             return 0.0
         gain, _, inside = _gain(rest, step, p, s)
         return 0.0 if not free[inside].all() else -gain
