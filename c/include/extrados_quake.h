@@ -4,6 +4,14 @@
 
 #include "extrados.h"
 
+/* The same source for wide and narrow registers, chosen when the program loads. No fused multiply-add is allowed
+ * anywhere (-ffp-contract=off), so both give the same bits. */
+#if defined(__x86_64__) && defined(__GLIBC__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define EXTRADOS_ANY_WIDTH __attribute__((target_clones("avx2", "default")))
+#else
+#define EXTRADOS_ANY_WIDTH
+#endif
+
 enum extrados_envelope_kind {
   EXTRADOS_envelope_arctangent = 1,
   EXTRADOS_envelope_trapezoid = 2,
@@ -37,5 +45,11 @@ EXTRADOS_API int extrados_line_motion(int64_t seed, int64_t index, int lines, co
  * The inverse takes them back to `length` values. Neither is scaled, the inverse divides by `length`. */
 EXTRADOS_API int extrados_fourier(int points, const double *series, int length, double *re, double *im);
 EXTRADOS_API int extrados_fourier_inverse(int length, const double *re, const double *im, double *series);
+
+/* oscillator.c: coefficients[10][EXTRADOS_LANES] of the exact step, state[2][...], most[3][...]; see
+ * motion_oscillator in fortran/motion. */
+#define EXTRADOS_LANES 8
+EXTRADOS_API void extrados_oscillator_lanes(int points, const double *motion, int parts, const double *coefficients,
+                                            double *state, double *most);
 
 #endif

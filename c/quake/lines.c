@@ -109,6 +109,7 @@ int extrados_line_table(int lines, const double *line, int points, double step, 
 }
 
 /* Motion `index` of the set `seed`. The order of the sum is fixed: same bits in any batch and on any thread. */
+EXTRADOS_ANY_WIDTH
 int extrados_line_motion(int64_t seed, int64_t index, int lines, const double *amplitude, int points,
                          const double *table, double *restrict motion) {
   double phase[2];

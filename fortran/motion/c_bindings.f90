@@ -5,7 +5,7 @@ module motion_c_bindings
    private
    public :: extrados_motion_phases, extrados_envelope, extrados_line_spectrum, extrados_line_widths
    public :: extrados_line_amplitudes, extrados_line_table, extrados_line_motion
-   public :: extrados_fourier, extrados_fourier_inverse
+   public :: extrados_fourier, extrados_fourier_inverse, extrados_oscillator_lanes
 
    interface
       function extrados_motion_phases(seed, index, count, phase) bind(c) result(status)
@@ -95,6 +95,14 @@ module motion_c_bindings
          real(c_double), intent(out) :: series(*)
          integer(c_int) :: status
       end function extrados_fourier_inverse
+
+      subroutine extrados_oscillator_lanes(points, motion, parts, coefficients, state, most) bind(c)
+         import :: c_int, c_double
+         implicit none (type, external)
+         integer(c_int), value, intent(in) :: points, parts
+         real(c_double), intent(in) :: motion(*), coefficients(*)
+         real(c_double), intent(inout) :: state(*), most(*)
+      end subroutine extrados_oscillator_lanes
    end interface
 
 end module motion_c_bindings

@@ -8,12 +8,15 @@ module motion_oscillator
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp, pi
    use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_out_of_memory
+   use motion_c_bindings, only : extrados_oscillator_lanes
    implicit none
    private
    public :: response_spectra, oscillator_history, substeps
 
-   !> Oscillators advanced side by side
+   !> Oscillators advanced side by side, as in c/quake/oscillator.c
    integer, parameter :: lanes = 8
+   !> Steps of a block between looks at the cancel flag
+   integer, parameter :: chunk = 500000
    !> Shortest period is step * most_substeps / points_per_cycle
    integer, parameter :: most_substeps = 4096
    !> Nodes and weights of eight-point Gauss quadrature on (0, 1)
@@ -154,55 +157,31 @@ contains
       real(wp), intent(in), contiguous :: damping(:)
       real(wp), intent(inout), contiguous :: peak(:, :, :) !! (3, periods, dampings)
       integer(c_int), intent(out) :: status
-      real(wp), dimension(lanes) :: uu, uv, u0, u1, vu, vv, v0, v1, u, v, stiff, viscous, most_u, most_v, most_a
-      real(wp) :: p0, p1, rise, new, h, w
-      integer :: i, j, l, jp, jd, tail
+      real(wp) :: coefficient(lanes, 10)                   !! in the order of c/quake/oscillator.c
+      real(wp) :: state(lanes, 2)                          !! u [m], u' [m/s]
+      real(wp) :: most(lanes, 3)                           !! |u|, |u'|, |u'' + a|
+      real(wp) :: h, w, new
+      integer :: i, j, l, jp, jd, points, tail
       type(transition) :: t
 
       h = step / real(parts, wp)
-      u = 0.0_wp
-      v = 0.0_wp
-      most_u = 0.0_wp
-      most_v = 0.0_wp
-      most_a = 0.0_wp
+      state = 0.0_wp
+      most = 0.0_wp
       do l = 1, lanes
          jp = mod(max(member(l), 1) - 1, size(period)) + 1
          jd = (max(member(l), 1) - 1) / size(period) + 1
          t = make_transition(period(jp), damping(jd), h)
-         uu(l) = t%uu
-         uv(l) = t%uv
-         u0(l) = t%u0
-         u1(l) = t%u1
-         vu(l) = t%vu
-         vv(l) = t%vv
-         v0(l) = t%v0
-         v1(l) = t%v1
          w = 2.0_wp * pi / period(jp)
-         stiff(l) = w**2
-         viscous(l) = 2.0_wp * damping(jd) * w
+         coefficient(l, :) = [t%uu, t%uv, t%u0, t%u1, t%vu, t%vv, t%v0, t%v1, w**2, 2.0_wp * damping(jd) * w]
       end do
       status = status_ok
-      do i = 1, size(a) - 1
-         if (mod(i, 4096) == 0) then
-            if (cancel_requested()) then
-               status = status_cancelled
-               return
-            end if
+      do i = 1, size(a) - 1, chunk / parts + 1
+         if (cancel_requested()) then
+            status = status_cancelled
+            return
          end if
-         rise = (a(i + 1) - a(i)) / real(parts, wp)
-         do j = 1, parts
-            p0 = a(i) + real(j - 1, wp) * rise
-            p1 = a(i) + real(j, wp) * rise
-            !$omp simd private(new)
-            do l = 1, lanes
-               new = (uu(l) * u(l) + uv(l) * v(l)) + (u0(l) * p0 + u1(l) * p1)
-               v(l) = (vu(l) * u(l) + vv(l) * v(l)) + (v0(l) * p0 + v1(l) * p1)
-               u(l) = new
-               most_u(l) = max(most_u(l), abs(u(l)))
-               most_v(l) = max(most_v(l), abs(v(l)))
-               most_a(l) = max(most_a(l), abs(stiff(l) * u(l) + viscous(l) * v(l)))
-            end do
-         end do
+         points = min(chunk / parts + 2, size(a) - i + 1)
+         call extrados_oscillator_lanes(int(points, c_int), a(i:), int(parts, c_int), coefficient, state, most)
       end do
       ! Half a cycle of free vibration holds the greatest values that can still come
       do l = 1, lanes
@@ -210,15 +189,15 @@ contains
          jp = mod(member(l) - 1, size(period)) + 1
          jd = (member(l) - 1) / size(period) + 1
          tail = ceiling(0.5_wp * period(jp) / (h * sqrt(1.0_wp - damping(jd)**2)))
-         do j = 1, tail
-            new = uu(l) * u(l) + uv(l) * v(l)
-            v(l) = vu(l) * u(l) + vv(l) * v(l)
-            u(l) = new
-            most_u(l) = max(most_u(l), abs(u(l)))
-            most_v(l) = max(most_v(l), abs(v(l)))
-            most_a(l) = max(most_a(l), abs(stiff(l) * u(l) + viscous(l) * v(l)))
-         end do
-         peak(:, jp, jd) = [most_u(l), most_v(l), most_a(l)]
+         associate (u => state(l, 1), v => state(l, 2), c => coefficient(l, :))
+            do j = 1, tail
+               new = c(1) * u + c(2) * v
+               v = c(5) * u + c(6) * v
+               u = new
+               most(l, :) = max(most(l, :), [abs(u), abs(v), abs(c(9) * u + c(10) * v)])
+            end do
+         end associate
+         peak(:, jp, jd) = most(l, :)
       end do
    end subroutine advance
 

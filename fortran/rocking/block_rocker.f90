@@ -115,7 +115,7 @@ contains
       real(wp), intent(in) :: tolerance(3)
       type(dense_step), intent(inout) :: step
       real(wp) :: s(0:order - 1), c(0:order - 1), u(0:order), x(0:order + 1)
-      real(wp) :: pull, push, pull_slope, push_slope, factor, rise, fall, q_end, u_end, tolerance_q, tolerance_u
+      real(wp) :: pull, push, pull_slope, push_slope, factor, rise, fall, q_end, u_end, tolerance_q, tolerance_u, per_h
       integer :: i, j, k, last
 
       i = side_index(side)
@@ -147,6 +147,7 @@ contains
          else
             rise = 0.0_wp
             fall = 0.0_wp
+            !GCC$ novector
             do j = 0, k - 1
                rise = rise + s(j) * u(k - 1 - j)
                fall = fall + c(j) * u(k - 1 - j)
@@ -170,14 +171,15 @@ contains
          q_end = q_end + x(k)
          u_end = u_end + u(k)
       end do
+      per_h = 1.0_wp / h
       step%h = h
       step%q = q_end
-      step%v = u_end / h
+      step%v = u_end * per_h
       step%a = 0.0_wp
       step%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
       step%degree = last + 1
       step%cq(0:last + 1) = x(0:last + 1)
-      step%cv(0:last) = u(0:last) / h
+      step%cv(0:last) = u(0:last) * per_h
       step%cv(last + 1) = 0.0_wp
    end subroutine series_step
 

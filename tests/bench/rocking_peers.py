@@ -69,7 +69,7 @@ def reference(p, alpha, c_v, samples, step, start, end_time, rtol=1e-10, atol=1e
     return peak / alpha, int(moved)
 
 
-@numba.njit(cache=True)
+@numba.njit
 def rk4(p, alpha, c_v, samples, step, start, end_time, parts):
     """The same with `parts` classical Runge-Kutta steps a sample; impacts at the straight line between two steps."""
     s = 1.0 if start >= 0.0 else -1.0
@@ -124,7 +124,7 @@ def rk4(p, alpha, c_v, samples, step, start, end_time, parts):
     return peak / alpha, moved
 
 
-@numba.njit(parallel=True, cache=True)
+@numba.njit(parallel=True)
 def rk4_many(p, alpha, c_v, motions, step, start, end_time, parts):
     """`rk4` for many motions on numba's threads: peak ratios and outcomes."""
     n = len(motions)

@@ -51,6 +51,7 @@ class _Batches:
         self.context, self.count, self.text = context, count, text
         self.parts: dict[int, dict[str, np.ndarray]] = {}
         self.name = ""
+        self.again = "; --resume goes on from here" if context.checkpoint is not None else ""
         if context.checkpoint is not None:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
             for first, arrays in context.checkpoint.load(self.name):
@@ -123,8 +124,7 @@ def sweep(context: Context, name: str, job: Job, count: int, text: str) -> Swept
 
 
 def _interrupted(batches: _Batches) -> Swept:
-    again = "; --resume goes on from here" if batches.name else ""
-    return batches.swept(f"interrupted after {batches.done} of {batches.count}{again}", True)
+    return batches.swept(f"interrupted after {batches.done} of {batches.count}{batches.again}", True)
 
 
 def _run_on_worker(job: Job, first: int, count: int) -> tuple[dict[str, np.ndarray], float]:
@@ -146,16 +146,18 @@ def _on_cluster(context: Context, batches: _Batches, job: Job) -> Swept:
         raise Refused(f"no dask scheduler answers at {address}: {error}") from None
     try:
         return _collect(context, batches, job, client, address)
+    except OSError:  # what distributed raises where the connection breaks within a call
+        return _lost(batches, address)
     finally:
         client.close(timeout=1.0)
 
 
 def _collect(context: Context, batches: _Batches, job: Job, client: Any, address: str) -> Swept:
+    """Two batches for each worker are out at any time; finished ones are kept as they come."""
     pace = _Pace()
     pending: dict[Any, int] = {}
     todo = _pieces(batches.missing(), lambda: pace.size)
     upcoming = next(todo, None)
-    again = "; --resume goes on from here" if batches.name else ""
     while upcoming is not None or pending:
         if cancel_requested():
             return _interrupted(batches)
@@ -172,18 +174,18 @@ def _collect(context: Context, batches: _Batches, job: Job, client: Any, address
         for future in ready:
             first = pending.pop(future)
             if future.status == "error":
-                return batches.swept(f"a batch failed on the cluster: {future.exception()!r}{again}")
+                return batches.swept(f"a batch failed on the cluster: {future.exception()!r}{batches.again}")
             if future.status != "finished":
-                return _lost(batches, address, again)
+                return _lost(batches, address)
             rows, seconds = future.result()
             pace.learn(_rows(rows), seconds)
             batches.add(first, rows)
-    return batches.swept() if batches.done == batches.count else _lost(batches, address, again)
+    return batches.swept() if batches.done == batches.count else _lost(batches, address)
 
 
-def _lost(batches: _Batches, address: str, again: str) -> Swept:
+def _lost(batches: _Batches, address: str) -> Swept:
     return batches.swept(
-        f"the scheduler at {address} is gone; {batches.done} of {batches.count} members are finished and kept{again}"
+        f"the scheduler at {address} is gone; {batches.done} of {batches.count} members are finished and kept{batches.again}"
     )
 
 

@@ -3,7 +3,13 @@
 import numpy as np
 
 from extrados.analyses.limit_common import (
-    answer_of, fracture_of, geometry_arrays, graphic_arrays, hinge_rows, reaction_rows, state_arrays,
+    answer_of,
+    fracture_of,
+    geometry_arrays,
+    graphic_arrays,
+    hinge_rows,
+    reaction_rows,
+    state_arrays,
 )  # fmt: skip
 from extrados.analyses.run import Context
 from extrados.decks.limit import Tilt
@@ -34,6 +40,7 @@ def run(context: Context, options: Tilt) -> Result:
         "collapse_acceleration_opposite_g": -answer.back_state.gamma,
         "tilt_angle_deg": degrees(state.gamma),
         "tilt_angle_opposite_deg": degrees(-answer.back_state.gamma),
+        "admissible_interval_g": [answer.back_state.gamma, state.gamma],
         "load_direction": "+x",
         "hinges": hinges,
         "sliding_joints": mechanism.sliding,
@@ -139,7 +146,10 @@ def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Resul
     what = {"arch": "arch", "vault": "vault on its buttresses", "nave": "church section"}.get(
         next(iter(assembly.chains), ""), "structure"
     )
-    where = ", ".join(f"{h['side']} of {h['name']}" for h in hinges)
+    if assembly.chains:
+        where = ", ".join(f"{h['side']} of {h['name']}" for h in hinges)
+    else:
+        where = ", ".join(f"joint {h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges)
     slides = ", ".join(assembly.joint_names[j] for j in answer.mechanism.sliding)
     text = (
         f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
@@ -148,9 +158,8 @@ def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Resul
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
         text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
-    text += (
-        f"Friction of {result.results['required_friction']:.2f} is needed; upright the geometric safety factor is "
-        f"{answer.safety:.2f}."
+    text += f"Friction of {result.results['required_friction']:.2f} is needed" + (
+        f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."
     )
     fracture = result.results.get("fracture", {})
     if fracture.get("cracks"):

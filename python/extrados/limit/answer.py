@@ -1,5 +1,6 @@
 """The whole answer of limit analysis about an assembly from one call."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from extrados.limit.graphic import force_polygon, funicular, pier_line
 from extrados.limit.loads import Loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.limit.systems import Sparse
 from extrados.structures.assembly import GROUND, Assembly
 
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
@@ -22,7 +24,8 @@ class Answer:
 
     collapse_state is the state at collapse with the free part of the line at its most central; least and
     most are the states of least and greatest thrust of each chain; central the most central upright line,
-    held by `part` of the joints' length. touching: joints whose end the line touches without a hinge.
+    held by `part` of the joints' length (None and NaN for a wall of many loops, where this takes many large
+    programmes). touching: joints whose end the line touches without a hinge.
     """
 
     assembly: Assembly
@@ -33,7 +36,7 @@ class Answer:
     back_mechanism: Mechanism
     least: dict[str, State]
     most: dict[str, State]
-    central: State
+    central: State | None
     part: float
 
     @property
@@ -50,8 +53,11 @@ class Answer:
 
     @property
     def safety(self) -> float:
-        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line."""
-        return 1.0 / self.part
+        """Geometric safety factor upright: one over the least part of the joints that holds a thrust line.
+
+        Infinite where the line can run through the middles of all joints.
+        """
+        return np.inf if self.part < 1e-9 else 1.0 / self.part
 
     @property
     def touching(self) -> list[int]:
@@ -71,9 +77,7 @@ class Answer:
         """Thrust lines (k, 2) [m]: along each chain, and down each block that stands on the ground."""
         points = state.points(self.assembly)
         lines = {name: points[joints] for name, joints in self.assembly.chains.items()}
-        standing = {
-            int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)
-        }
+        standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
         for block in sorted(standing - {b for j in self.assembly.chains.values() for b in self._inner(j)}):
             line = pier_line(self.assembly, self.loads, state, block)
             if len(line):
@@ -83,7 +87,7 @@ class Answer:
     def _inner(self, joints: list[int]) -> set[int]:
         """Voussoirs of a chain: blocks between two of its joints."""
         ends = [{int(self.assembly.a[j]), int(self.assembly.b[j])} for j in joints]
-        return {b for one, two in zip(ends[:-1], ends[1:], strict=True) for b in one & two}
+        return {b for one, two in itertools.pairwise(ends) for b in one & two}
 
     def reactions(self, state: State) -> dict[int, np.ndarray]:
         """Force (2) [N] of the ground on the block of each joint on the ground."""
@@ -113,6 +117,11 @@ def assess(
     state, mechanism = limit.collapse(1)
     back, back_mechanism = limit.collapse(-1)
     moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
+    if isinstance(limit.system, Sparse):
+        return Answer(
+            assembly, limit.loads, state, mechanism, back, back_mechanism,
+            {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()}, None, np.nan,
+        )  # fmt: skip
     drawn = limit.recentred(state, moving)
     central, part = limit.central(start=[state for pair in ends.values() for state in pair])
     return Answer(
@@ -140,7 +149,9 @@ def why_not(limit: LimitAnalysis) -> str:
             return _slides(limit)
         return "some block hangs: its joint would have to pull"
     if part < 1.0 and limit.strength is not None:
-        return f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
+        return (
+            f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
+        )
     if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
         return _slides(limit)
     off = 2.0 * np.abs(state.position - 0.5)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from extrados.limit.graphic import section_force
+from extrados.limit.graphic import section_forces
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.structures.assembly import GROUND, Assembly
@@ -68,7 +68,7 @@ def section_distance(
     assembly: Assembly, block: int, level: float, direction: int, state: State, loads: Loads, sway: float = 1.0
 ) -> tuple[float, float]:
     """Distance of the resultant at a horizontal section from the outer face [m], and the width there [m]."""
-    _, at = section_force(assembly, block, level, state, loads, sway)
+    at = float(section_forces(assembly, block, np.array([level]), state, loads, sway)[1][0])
     faces = crossings(assembly.outlines[block], level)
     outer, inner = (faces[-1], faces[0]) if direction > 0 else (faces[0], faces[-1])
     return direction * (outer - at), direction * (outer - inner)

@@ -5,7 +5,7 @@ import numpy as np
 from extrados.limit.loads import GRAVITY, Loads
 from extrados.limit.states import State
 from extrados.structures.assembly import GROUND, Assembly
-from extrados.structures.polygons import crossings, cut, properties
+from extrados.structures.polygons import below, signed_area
 
 
 def force_polygon(assembly: Assembly, state: State, joints: list[int]) -> np.ndarray:
@@ -24,7 +24,9 @@ def _leads_to(assembly: Assembly, joints: list[int], i: int) -> bool:
     """True where block a of the i-th joint of a chain is the next along it."""
     if i + 1 < len(joints):
         j = joints[i + 1]
-        return int(assembly.a[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.a[joints[i]] != GROUND
+        return (
+            int(assembly.a[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.a[joints[i]] != GROUND
+        )
     j = joints[i - 1]
     return int(assembly.b[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.b[joints[i]] != GROUND
 
@@ -60,47 +62,42 @@ def _meet(point: np.ndarray, ray: np.ndarray, load: np.ndarray, otherwise: np.nd
     return point + share * ray
 
 
-def section_force(
-    assembly: Assembly, block: int, level: float, state: State, loads: Loads, sway: float = 1.0
-) -> tuple[np.ndarray, float]:
-    """Force (2) [N] that crosses a horizontal section of a block downward, and the x where it does [m].
+def section_forces(
+    assembly: Assembly, block: int, levels: np.ndarray, state: State, loads: Loads, sway: float = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
+    """Forces (k, 2) [N] that cross horizontal sections of a block downward, and the x where they do (k) [m].
 
-    Sums the forces on the part above `level`: its joints there and its loads, less the weight below.
+    Sums the forces on the part above each level: its joints there and its loads, less the weight below.
     sway: the part of gamma that accelerates the weight.
     """
-    total = loads.dead[block] + state.gamma * loads.live[block]
-    force, points = state.force(assembly), state.points(assembly)
-    for j in assembly.joints_of(block):
-        if GROUND in (assembly.a[j], assembly.b[j]) or assembly.middle[j, 1] < level:
-            continue
-        f = force[j] if assembly.a[j] == block else -force[j]
-        total = total + np.array([f[0], f[1], points[j, 0] * f[1] - points[j, 1] * f[0]])
+    joints = assembly.joints_of(block)
+    joints = joints[(assembly.a[joints] != GROUND) & (assembly.b[joints] != GROUND)]
+    normal, tangent = assembly.normal[joints], assembly.tangent[joints]
+    force = state.normal[joints, None] * normal + state.shear[joints, None] * tangent
+    force = np.where((assembly.a[joints] == block)[:, None], force, -force)
+    x, y = (assembly.p[joints] + state.position[joints, None] * (assembly.q[joints] - assembly.p[joints])).T
+    wrench = np.column_stack([force, x * force[:, 1] - y * force[:, 0]])
+    above = (assembly.middle[joints, 1] >= levels[:, None]).astype(float)
+    total = loads.dead[block] + state.gamma * loads.live[block] + above @ wrench
     outline = assembly.outlines[block]
-    below = cut(outline, np.array([0.0, level]), np.array([0.0, -1.0]))
-    if len(below) >= 3:
-        area, (x, y), _ = properties(below)
-        weight = area / properties(outline)[0] * assembly.mass[block] * GRAVITY
-        side = sway * state.gamma * weight
-        total = total - np.array([side, -weight, -x * weight - y * side])
-    return total[:2], float((total[2] + level * total[0]) / total[1])
+    under = below(outline, levels) * (assembly.mass[block] * GRAVITY / abs(signed_area(outline)))
+    side = sway * state.gamma
+    total = total - np.column_stack([side * under[:, 0], -under[:, 0], -under[:, 1] - side * under[:, 2]])
+    return total[:, :2], (total[:, 2] + levels * total[:, 0]) / total[:, 1]
 
 
 def pier_line(assembly: Assembly, loads: Loads, state: State, block: int, sections: int = 24) -> np.ndarray:
     """Thrust line (k, 2) [m] down a block that stands on the ground, on horizontal sections above its base."""
-    base = [j for j in assembly.joints_of(block) if GROUND in (assembly.a[j], assembly.b[j])]
-    if len(base) != 1 or abs(float(np.diff([assembly.p[base[0], 1], assembly.q[base[0], 1]])[0])) > 1e-9:
-        return np.empty((0, 2))
-    joints = [j for j in assembly.joints_of(block) if j != base[0]]
-    if not joints:
+    joints = assembly.joints_of(block)
+    on_ground = (assembly.a[joints] == GROUND) | (assembly.b[joints] == GROUND)
+    base, joints = joints[on_ground], joints[~on_ground]
+    if len(base) != 1 or not len(joints) or abs(assembly.p[base[0], 1] - assembly.q[base[0], 1]) > 1e-9:
         return np.empty((0, 2))
     foot = float(assembly.middle[base[0], 1])
-    top = max(float(max(assembly.p[j, 1], assembly.q[j, 1])) for j in joints)
-    start = max(joints, key=lambda j: assembly.middle[j, 1])
-    line = [state.points(assembly)[start]]
-    for level in np.linspace(top, foot, sections + 1)[1:-1]:
-        if level >= line[0][1] or len(crossings(assembly.outlines[block], level)) != 2:
-            continue
-        force, x = section_force(assembly, block, float(level), state, loads)
-        if force[1] < 0.0:
-            line.append(np.array([x, level]))
-    return np.array([*line, state.points(assembly)[base[0]]])
+    points = state.points(assembly)
+    start = points[joints[assembly.middle[joints, 1].argmax()]]
+    top = float(np.maximum(assembly.p[joints, 1], assembly.q[joints, 1]).max())
+    levels = np.linspace(top, foot, sections + 1)[1:-1]
+    force, x = section_forces(assembly, block, levels, state, loads)
+    shown = (levels < start[1]) & (force[:, 1] < 0.0)
+    return np.concatenate([[start], np.column_stack([x, levels])[shown], points[base]])

@@ -1,6 +1,7 @@
 """Loads on the blocks of an assembly: weight, fill and point loads at rest, and what the multiplier gamma scales."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -16,7 +17,7 @@ class Loads:
     dead: np.ndarray
     live: np.ndarray
 
-    @property
+    @cached_property
     def scale(self) -> float:
         """The force by which the programmes are scaled [N]."""
         return float(np.abs(self.dead[:, :2]).sum())

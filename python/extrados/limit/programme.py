@@ -51,7 +51,9 @@ class LimitAnalysis:
         if friction is not None:
             self._mu = np.broadcast_to(np.asarray(friction, dtype=float), m)
             self._cone = self._sliding(self._mu, np.zeros(m))
-        self._crush = None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
+        self._crush = (
+            None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
+        )
         self._cuts: Constraints | None = None
         self._programme: Programme | None = None
 
@@ -191,26 +193,31 @@ class LimitAnalysis:
         m = len(self.assembly.a)
         cost = np.zeros(self.system.unknowns + 1)
         cost[-1] = -1.0
-        fixed = self._rows(self._joints, (1.0, 1.0, 0.0))
+        # Wide of the joints a line could pull; inside them the rows below keep it pressing.
+        fixed = None if start else self._rows(self._joints, (1.0, 1.0, 0.0))
         if self._cone is not None:
-            fixed = fixed + self._cone
+            fixed = self._cone if fixed is None else fixed + self._cone
         part, share = 1.0, np.ones(m)
         if start:
             share = np.maximum(sum(s.normal for s in start) / len(start) / self.loads.scale, 1e-12)
             lean = sum(s.normal * (2.0 * s.position - 1.0) for s in start) / len(start) / self.loads.scale
             part = float((np.abs(lean) / share).max())
+        programme = None
         for _ in range(50):
-            rows = (
-                self._rows(self._joints, (part + 1.0, part - 1.0, 0.0))
-                + self._rows(self._joints, (part - 1.0, part + 1.0, 0.0))
-                + fixed
+            rows = self._rows(self._joints, (part + 1.0, part - 1.0, 0.0)) + self._rows(
+                self._joints, (part - 1.0, part + 1.0, 0.0)
             )
-            slack = np.concatenate([share, share, np.zeros(len(fixed.lower))])
-            solution = Programme(self.system, rows, slack).minimise(cost, (gamma, gamma))
+            rows = rows if fixed is None else rows + fixed
+            slack = np.concatenate([share, share, np.zeros(len(rows.lower) - 2 * m)])
+            if programme is None:
+                programme = Programme(self.system, rows, slack)
+            else:
+                programme.pass_rows(rows, slack)
+            solution = programme.minimise(cost, (gamma, gamma))
             corners = self.system.corners(solution.x[:-1])
             normal = np.maximum(corners[:, 0] + corners[:, 1], 1e-12)
             new = float((np.abs(corners[:, 1] - corners[:, 0]) / normal).max())
-            if abs(part - new) < 1e-10:
+            if abs(part - new) < 1e-9:
                 return self._unclipped(solution, corners), new
             part, share = new, normal
         raise NoAnswer("the most central thrust line did not settle")

@@ -1,6 +1,7 @@
 """HiGHS behind one small class; its options and tolerances are set here only."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import highspy
 import numpy as np
@@ -38,47 +39,48 @@ class Programme:
     """
 
     def __init__(self, system: Reduced | Sparse, constraints: Constraints, slack: np.ndarray | None = None):
-        self.system, self.constraints = system, constraints
+        self.system = system
+        self.columns = system.unknowns + (slack is not None)
+        self._gamma = system.unknowns - 1
+        self._index = np.arange(self.columns, dtype=np.int32)
+        self._solver = highspy.Highs()
+        self._solver.passOptions(_options(system.equations > 0, len(constraints.lower) > 2 * len(system.assembly.a)))
+        self.pass_rows(constraints, slack)
+
+    def pass_rows(self, constraints: Constraints, slack: np.ndarray | None = None) -> None:
+        """Put the constraints in the place of as many earlier ones; the next solve starts from the last basis."""
+        system, n = self.system, self.columns
+        self.constraints = constraints
         matrix, constant = system.express(constraints)
         lower = constraints.lower - constant
-        n = system.unknowns
         k, e = len(lower), system.equations
         if isinstance(system, Reduced):
             if slack is not None:
-                matrix = np.column_stack([matrix, -slack])
-                n += 1
+                matrix = np.concatenate([matrix, -slack[:, None]], axis=1)
             start = np.arange(0, k * n + 1, n, dtype=np.int32)
-            index = np.tile(np.arange(n, dtype=np.int32), k)
+            index = np.broadcast_to(self._index, (k, n)).ravel()
             value = matrix.ravel()
             row_lower, row_upper = lower, np.full(k, INFINITY)
         else:
-            if slack is not None:
-                matrix = sparse.hstack([matrix, sparse.csr_array(-slack[:, None])], format="csr")
-                n += 1
             equations = system.matrix
             if slack is not None:
-                equations = sparse.csr_array(
-                    (equations.data, equations.indices, equations.indptr), shape=(e, n)
-                )
+                matrix = sparse.hstack([matrix, sparse.csr_array(-slack[:, None])], format="csr")
+                equations = sparse.csr_array((equations.data, equations.indices, equations.indptr), shape=(e, n))
             whole = sparse.vstack([equations, matrix], format="csr")
             start, index, value = whole.indptr.astype(np.int32), whole.indices.astype(np.int32), whole.data
             row_lower = np.concatenate([system.right, lower])
             row_upper = np.concatenate([system.right, np.full(k, INFINITY)])
-        self._free = np.full(n, BOUND if e == 0 else INFINITY)
-        solver = highspy.Highs()
-        for option, setting in _OPTIONS:
-            solver.setOptionValue(option, setting)
-        if e:
-            solver.setOptionValue("presolve", "on")
-        self.columns = n
-        self._gamma = system.unknowns - 1
-        solver.passModel(
+        free = np.full(n, BOUND if e == 0 else INFINITY)
+        basis = self._solver.getBasis()
+        passed = self._solver.passModel(
             n, e + k, len(value), int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
-            np.zeros(n), -self._free, self._free, row_lower, row_upper, start, index, value,
+            np.zeros(n), -free, free, row_lower, row_upper, start, index, value,
             np.zeros(n, dtype=np.int32),
         )  # fmt: skip
-        self._solver = solver
-        self._index = np.arange(n, dtype=np.int32)
+        if passed == highspy.HighsStatus.kError:
+            raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
+        if basis.valid:
+            self._solver.setBasis(basis)
 
     def minimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> Solution:
         """Minimise cost @ x with gamma in the given range."""
@@ -97,8 +99,18 @@ class Programme:
 
 
 _INFEASIBLE = (highspy.HighsModelStatus.kInfeasible, highspy.HighsModelStatus.kUnboundedOrInfeasible)
-_OPTIONS = (
-    ("output_flag", False), ("threads", 1), ("presolve", "off"), ("solver", "simplex"),
-    ("primal_feasibility_tolerance", FEASIBILITY), ("dual_feasibility_tolerance", FEASIBILITY),
-    ("small_matrix_value", 1e-12),
-)  # fmt: skip
+
+
+@lru_cache(maxsize=4)
+def _options(sparse_form: bool, more_than_pressing: bool) -> highspy.HighsOptions:
+    """Small programmes: the bare simplex method from the last basis. Large ones: presolve, no scaling of what is
+    scaled already; with friction the interior-point method and crossover, ten times faster on a wall of 1000 stones."""
+    options = highspy.HighsOptions()
+    options.output_flag, options.threads = False, 1
+    options.solver = "ipm" if sparse_form and more_than_pressing else "simplex"
+    options.presolve = "on" if sparse_form else "off"
+    if sparse_form:
+        options.simplex_scale_strategy = 0
+    options.primal_feasibility_tolerance = options.dual_feasibility_tolerance = FEASIBILITY
+    options.small_matrix_value = 1e-12
+    return options

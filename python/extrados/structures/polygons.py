@@ -50,6 +50,26 @@ def crossings(outline: np.ndarray, y: float) -> np.ndarray:
     return np.sort(x0[met] + (y - y0[met]) / (y1[met] - y0[met]) * (x1[met] - x0[met]))
 
 
+def below(outline: np.ndarray, levels: np.ndarray) -> np.ndarray:
+    """Area and its first moments, integrals of x and of y (k, 3), of what lies below each level.
+
+    Green's theorem: integrals of x, x^2 / 2 and x y over dy along the counter-clockwise edges, each up to
+    the level; Simpson's rule is exact for them.
+    """
+    x0, y0 = outline.T
+    x1, y1 = following(x0), following(y0)
+    rise = np.where(y1 == y0, 1.0, y1 - y0)
+    start, end = np.minimum(y0, levels[:, None]), np.minimum(y1, levels[:, None])
+    found = np.zeros((len(levels), 3))
+    for y, weight in ((start, 1.0), (0.5 * (start + end), 4.0), (end, 1.0)):
+        x = x0 + (y - y0) / rise * (x1 - x0)
+        share = weight / 6.0 * (end - start)
+        found += np.stack(
+            [(x * share).sum(axis=1), (0.5 * x * x * share).sum(axis=1), (x * y * share).sum(axis=1)], axis=1
+        )
+    return found
+
+
 def inside(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Whether each of the points (k, 2) lies in the outline, by counting crossings to its right."""
     x, y = points[:, 0, None], points[:, 1, None]

@@ -1,5 +1,6 @@
 """miniSEED and SAC through obspy, an extra: pip install 'extrados[seismo]'."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -28,9 +29,14 @@ def read(path: Path) -> list[Record]:
     if path.is_file() and path.stat().st_size > LARGEST:
         raise RecordError(f"{path}: is larger than {LARGEST / 1e6:.0f} MB")
     try:
-        stream = obspy.read(str(path))
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            stream = obspy.read(str(path))
     except Exception as error:  # obspy raises many kinds on broken files
         raise RecordError(f"{path}: obspy cannot read it: {type(error).__name__}: {str(error)[:200]}") from None
+    damage = [str(w.message) for w in said if issubclass(w.category, UserWarning)]
+    if damage:
+        raise RecordError(f"{path}: is damaged, obspy says: {damage[0][:200]}")
     records = []
     for trace in stream:
         values = np.ma.filled(np.ma.asarray(trace.data, dtype=float), np.nan)

@@ -1,0 +1,130 @@
+"""Limit analysis: whole answers, long arches, walls, surveys, against SciPy's full programme in the same run."""
+
+import itertools
+
+import numpy as np
+from scipy import sparse
+from scipy.optimize import linprog
+from tests.bench.timing import seconds
+
+from extrados.analyses.run import Context, run_analyses
+from extrados.decks.reader import make_deck
+from extrados.limit.answer import assess
+from extrados.limit.loads import tilt_loads
+from extrados.limit.programme import LimitAnalysis
+from extrados.structures.arch import make_arch
+from extrados.structures.assembly import GROUND, Assembly
+from extrados.structures.blocks import Polygon, make_blocks
+from extrados.structures.vault import Aisle, make_church
+
+
+def church() -> Assembly:
+    aisle = Aisle(4.3, 0.45, 150.0, 14, 6.0, 1.8, 8.5)
+    return make_church(4.8, 0.6, 150.0, 20, 12.5, 1.9, aisle, aisle)
+
+
+def wall(rows: int, columns: int) -> Assembly:
+    """Running bond."""
+    blocks = []
+    for r in range(rows):
+        edges = [0.5 * c for c in range(columns + 1)]
+        if r % 2:
+            edges = [0.0, *(0.25 + 0.5 * c for c in range(columns)), 0.5 * columns]
+        y = 0.25 * r
+        blocks += [
+            Polygon(f"{r}/{c}", np.array([[a, y], [b, y], [b, y + 0.25], [a, y + 0.25]]))
+            for c, (a, b) in enumerate(itertools.pairwise(edges))
+        ]
+    return make_blocks(blocks, None)
+
+
+def whole_answer(assembly: Assembly):
+    """Everything a drawing needs: states, mechanism, thrust lines, force polygons."""
+    answer = assess(assembly)
+    answer.lines(answer.collapse_state)
+    answer.polygons(answer.collapse_state)
+    return answer
+
+
+def scipy_full(a: Assembly, friction: float | None = None) -> float:
+    """Three equations per block, sparse, assembled here."""
+    loads, m = tilt_loads(a), len(a.a)
+    unit = loads.scale * np.array([1.0, 1.0, a.size])
+    row, column, value = [], [], []
+    directions = np.stack([a.normal, a.normal, a.tangent], axis=1)
+    points = np.stack([a.p, a.q, a.middle], axis=1) / a.size
+    moment = points[..., 0] * directions[..., 1] - points[..., 1] * directions[..., 0]
+    wrench = np.concatenate([directions, moment[..., None]], axis=2)  # joint, corner, equation
+    for ends, sign in ((a.a, 1.0), (a.b, -1.0)):
+        held = np.flatnonzero(ends != GROUND)
+        row.append((3 * ends[held][:, None, None] + np.arange(3)).repeat(3, axis=1).ravel())
+        column.append((3 * held[:, None, None] + np.arange(3)[:, None]).repeat(3, axis=2).ravel())
+        value.append(sign * wrench[held].ravel())
+    live = (loads.live / unit).ravel()
+    entries = (np.concatenate([*value, live]), (np.concatenate([*row, np.arange(len(live))]),
+               np.concatenate([*column, np.full(len(live), 3 * m)])))  # fmt: skip
+    matrix = sparse.csr_array(entries, shape=(3 * len(a.mass), 3 * m + 1))
+    cost = np.zeros(3 * m + 1)
+    cost[-1] = -1.0
+    cone = None
+    if friction is not None:
+        j = np.arange(m)
+        one = np.ones(m)
+        cone = sparse.vstack([
+            sparse.csr_array(
+                (np.concatenate([-friction * one, -friction * one, s * one]), (np.tile(j, 3), np.concatenate([3 * j, 3 * j + 1, 3 * j + 2]))),
+                shape=(m, 3 * m + 1),
+            )
+            for s in (1.0, -1.0)
+        ])  # fmt: skip
+    bounds = [(0, None), (0, None), (None, None)] * m + [(None, None)]
+    found = linprog(cost, A_ub=cone, b_ub=None if cone is None else np.zeros(2 * m), A_eq=matrix,
+                    b_eq=-(loads.dead / unit).ravel(), bounds=bounds, method="highs")  # fmt: skip
+    return -found.fun
+
+
+def main() -> None:
+    print("limit analysis (whole answer: capacity both ways, mechanism, thrust range, most central line, polygons)")
+    for name, make, goal in (
+        ("arch of 36 voussoirs", lambda: make_arch(10.0, 1.5, 157.5, 36), 5.0),
+        ("three-aisle section", church, 15.0),
+    ):
+        answer = whole_answer(make())
+        mine = seconds(lambda make=make: whole_answer(make()))
+        peer = seconds(lambda make=make: scipy_full(make()))
+        print(
+            f"  {name}: {1e3 * mine:.2f} ms for all of it with geometry (goal {goal:g} ms); SciPy's full programme for the "
+            f"capacity alone {1e3 * peer:.2f} ms; gap {answer.gap:.1e}, difference {abs(answer.gamma - scipy_full(make())):.1e}"
+        )
+    cases = [
+        ("arch of 1000 voussoirs", make_arch(10.0, 1.5, 157.5, 1000), None),
+        ("wall of 1020 stones, no sliding", wall(40, 25), None),
+        ("wall of 1020 stones, friction 0.6", wall(40, 25), 0.6),
+    ]
+    for name, assembly, friction in cases:
+        limit = LimitAnalysis(assembly, friction)
+        state, mechanism = limit.collapse()
+        mine = seconds(lambda a=assembly, f=friction: LimitAnalysis(a, f).collapse(), 1)
+        peer_value = scipy_full(assembly, friction)
+        peer = seconds(lambda a=assembly, f=friction: scipy_full(a, f), 1)
+        print(
+            f"  {name} ({type(limit.system).__name__.lower()}): {1e3 * mine:.1f} ms (goal 500 ms), SciPy {1e3 * peer:.1f} ms, "
+            f"ratio {peer / mine:.1f}; gap {abs(state.gamma - mechanism.upper_bound):.1e}, difference {abs(state.gamma - peer_value):.1e}"
+        )
+    rates = {}
+    for name, structure, key in (
+        ("vaults", {"kind": "vault", "preset": "dejong-a"}, "buttress_width"),
+        ("three-aisle sections", {"kind": "aisled-vault", "preset": "vezelay-like"}, "buttress_width"),
+    ):
+        analysis = {"kind": "sweep", "vary": key, "start": 1.2, "stop": 3.0, "count": 200, "locate": False}
+        if name == "vaults":
+            analysis |= {"start": 4.0, "stop": 8.0}
+        deck = make_deck({"structure": structure, "analysis": analysis})
+        result = run_analyses(Context(deck, threads=1))[0]
+        rates[name] = (200.0 / result.seconds, result["duality_gap"])
+    for name, (rate, gap) in rates.items():
+        print(f"  {name} varied: {rate:.0f} sections a second (goal 200), largest gap {gap:.1e}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,216 @@
+"""Sweeps, surveys, thrust, supports, moving loads and tilt as a user runs them."""
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from extrados.analyses.run import Context, run_analyses
+from extrados.decks.reader import DeckError, make_deck
+from extrados.results.model import Result
+
+ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
+VAULT = {"kind": "vault", "preset": "dejong-a"}
+CHURCH = {"kind": "aisled-vault", "preset": "vezelay-like"}
+
+
+def run(structure: dict[str, Any], folder: Path | None = None, **analysis: Any) -> Result:
+    deck = make_deck({"structure": structure, "analysis": analysis}, folder)
+    return run_analyses(Context(deck, threads=1))[0]
+
+
+def test_preset_may_be_overruled() -> None:
+    plain = run(VAULT, kind="tilt")
+    wider = run({**VAULT, "buttress_width": 8.0}, kind="tilt")
+    assert plain.status == wider.status == "ok"
+    assert wider["base_width_m"] == 8.0 and wider["collapse_acceleration_g"] > plain["collapse_acceleration_g"]
+    assert "inferred" in plain.warnings[0]
+
+
+def test_tilt_arrays_are_whole() -> None:
+    result = run(CHURCH, kind="tilt")
+    for name in ("collapse", "least", "most"):
+        for what in ("line", "funicular", "polygon"):
+            start = result[f"{name}_{what}_start"]
+            assert start[-1] == len(result[f"{name}_{what}"]) and len(start) == len(result[f"{name}_{what}_of"]) + 1
+    assert result["mechanism_pose"].shape == (len(result["centroid"]), 3)
+    assert set(result["thrusts"]) == {"nave", "left aisle", "right aisle"}
+    up = sum(r["vertical_N"] for r in result["reactions"])
+    side = sum(r["horizontal_N"] for r in result["reactions"])
+    assert up == pytest.approx(result["weight_N"], rel=1e-9)
+    assert side == pytest.approx(-result["collapse_acceleration_g"] * result["weight_N"], rel=1e-7)
+
+
+def test_fracture_beside_monolithic() -> None:
+    result = run(VAULT, kind="tilt", fracture=True)
+    assert result["fracture"]["ratio"] == pytest.approx(0.554, abs=1e-3)
+    assert result["crack"][1] == pytest.approx([14.1667, -20.125], abs=1e-3)  # outer toe
+    assert run(ARCH, kind="tilt", fracture=True).status == "refused"
+    assert "crushing" in run(VAULT, kind="tilt", fracture=True, strength=1e7).reason
+
+
+def test_thrust_at_an_acceleration() -> None:
+    result = run(ARCH, kind="thrust", gamma=0.2)
+    low, high = result["admissible_interval_g"]
+    assert low == pytest.approx(-high) and 0.2 < high
+    assert result["least"]["horizontal_N"] < result["central"]["horizontal_N"] < result["most"]["horizontal_N"]
+    beyond = run(ARCH, kind="thrust", gamma=0.6)
+    assert beyond.status == "refused" and "-0.4333 to 0.4333 g" in beyond.reason
+    table = result.tables["thrust_central"]
+    assert len(table.columns["joint"]) == 21 and table.units["normal"] == "kN/m"
+    assert "there is no 'porch'" in run(ARCH, kind="thrust", chain="porch").reason
+
+
+def test_sweep_finds_changes_and_optimum() -> None:
+    coarse = run(CHURCH, kind="sweep", vary="buttress_width", start=0.7, stop=3.0, count=11)
+    fine = run(CHURCH, kind="sweep", vary="buttress_width", start=0.7, stop=3.0, count=60)
+    for key in ("optimum_value", "optimum_collapse_acceleration_g"):
+        assert coarse[key] == pytest.approx(fine[key], abs=1e-5)
+    places = [[c["value"] for c in r["changes"]] for r in (coarse, fine)]
+    assert places[0] == pytest.approx(places[1], abs=1e-5) and len(places[0]) == 3
+    assert [m["number"] for m in fine["mechanisms"]] == [1, 2, 3]
+    # On either side of a change the capacities agree: it is one curve.
+    for change in fine["changes"][1:]:
+        both = [
+            run({**CHURCH, "buttress_width": change["value"] + d}, kind="tilt")["collapse_acceleration_g"]
+            for d in (-1e-5, 1e-5)
+        ]
+        assert both[0] == pytest.approx(both[1], abs=1e-5)
+    assert all("cannot stand" in gap["reason"] for gap in fine["gaps"]) and len(fine["gaps"]) > 2
+
+
+def test_sweep_through_impossible_geometry() -> None:
+    result = run(CHURCH, kind="sweep", vary="buttress_width", values=[1.5, 5.0, 6.0, 7.0])
+    reasons = {g["value"]: g["reason"] for g in result["gaps"]}
+    assert "no room is left for its span" in reasons[7.0]
+    assert result["collapse_accelerations_g"][0] > 0.06
+    thick = run(ARCH, kind="sweep", vary="thickness", values=[0.5, 1.5, 11.0, -1.0])
+    reasons = {g["value"]: g["reason"] for g in thick["gaps"]}
+    assert (
+        "greater than 0" in reasons[-1.0] and "not below the radius" in reasons[11.0] and "cannot stand" in reasons[0.5]
+    )
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [("girth", "no key 'girth'"), ("kind", "holds no number"), ("right.girth", "no key 'right.girth'")],
+)
+def test_sweep_of_a_wrong_key(vary: str, words: str) -> None:
+    result = run(CHURCH, kind="sweep", vary=vary, start=0.0, stop=1.0)
+    assert result.status == "refused" and words in result.reason
+
+
+def test_sweep_of_whole_numbers_and_nested_keys() -> None:
+    result = run(ARCH, kind="sweep", vary="voussoirs", start=4, stop=12, count=30)
+    assert result["values"] == [float(n) for n in range(4, 13)]
+    nested = run(
+        {**CHURCH, "right": {"buttress_width": 1.8}}, kind="sweep", vary="right.buttress_width", values=[1.4, 1.8]
+    )
+    assert nested["collapse_accelerations_g"][1] == pytest.approx(0.0681, abs=1e-4)
+
+
+def test_sweep_of_friction() -> None:
+    """Oppenheim's arch: below .495 the leeward springing slides."""
+    arch = {**ARCH, "embrace": 157.5, "voussoirs": 7}
+    result = run(arch, kind="sweep", vary="analysis.friction", start=0.3, stop=0.6, count=13)
+    assert result["changes"][-1]["value"] == pytest.approx(0.495, abs=1e-3)
+    assert result["optimum_collapse_acceleration_g"] == pytest.approx(0.37000974, abs=1e-8)
+    assert "slide" in result["mechanisms"][0]["hinges"]
+    assert "cannot vary" in run(arch, kind="sweep", vary="analysis.load", start=0.3, stop=0.6).reason
+    assert "above 0" in run(arch, kind="sweep", vary="analysis.strength", start=0.0, stop=1e6).reason
+
+
+def test_survey(tmp_path: Path) -> None:
+    (tmp_path / "s.csv").write_text(
+        "name,thickness,embrace\nfirst,1.5,157.5\nthin,0.2,180\nsilly,twelve,150\nunit,150 cm,157.5\n,,\nempty,,157.5\n"
+    )
+    result = run({**ARCH, "voussoirs": 7}, tmp_path, kind="survey", file="s.csv")
+    gamma = result["gamma"]
+    assert gamma[0] == gamma[3] == gamma[4] == pytest.approx(0.37000974, abs=1e-8)
+    assert np.isnan(gamma[1:3]).all() and result["standing"] == 3
+    reasons = {r["row"]: r["reason"] for r in result["without_answer"]}
+    assert "cannot stand" in reasons[3] and "thickness" in reasons[4]
+    for text, words in (
+        ("name,girth\na,1\n", "no key 'girth'"),
+        ("name,thickness\na\n", "s.csv:2"),
+        ("", "expected a header"),
+        ("name,name\na,b\n", "stands twice"),
+    ):
+        (tmp_path / "s.csv").write_text(text)
+        assert words in run(ARCH, tmp_path, kind="survey", file="s.csv").reason
+    assert "none.csv" in run(ARCH, tmp_path, kind="survey", file="none.csv").reason
+
+
+def test_survey_file_of_the_case() -> None:
+    folder = Path(__file__).parents[2] / "cases" / "limit"
+    with (folder / "survey.csv").open() as file:
+        assert len(list(csv.DictReader(file))) == 12
+
+
+def test_supports() -> None:
+    result = run(ARCH, kind="supports")
+    assert result.status == "ok" and len(result["hinges_at_fall"]) == 3 and result["joints_touched_at_fall"]
+    assert result["thrust_at_fall_N"] > result["thrust_at_rest_N"]
+    closing = run(ARCH, kind="supports", spread=-1.0)
+    assert closing["thrust_at_rest_N"] > 1.5 * result["thrust_at_rest_N"]
+    assert "nothing moves" in run(ARCH, kind="supports", spread=0.0).reason
+    assert "cannot follow" in run({**ARCH, "thickness": 0.4, "embrace": 180.0}, kind="supports").reason
+
+
+def test_moving_load() -> None:
+    one = run(ARCH, kind="moving-load", count=41)
+    assert one["capacity"][5] == pytest.approx(one["capacity"][-6], rel=1e-6)  # a symmetric arch
+    two = run(ARCH, kind="moving-load", axles=[0.0, 2.0], force=5e4, count=41)
+    assert two["collapse_load_N"] > one["collapse_load_N"]  # spread loads hurt less
+    assert two["safety_factor"] == pytest.approx(two["collapse_load_N"] / 5e4)
+    with pytest.raises(DeckError, match="shares"):
+        run(ARCH, kind="moving-load", axles=[0.0, 1.0], shares=[1.0])
+
+
+def test_load_at_rest() -> None:
+    plain = run(ARCH, kind="tilt")["collapse_acceleration_g"]
+    loaded = run(ARCH, kind="tilt", load=[{"x": 0.0, "force": 2e5}])
+    assert loaded["weight_N"] == pytest.approx(run(ARCH, kind="tilt")["weight_N"] + 2e5)
+    assert loaded["collapse_acceleration_g"] != pytest.approx(plain, abs=1e-3)
+    assert "stands beside the structure" in run(ARCH, kind="tilt", load=[{"x": 50.0, "force": 1.0}]).reason
+
+
+def test_refusals_say_why() -> None:
+    assert "least for 180 deg" in run({**ARCH, "thickness": 0.9, "embrace": 180.0}, kind="tilt").reason
+    assert (
+        "at least 0.3" in run(ARCH, kind="tilt", friction=0.15).reason
+        or "friction of at least" in run(ARCH, kind="tilt", friction=0.15).reason
+    )
+    assert "strength" in run(ARCH, kind="tilt", strength=2e5).reason
+    blocks = {
+        "kind": "blocks",
+        "block": [{"name": "up", "points": [[0, 1], [1, 1], [1, 2], [0, 2]]}],
+        "ground": [[0, 0, 1, 0]],
+    }
+    assert "no block touches the ground" in run(blocks, kind="tilt").reason
+    leaning = {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]}
+    assert "only when pushed sideways" in run(leaning, kind="tilt").reason
+
+
+@pytest.mark.parametrize(
+    ("structure", "words"),
+    [
+        ({"kind": "blocks"}, "either a file or"),
+        ({"kind": "vault", "radius": 5.0}, "thickness is missing"),
+        ({"kind": "aisled-vault", "preset": "vezelay-like", "aisle_span": 3.0}, "either aisle_span or half_width"),
+        ({"kind": "vault", "preset": "dejong-c"}, "dejong-a"),
+        ({"kind": "blocks", "block": [{"points": [[0, 0], [1, 0]]}]}, "at least 3"),
+        ({"kind": "pointed-arch", "span": 5.0, "radius": 5.0, "thickness": 0.5, "voussoirs": "many"}, "voussoirs"),
+    ],
+)
+def test_wrong_decks(structure: dict, words: str) -> None:
+    with pytest.raises(DeckError, match=words):
+        run(structure, kind="tilt")
+
+
+def test_same_run_same_bits() -> None:
+    one, two = (run(CHURCH, kind="tilt", friction=0.6) for _ in range(2))
+    assert one.results == two.results
+    assert all(np.array_equal(a.data, two.arrays[n].data) for n, a in one.arrays.items())
