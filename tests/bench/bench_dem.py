@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from tests.bench import dem_peers
 
 from extrados.core import dem
 from extrados.core.ground import Ground
@@ -22,10 +23,9 @@ from extrados.structures.arch import make_arch
 from extrados.structures.assembly import Assembly
 from extrados.structures.masonry import make_column, make_wall
 from extrados.structures.rigid import rigid_bodies
-from tests.bench import dem_peers
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit"))
-from dem_models import G, cosine, housner, pieces  # noqa: E402
+from dem_models import G, cosine, housner, pieces
 
 
 @dataclass(frozen=True)

@@ -11,12 +11,13 @@ import time
 import numba
 import numpy as np
 from scipy.integrate import solve_ivp
+from tests.bench.rocking_peers import GRAVITY, rk4_many
+from tests.verification.rocking_oracle import reference
 
 from extrados.analyses.block_model import BlockModel
 from extrados.core import rocking
 from extrados.core.rocking import Ground
 from extrados.structures.block import make_block
-from tests.bench.rocking_peers import GRAVITY, reference, rk4_many
 
 STEP, END, THREADS = 0.005, 10.0, 2
 

@@ -237,3 +237,26 @@ def test_bad_blocks(change: dict, said: str) -> None:
 def test_stocky_block_lands_flat() -> None:
     m = BlockModel(make_block(3.0, 1.0))
     assert m.restitution[0] == 0.0 and "lands flat" in m.warnings[0]
+
+
+def test_column_is_taken_as_one_body() -> None:
+    """Drums of one width are the block of the same size; a tapered column keeps its mass, centre and base."""
+    import extrados
+
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
+    one = extrados.run(
+        {"structure": {"kind": "block", "width": 0.5, "height": 2.0}, "motion": motion, "analysis": {"kind": "rocking"}}
+    )
+    two = extrados.run(
+        {
+            "structure": {"kind": "column", "width": 0.5, "height": 2.0, "drums": 5},
+            "motion": motion,
+            "analysis": {"kind": "rocking"},
+        }
+    )
+    assert two["rocking"]["impact_times_s"] == pytest.approx(one["rocking"]["impact_times_s"], abs=1e-9)
+    assert two["rocking"]["peak_rotation_rad"] == pytest.approx(one["rocking"]["peak_rotation_rad"], rel=1e-9)
+    tapered = {"kind": "column", "width": 0.5, "top_width": 0.4, "height": 2.0, "drums": 4}
+    r = extrados.run({"structure": tapered, "motion": motion, "analysis": {"kind": "rocking"}})["rocking"]
+    centre = 2.0 / 3.0 * (0.5 + 2 * 0.4) / (0.5 + 0.4)  # of a trapezium
+    assert r["critical_rotation_rad"] == pytest.approx(np.arctan(0.25 / centre), rel=1e-9)

@@ -1,18 +1,13 @@
 """Blocks under 200 random motions against SciPy's DOP853 at rtol 1e-10, restarted at every sample."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from rocking_oracle import reference
 
 from extrados.analyses.block_model import BlockModel
 from extrados.core import rocking
 from extrados.core.rocking import Ground
 from extrados.structures.block import make_block
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
-pytest.importorskip("numba")
 
 STEP, POINTS = 0.02, 301
 
@@ -37,8 +32,6 @@ def compare(count: int, seed: int, width: float, height: float) -> tuple[np.ndar
 
     On the edge: the outcome, or the peak by more than 1e-3, changes when the motion is scaled by 1 +- 1e-6.
     """
-    from rocking_peers import reference
-
     m = BlockModel(make_block(width, height))
     alpha, p, c_v = float(m.alpha[0]), float(m.frequency[0]), float(m.restitution[0])
     samples, start, end = motions(count, seed), float(m.alpha[0]) / 32.0, STEP * (POINTS - 1) + 1.0

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.analyses.block_model import BlockModel, block_model
+from extrados.analyses.block_model import BlockModel, as_block, block_model, initial_ratio
 from extrados.analyses.run import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
@@ -170,8 +170,9 @@ def piers(
 
 def run(context: Context, options: CodeChecks) -> Result:
     """All rules that apply, with the computed rocking of the deck's motion beside them."""
-    block = context.structure
-    model = block_model(block, context.deck.structure)
+    structure = context.deck.structure
+    block = as_block(structure, context.structure)
+    model = block_model(block, structure)
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
     pga = options.peak_acceleration / GRAVITY if options.peak_acceleration else None
@@ -201,7 +202,7 @@ def run(context: Context, options: CodeChecks) -> Result:
         pulse = 2.0 * np.pi / found[0].period if found else None
         dynamic = core_rocking.history(
             model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
-            start_rotation=abs(context.deck.structure.initial_rotation_ratio) * float(model.alpha[0]),
+            start_rotation=abs(initial_ratio(structure)) * float(model.alpha[0]),
         )  # fmt: skip
     alpha = float(model.alpha.min())
     lines = [

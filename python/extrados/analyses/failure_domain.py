@@ -235,7 +235,7 @@ def run(context: Context, options: FailureDomain) -> Result:
         **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
         "pocket_begins": curves.pocket / GRAVITY,
     }
-    if model.what == "block":
+    if model.what != "arch":
         # omega/p and a/(g tan alpha), the axes of overturning spectra
         ratio = 2.0 * np.pi / durations * model.time_unit
         columns |= {"frequency_ratio": ratio, **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()}}

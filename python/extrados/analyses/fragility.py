@@ -105,10 +105,10 @@ class EnsembleJob:
 def sampled_models(context: Context, options: Fragility, base: RockingModel, count: int) -> list[RockingModel]:
     """One model for each motion with lognormal factors of mean 1 on the uncertain keys, by a scrambled Sobol sequence."""
     structure = context.deck.structure
-    known = UNCERTAIN[base.what]
+    known = UNCERTAIN.get(base.what, ())
     for name in options.uncertain:
         if name not in known or (name != "restitution" and getattr(structure, name) is None):
-            raise Refused(f"uncertain.{name} does not belong to this {base.what}; it has {', '.join(known)}")
+            raise Refused(f"uncertain.{name} does not belong to this {base.what}; it has {', '.join(known) or 'none'}")
     names = sorted(options.uncertain)
     draws = qmc.Sobol(len(names), scramble=True, seed=options.seed or 0).random_base2(
         max(1, int(np.ceil(np.log2(count))))

@@ -12,7 +12,7 @@ from extrados.core.rocking import Ground
 from extrados.decks.statistics import Resonance
 from extrados.motions.motion import GRAVITY
 from extrados.results.model import Array, Result, TableData
-from extrados.structures.block import Block, make_block
+from extrados.structures.block import make_block
 
 #: Axes of Fig. 6-3
 ASPECTS = np.linspace(0.05, 0.6, 12)
@@ -165,14 +165,14 @@ def run(context: Context, options: Resonance) -> Result:
             else "."
         )
     )
-    if isinstance(context.structure, Block):
+    if context.deck.structure.kind == "block":
         _block_figures(context, options, model, result)
     return result
 
 
 def _default_cap(context: Context, options: Resonance, model: RockingModel) -> float:
     """A little above the least cap, so that the growth is seen; half of uplift where that is not known."""
-    if not isinstance(context.structure, Block):
+    if context.deck.structure.kind != "block":
         return 0.5 * model.uplift * GRAVITY
     return (
         1.1

@@ -14,7 +14,7 @@ class Rocking(Analysis):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]
-    structures: ClassVar = ("arch", "block")
+    structures: ClassVar = ("arch", "block", "column")
     needs_motion: ClassVar = True
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.005, "spacing of the history", gt=0)
@@ -28,7 +28,7 @@ class FailureDomain(Analysis):
     """Which pulses bring an arch or a block down: Mode I (after an impact) and Mode II (without impact)."""
 
     kind: Literal["failure-domain"]
-    structures: ClassVar = ("arch", "block")
+    structures: ClassVar = ("arch", "block", "column")
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
         "step", "step pulse of duration t_p, one sine of period T_p, or another shape of `pulse`", source="thesis 5.2.3"
     )

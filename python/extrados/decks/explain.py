@@ -135,9 +135,8 @@ def starter(kind: str) -> str:
         analysis = SECTIONS["analysis"][kind]
         structures = analysis.structures
         structure = None if structures == () else (structures[0] if structures else next(iter(SECTIONS["structure"])))
-        motion = "step-pulse" if analysis.needs_motion else None
     elif kind in SECTIONS["structure"]:
-        structure, motion = kind, None
+        structure = kind
         analysis = next(a for a in SECTIONS["analysis"].values() if a.structures is None or kind in a.structures)
     else:
         close = difflib.get_close_matches(kind, [*SECTIONS["analysis"], *SECTIONS["structure"]], n=1, cutoff=0.4)
@@ -145,8 +144,8 @@ def starter(kind: str) -> str:
     lines = [f'title = "A first {kind} deck"', ""]
     if structure:
         lines += _section("structure", SECTIONS["structure"][structure], "[structure]")
-    if motion:
-        lines += _section("motion", SECTIONS["motion"][motion], "[motion]")
+    if analysis.needs_motion:
+        lines += _section("motion", SECTIONS["motion"][analysis.starter_motion], "[motion]")
     lines += _section("analysis", analysis, "[[analysis]]")
     return "\n".join(lines)
 

@@ -1,6 +1,6 @@
 """Motion kinds: positive ground acceleration points to +x."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -140,6 +140,7 @@ class Generated(Motion):
     """Random earthquakes of an expected intensity: sine lines with random phases under an envelope."""
 
     kind: Literal["generated"]
+    starter: ClassVar = {"mmi": "7", "duration": "10.0"}
     mmi: float = key(about="modified Mercalli intensity", ge=1, le=12)
     duration: Time = key(about="t_d", gt=0, le=600, source="thesis Eq. 6.7")
     seed: int = key(1, "one seed gives one set; motion k of a set is always the same", ge=-(2**62), le=2**62)

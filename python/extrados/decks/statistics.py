@@ -7,7 +7,7 @@ from pydantic import model_validator
 from extrados.decks.quantities import Acceleration, Force, Frequency, Length, Stress, Time
 from extrados.decks.table import Analysis, key
 
-ROCKING = ("block", "arch")
+ROCKING = ("block", "column", "arch")
 UNCERTAIN = {
     "block": ("width", "height", "centre_height", "toe_right", "toe_left", "restitution"),
     "arch": ("radius", "thickness", "restitution"),
@@ -20,6 +20,7 @@ class Fragility(Analysis):
     kind: Literal["fragility"]
     structures: ClassVar = ROCKING
     needs_motion: ClassVar = True
+    starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole suite", ge=1, le=10_000_000)
     seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
     durations: list[Time] | None = key(
@@ -120,7 +121,7 @@ class CodeChecks(Analysis):
     """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
-    structures: ClassVar = ("block",)
+    structures: ClassVar = ("block", "column")
     peak_acceleration: Acceleration | None = key(None, "demand; default that of the motion", gt=0)
     peak_velocity: float | None = key(None, "demand [m/s]; default that of the motion", gt=0)
     behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")
