@@ -1,5 +1,7 @@
 """Limit analysis: whole answers, long arches, walls, surveys, against SciPy's full programme in the same run."""
 
+import itertools
+
 import numpy as np
 from scipy import sparse
 from scipy.optimize import linprog
@@ -31,7 +33,7 @@ def wall(rows: int, columns: int) -> Assembly:
         y = 0.25 * r
         blocks += [
             Polygon(f"{r}/{c}", np.array([[a, y], [b, y], [b, y + 0.25], [a, y + 0.25]]))
-            for c, (a, b) in enumerate(zip(edges[:-1], edges[1:], strict=True))
+            for c, (a, b) in enumerate(itertools.pairwise(edges))
         ]
     return make_blocks(blocks, None)
 
@@ -83,7 +85,10 @@ def scipy_full(a: Assembly, friction: float | None = None) -> float:
 
 def main() -> None:
     print("limit analysis (whole answer: capacity both ways, mechanism, thrust range, most central line, polygons)")
-    for name, make, goal in (("arch of 36 voussoirs", lambda: make_arch(10.0, 1.5, 157.5, 36), 5.0), ("three-aisle section", church, 15.0)):
+    for name, make, goal in (
+        ("arch of 36 voussoirs", lambda: make_arch(10.0, 1.5, 157.5, 36), 5.0),
+        ("three-aisle section", church, 15.0),
+    ):
         answer = whole_answer(make())
         mine = seconds(lambda make=make: whole_answer(make()))
         peer = seconds(lambda make=make: scipy_full(make()))

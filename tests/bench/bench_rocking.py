@@ -72,7 +72,7 @@ def best(call, runs: int = 5) -> float:
     return min(times)
 
 
-def case(width: float, height: float, peak: float, count: int = 2000, checked: int = 12) -> None:
+def case(width: float, height: float, peak: float, count: int = 2000, checked: int = 24) -> None:
     m = BlockModel(make_block(width, height))
     p, alpha, c_v = float(m.frequency[0]), float(m.alpha[0]), float(m.restitution[0])
     samples, start = motions(count, peak), alpha / 32.0
@@ -88,7 +88,8 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
     def error(peaks: np.ndarray) -> str:
         e = np.abs(np.minimum(peaks[:checked], 2.0) - truth[:, 0])
         agree = (peaks[:checked] >= 2.0) == (truth[:, 1] == 2)
-        return f"median {np.median(e[agree]):.0e}, greatest {e[agree].max():.0e}, {(~agree).sum()} of {checked} other outcome"
+        up = agree & (truth[:, 1] != 2)
+        return f"median {np.median(e[up]):.0e}, greatest {e[up].max():.0e} of {up.sum()} that stay up; {(~agree).sum()} of {checked} other outcome"
 
     print(f"block {width} x {height} m, {count} motions of {END:g} s, peak {peak:g} g, {THREADS} threads")
     rate = count / best(lambda: ours(1e-8))
@@ -124,6 +125,6 @@ def many() -> None:
 
 
 def main() -> None:
-    for width, height, peak in ((0.1, 0.4, 0.5), (1.0, 4.0, 0.7)):
+    for width, height, peak in ((0.1, 0.4, 0.35), (1.0, 4.0, 0.5)):
         case(width, height, peak)
     many()

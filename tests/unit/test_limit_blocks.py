@@ -1,5 +1,6 @@
 """Free polygons: contacts, complaints, JSON and DXF."""
 
+import itertools
 import json
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from extrados.structures.blocks import Polygon, make_blocks, read_json
 from extrados.structures.builder import BadGeometry
 from extrados.structures.contacts import Overlap, find_contacts
 from extrados.structures.drawing import read_dxf
-from extrados.structures.polygons import crossings, crosses_itself, cut, inside, properties, signed_area
+from extrados.structures.polygons import crosses_itself, crossings, cut, inside, properties, signed_area
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
@@ -37,8 +38,7 @@ def wall(rows: int, columns: int) -> list[Polygon]:
         if r % 2:
             edges = [0.0, *(0.25 + 0.5 * c for c in range(columns)), 0.5 * columns]
         blocks += [
-            square(f"{r}/{c}", x0, 0.25 * r, x1 - x0, 0.25)
-            for c, (x0, x1) in enumerate(zip(edges[:-1], edges[1:], strict=True))
+            square(f"{r}/{c}", x0, 0.25 * r, x1 - x0, 0.25) for c, (x0, x1) in enumerate(itertools.pairwise(edges))
         ]
     return blocks
 

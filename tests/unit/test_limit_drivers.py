@@ -88,11 +88,14 @@ def test_sweep_through_impossible_geometry() -> None:
     assert result["collapse_accelerations_g"][0] > 0.06
     thick = run(ARCH, kind="sweep", vary="thickness", values=[0.5, 1.5, 11.0, -1.0])
     reasons = {g["value"]: g["reason"] for g in thick["gaps"]}
-    assert "greater than 0" in reasons[-1.0] and "not below the radius" in reasons[11.0] and "cannot stand" in reasons[0.5]
+    assert (
+        "greater than 0" in reasons[-1.0] and "not below the radius" in reasons[11.0] and "cannot stand" in reasons[0.5]
+    )
 
 
 @pytest.mark.parametrize(
-    ("vary", "words"), [("girth", "no key 'girth'"), ("kind", "holds no number"), ("right.girth", "no key 'right.girth'")]
+    ("vary", "words"),
+    [("girth", "no key 'girth'"), ("kind", "holds no number"), ("right.girth", "no key 'right.girth'")],
 )
 def test_sweep_of_a_wrong_key(vary: str, words: str) -> None:
     result = run(CHURCH, kind="sweep", vary=vary, start=0.0, stop=1.0)
@@ -102,8 +105,21 @@ def test_sweep_of_a_wrong_key(vary: str, words: str) -> None:
 def test_sweep_of_whole_numbers_and_nested_keys() -> None:
     result = run(ARCH, kind="sweep", vary="voussoirs", start=4, stop=12, count=30)
     assert result["values"] == [float(n) for n in range(4, 13)]
-    nested = run({**CHURCH, "right": {"buttress_width": 1.8}}, kind="sweep", vary="right.buttress_width", values=[1.4, 1.8])
+    nested = run(
+        {**CHURCH, "right": {"buttress_width": 1.8}}, kind="sweep", vary="right.buttress_width", values=[1.4, 1.8]
+    )
     assert nested["collapse_accelerations_g"][1] == pytest.approx(0.0681, abs=1e-4)
+
+
+def test_sweep_of_friction() -> None:
+    """Oppenheim's arch: below .495 the leeward springing slides."""
+    arch = {**ARCH, "embrace": 157.5, "voussoirs": 7}
+    result = run(arch, kind="sweep", vary="analysis.friction", start=0.3, stop=0.6, count=13)
+    assert result["changes"][-1]["value"] == pytest.approx(0.495, abs=1e-3)
+    assert result["optimum_collapse_acceleration_g"] == pytest.approx(0.37000974, abs=1e-8)
+    assert "slide" in result["mechanisms"][0]["hinges"]
+    assert "cannot vary" in run(arch, kind="sweep", vary="analysis.load", start=0.3, stop=0.6).reason
+    assert "above 0" in run(arch, kind="sweep", vary="analysis.strength", start=0.0, stop=1e6).reason
 
 
 def test_survey(tmp_path: Path) -> None:
@@ -163,9 +179,16 @@ def test_load_at_rest() -> None:
 
 def test_refusals_say_why() -> None:
     assert "least for 180 deg" in run({**ARCH, "thickness": 0.9, "embrace": 180.0}, kind="tilt").reason
-    assert "at least 0.3" in run(ARCH, kind="tilt", friction=0.15).reason or "friction of at least" in run(ARCH, kind="tilt", friction=0.15).reason
+    assert (
+        "at least 0.3" in run(ARCH, kind="tilt", friction=0.15).reason
+        or "friction of at least" in run(ARCH, kind="tilt", friction=0.15).reason
+    )
     assert "strength" in run(ARCH, kind="tilt", strength=2e5).reason
-    blocks = {"kind": "blocks", "block": [{"name": "up", "points": [[0, 1], [1, 1], [1, 2], [0, 2]]}], "ground": [[0, 0, 1, 0]]}
+    blocks = {
+        "kind": "blocks",
+        "block": [{"name": "up", "points": [[0, 1], [1, 1], [1, 2], [0, 2]]}],
+        "ground": [[0, 0, 1, 0]],
+    }
     assert "no block touches the ground" in run(blocks, kind="tilt").reason
     leaning = {"kind": "blocks", "block": [{"points": [[0, 0], [1, 0], [4, 4], [3, 4]]}]}
     assert "only when pushed sideways" in run(leaning, kind="tilt").reason

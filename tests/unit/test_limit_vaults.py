@@ -1,5 +1,7 @@
 """Buttressed vaults, fracture, side aisles, flyers: values computed apart, closed forms and laws."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -40,7 +42,10 @@ def test_readings(make, width: float, degrees: float) -> None:
     assert abs(np.degrees(np.arctan(answer.gamma)) - 7.7) < 0.22  # thesis 3.4
     assert answer.gap < 1e-9
     assert [side for _, side in answer.mechanism.hinges] == ["intrados", "extrados", "intrados", "extrados"]
-    assert [j for j, _ in answer.mechanism.hinges] in ([0, 11, 22, 26], [0, 10, 22, 26])  # the last: toe of the leeward buttress
+    assert [j for j, _ in answer.mechanism.hinges] in (
+        [0, 11, 22, 26],
+        [0, 10, 22, 26],
+    )  # the last: toe of the leeward buttress
 
 
 @pytest.mark.parametrize(("make", "limit", "thesis"), [(reading_a, 7.58, None), (reading_b, 9.12, 9.2)])
@@ -234,7 +239,15 @@ def test_line_down_a_pier_ends_at_its_base() -> None:
     ],
 )
 def test_impossible_vaults_are_named(change: dict, words: str) -> None:
-    sizes = {"radius": 10.0, "thickness": 1.5, "embrace": 120.0, "voussoirs": 24, "face": 8.5, "buttress_width": 5.0, "height": 25.0}
+    sizes = {
+        "radius": 10.0,
+        "thickness": 1.5,
+        "embrace": 120.0,
+        "voussoirs": 24,
+        "face": 8.5,
+        "buttress_width": 5.0,
+        "height": 25.0,
+    }
     with pytest.raises(BadGeometry, match=words):
         make_vault(**{**sizes, **change})
 
@@ -249,7 +262,7 @@ def test_support_movement(embrace: float, direction: tuple) -> None:
     if direction[1] == 0.0:  # spreading calls up the least thrust, closing the greatest
         assert states[0].force[0] == pytest.approx(least if direction[0] > 0 else most, rel=1e-9)
     unit = np.array(direction) / np.hypot(*direction)
-    for one, two in zip(states[:-2], states[1:-1], strict=True):
+    for one, two in itertools.pairwise(states):
         if one.hinges == two.hinges:  # work of the support is what the arch loses in height
             work = 0.5 * (one.force + two.force) @ unit * (two.movement - one.movement)
             assert one.energy - two.energy == pytest.approx(work, rel=2e-3, abs=1e-6 * abs(work) + 1e-3)

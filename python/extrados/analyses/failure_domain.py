@@ -10,10 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.analyses.arch_model import ArchModel
+from extrados.analyses.batches import sweep
 from extrados.analyses.rocking_model import RockingModel, rocking_model
 from extrados.analyses.run import Context
 from extrados.analyses.runs import RunsJob, runs_job
-from extrados.analyses.batches import sweep
 from extrados.core.rocking import Body
 from extrados.decks.analyses import FailureDomain
 from extrados.motions import pulses

@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm, qmc
 
+from extrados.analyses.batches import Swept, sweep
 from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
 from extrados.analyses.rocking_model import RockingModel, make_model, rocking_model
 from extrados.analyses.run import Context, Refused
 from extrados.analyses.statistics import Lognormal, NoFit, bootstrap, fit_lognormal, wilson
-from extrados.analyses.batches import Swept, sweep
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import Body, Ground

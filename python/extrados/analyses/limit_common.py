@@ -33,7 +33,9 @@ def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
     if best < 0:
         low = min(float(o[:, 0].min()) for o in assembly.outlines)
         high = max(float(o[:, 0].max()) for o in assembly.outlines)
-        raise Refused(f"a load at x = {x:.4g} m stands beside the structure, which reaches from {low:.4g} to {high:.4g} m")
+        raise Refused(
+            f"a load at x = {x:.4g} m stands beside the structure, which reaches from {low:.4g} to {high:.4g} m"
+        )
     return best, height
 
 
@@ -126,7 +128,9 @@ def packed(name: str, paths: dict[str, np.ndarray], unit: str, about: str) -> di
     return {
         name: Array(points, (f"{name}_vertex", "axis"), unit, about),
         f"{name}_start": Array(start, (f"{name}_edge",), "", f"first vertex of each path of {name}, and the end"),
-        f"{name}_of": Array(np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"),
+        f"{name}_of": Array(
+            np.array(list(paths), dtype=object), (f"{name}_path",), "", f"names of the paths of {name}"
+        ),
     }
 
 

@@ -90,5 +90,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         f"first axle stands at x = {places[k]:.3g} m ({100 * (places[k] - low) / (high - low):.0f} % of the span)."
     )
     if options.force is not None:
-        result.answer += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {capacity[k] / options.force:.2f}."
+        result.answer += (
+            f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {capacity[k] / options.force:.2f}."
+        )
     return result

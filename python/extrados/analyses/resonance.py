@@ -58,7 +58,7 @@ def optimal_motion(model: RockingModel, cap: float, ratio: float, half_cycles: i
         ground = steps(cap, switches, end, sign)
         r = core_rocking.history(model.body, ground, end, horizon / 2000.0, start_rotation=start, room=4 * half_cycles + 64)
         turns = [(t, x) for kind, t, x in r.events if kind == "peak" and t > (switches[-1] if switches else 0.0) + 1e-9]
-        if r.outcome == "collapse" and not turns or not turns or len(switches) >= half_cycles:
+        if (r.outcome == "collapse" and not turns) or not turns or len(switches) >= half_cycles:
             return Optimum(ground, np.array(switches), np.array(peaks), r)
         switches.append(turns[0][0])
         peaks.append(turns[0][1])

@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from extrados.analyses.batches import sweep
 from extrados.analyses.run import Context
 from extrados.analyses.runs import runs_job
-from extrados.analyses.batches import sweep
 from extrados.core.rocking import Body, block_body
 from extrados.decks.statistics import RockingSpectrum
 from extrados.motions.motion import GRAVITY

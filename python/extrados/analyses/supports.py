@@ -33,7 +33,9 @@ def run(context: Context, options: Supports) -> Result:
     result.results = {
         "movement_at_fall_m": float(movement[-1]),
         "movement_at_fall_over_span": float(movement[-1] / span),
-        "span_change_at_fall_ratio": float(movement[-1] * options.spread / np.hypot(options.spread, options.settle) / span),
+        "span_change_at_fall_ratio": float(
+            movement[-1] * options.spread / np.hypot(options.spread, options.settle) / span
+        ),
         "thrust_at_rest_N": float(force[0, 0]),
         "thrust_at_fall_N": float(force[-1, 0]),
         "hinges_at_rest": [{"joint": k, "side": side} for k, side in states[0].hinges],

@@ -100,7 +100,9 @@ def run(context: Context, options: Survey) -> Result:
         "sections": len(rows),
         "standing": int(stand.sum()),
         "without_answer": [
-            {"row": i + 2, "name": n, "reason": o.reason} for i, (n, o) in enumerate(zip(names, outcomes, strict=True)) if o.reason
+            {"row": i + 2, "name": n, "reason": o.reason}
+            for i, (n, o) in enumerate(zip(names, outcomes, strict=True))
+            if o.reason
         ][:100],
         "weakest": names[int(np.nanargmin(gamma))] if stand.any() else None,
         "weakest_collapse_acceleration_g": float(np.nanmin(gamma)) if stand.any() else None,

@@ -17,6 +17,8 @@ from extrados.results.model import Array, Result, TableData
 # Of the range: how closely changes of mechanism and the optimum are found.
 CLOSE = 1e-7
 MOST_CHANGES = 40
+OF_ANALYSIS = "analysis."  # keys of the joints may vary as well
+JOINT_KEYS = ("friction", "strength")
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 
@@ -31,12 +33,20 @@ class Range:
     whole: bool
 
     def at(self, value: float, *, fracture: bool = False, explain: bool = False) -> Outcome:
-        data = changed(self.data, self.options.vary, round(value) if self.whole else float(value))
-        return evaluate(self.model, data, self.folder, self.options, fracture=fracture, explain=explain)
+        options, data = self.options, self.data
+        if options.vary.startswith(OF_ANALYSIS):
+            options = options.model_copy(update={options.vary.removeprefix(OF_ANALYSIS): float(value)})
+        else:
+            data = changed(data, options.vary, round(value) if self.whole else float(value))
+        return evaluate(self.model, data, self.folder, options, fracture=fracture, explain=explain)
 
 
 def _is_whole(model: Structure, path: str) -> bool:
     """True where the key takes whole numbers; Refused where there is no such key, or it holds no number."""
+    if path.startswith(OF_ANALYSIS):
+        if path.removeprefix(OF_ANALYSIS) not in JOINT_KEYS:
+            raise Refused(f"vary: '{path}' cannot vary; of the analysis {' and '.join(JOINT_KEYS)} can")
+        return False
     table: Any = type(model)
     for part in path.split("."):
         known = getattr(table, "model_fields", {})
@@ -57,6 +67,8 @@ def run(context: Context, options: Sweep) -> Result:
     whole = _is_whole(model, options.vary)
     values = np.array(options.values) if options.values else np.linspace(options.start, options.stop, options.count)
     values = np.unique(np.round(values)) if whole else np.sort(values)
+    if options.vary.startswith(OF_ANALYSIS) and values[0] <= 0.0:
+        raise Refused(f"vary: {options.vary} must stay above 0")
     ask = Range(type(model), context.deck.data["structure"], context.deck.folder, options, whole)
     outcomes = []
     for i, value in enumerate(values):

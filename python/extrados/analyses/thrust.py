@@ -3,7 +3,11 @@
 import numpy as np
 
 from extrados.analyses.limit_common import (
-    geometry_arrays, graphic_arrays, limit_of, reaction_rows, state_arrays,
+    geometry_arrays,
+    graphic_arrays,
+    limit_of,
+    reaction_rows,
+    state_arrays,
 )  # fmt: skip
 from extrados.analyses.run import Context, Refused
 from extrados.decks.limit import Thrust
@@ -11,7 +15,6 @@ from extrados.limit.answer import CannotStand, assess
 from extrados.limit.programme import NoEquilibrium, State
 from extrados.results.model import Result, TableData
 from extrados.structures.assembly import Assembly
-
 
 
 def run(context: Context, options: Thrust) -> Result:
@@ -96,5 +99,3 @@ def _table(assembly: Assembly, state: State) -> TableData:
             **dict.fromkeys(("eccentricity", "joint_length", "x", "y"), "m"),
         },
     )
-
-

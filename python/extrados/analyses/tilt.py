@@ -3,7 +3,13 @@
 import numpy as np
 
 from extrados.analyses.limit_common import (
-    answer_of, fracture_of, geometry_arrays, graphic_arrays, hinge_rows, reaction_rows, state_arrays,
+    answer_of,
+    fracture_of,
+    geometry_arrays,
+    graphic_arrays,
+    hinge_rows,
+    reaction_rows,
+    state_arrays,
 )  # fmt: skip
 from extrados.analyses.run import Context
 from extrados.decks.limit import Tilt
@@ -34,6 +40,7 @@ def run(context: Context, options: Tilt) -> Result:
         "collapse_acceleration_opposite_g": -answer.back_state.gamma,
         "tilt_angle_deg": degrees(state.gamma),
         "tilt_angle_opposite_deg": degrees(-answer.back_state.gamma),
+        "admissible_interval_g": [answer.back_state.gamma, state.gamma],
         "load_direction": "+x",
         "hinges": hinges,
         "sliding_joints": mechanism.sliding,
@@ -151,9 +158,8 @@ def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Resul
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
         text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
-    text += (
-        f"Friction of {result.results['required_friction']:.2f} is needed"
-        + (f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else ".")
+    text += f"Friction of {result.results['required_friction']:.2f} is needed" + (
+        f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."
     )
     fracture = result.results.get("fracture", {})
     if fracture.get("cracks"):

@@ -122,5 +122,3 @@ def _reason(limit: LimitAnalysis) -> str:
 def measures_of(assembly: Assembly | None) -> dict[str, float]:
     """Derived lengths of a section, none where it could not be built."""
     return {} if assembly is None else {k: float(v) for k, v in assembly.measures.items()}
-
-

@@ -159,7 +159,9 @@ def _section(section: str, model: type[Table], header: str) -> list[str]:
             continue
         facts = _facts(about)
         comment = f"  # {about.get('description', '')}" + (f" ({facts})" if facts else "")
-        if "default" in about:
+        if name in model.starter:
+            lines.append(f"{name} = {model.starter[name]}{comment}")
+        elif "default" in about:
             default = about["default"]
             value = "..." if default is None else _toml(default)
             lines.append(f"# {name} = {value}{comment}")

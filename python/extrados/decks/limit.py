@@ -55,8 +55,12 @@ class Sweep(Joints):
     """One deck key of the structure varied: capacity, mechanism and its changes, the optimum (Figs 3-4, 3-6a, 3-7b)."""
 
     kind: Literal["sweep"]
+    starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     structures: ClassVar = ASSEMBLIES
-    vary: str = key(about="key of [structure] to vary, for instance buttress_width or right.buttress_width")
+    vary: str = key(
+        about="key of [structure] to vary, for instance buttress_width or right.buttress_width; "
+        "or analysis.friction, analysis.strength"
+    )
     start: float | None = key(None, "first value, in the unit of the key")
     stop: float | None = key(None, "last value")
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
@@ -75,6 +79,7 @@ class Survey(Joints):
     """Many sections from a CSV table, one line of results each."""
 
     kind: Literal["survey"]
+    starter: ClassVar = {"file": '"sections.csv"'}
     structures: ClassVar = ASSEMBLIES
     file: str = key(about="CSV beside the deck; a header of [structure] keys (lengths in m), one section a row")
     fracture: bool = key(False, "also with the leeward buttress cracked")

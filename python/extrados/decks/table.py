@@ -8,9 +8,10 @@ from pydantic import BaseModel, ConfigDict, Field
 class Table(BaseModel):
     """A TOML table: unknown keys, wrong types, NaN and infinity are refused.
 
-    `shared_keys` and `starter` feed `explain` and `new`.
+    `starter`: TOML values of keys in the decks that `new` writes, of optional keys too.
     """
 
+    starter: ClassVar[dict[str, str]] = {}
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
 
 

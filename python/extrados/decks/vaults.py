@@ -1,6 +1,6 @@
 """Structure kinds of limit analysis: vaults, churches, further arches and free blocks."""
 
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -44,6 +44,14 @@ def _with_preset(data: Any, presets: dict[str, dict[str, Any]]) -> Any:
 class Vault(Structure):
     """Barrel vault between two monolithic buttresses that are mirror images (thesis 3.4)."""
 
+    starter: ClassVar = {
+        "radius": "5.0",
+        "thickness": "0.6",
+        "embrace": "120.0",
+        "face": "4.2",
+        "buttress_width": "2.0",
+        "height": "9.0",
+    }
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
         None, "all sizes of a reading of the vault of thesis 3.4, inferred from its results; other keys overrule it"
@@ -95,6 +103,17 @@ class RightSide(Table):
 class AisledVault(Structure):
     """A nave on two piers with side aisles, outer buttresses and, if wished, flyers and fill (thesis 3.5)."""
 
+    starter: ClassVar = {
+        "radius": "4.8",
+        "thickness": "0.6",
+        "springing": "12.5",
+        "pier_width": "1.9",
+        "aisle_thickness": "0.45",
+        "aisle_springing": "6.0",
+        "half_width": "12.5",
+        "buttress_width": "1.8",
+        "buttress_top": "8.5",
+    }
     kind: Literal["aisled-vault"]
     preset: Literal["vezelay-like", "colombier-like"] | None = key(
         None, "guessed sizes of a church in the manner of thesis 3.5; other keys overrule it"
@@ -147,6 +166,12 @@ class AisledVault(Structure):
 class PointedArch(Structure):
     """Pointed arch of two circular arcs on rigid level springings; the crown joint is vertical."""
 
+    starter: ClassVar = {
+        "span": "6.0",
+        "radius": "6.0",
+        "thickness": "0.5",
+        "voussoirs": "24",
+    }
     kind: Literal["pointed-arch"]
     span: Length = key(about="clear span", gt=0)
     radius: Length = key(about="radius of the intrados: half the span is round, the span equilateral", gt=0)
@@ -159,6 +184,12 @@ class PointedArch(Structure):
 class EllipticalArch(Structure):
     """Arch on half an ellipse; ring of constant thickness, joints normal to the intrados, level springings."""
 
+    starter: ClassVar = {
+        "span": "8.0",
+        "rise": "3.0",
+        "thickness": "0.6",
+        "voussoirs": "24",
+    }
     kind: Literal["elliptical-arch"]
     span: Length = key(about="clear span", gt=0)
     rise: Length = key(about="rise of the intrados", gt=0)
@@ -179,6 +210,7 @@ class BlockTable(Table):
 class Blocks(Structure):
     """Any plane assembly of polygons; edges that lie on each other are the joints."""
 
+    starter: ClassVar = {"block": '[{ name = "pier", points = [[0, 0], [1, 0], [1, 3], [0, 3]] }]'}
     kind: Literal["blocks"]
     file: str | None = key(None, "JSON or DXF file with the blocks, beside the deck", max_length=500)
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(

@@ -1,5 +1,6 @@
 """The whole answer of limit analysis about an assembly from one call."""
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -76,9 +77,7 @@ class Answer:
         """Thrust lines (k, 2) [m]: along each chain, and down each block that stands on the ground."""
         points = state.points(self.assembly)
         lines = {name: points[joints] for name, joints in self.assembly.chains.items()}
-        standing = {
-            int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)
-        }
+        standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
         for block in sorted(standing - {b for j in self.assembly.chains.values() for b in self._inner(j)}):
             line = pier_line(self.assembly, self.loads, state, block)
             if len(line):
@@ -88,7 +87,7 @@ class Answer:
     def _inner(self, joints: list[int]) -> set[int]:
         """Voussoirs of a chain: blocks between two of its joints."""
         ends = [{int(self.assembly.a[j]), int(self.assembly.b[j])} for j in joints]
-        return {b for one, two in zip(ends[:-1], ends[1:], strict=True) for b in one & two}
+        return {b for one, two in itertools.pairwise(ends) for b in one & two}
 
     def reactions(self, state: State) -> dict[int, np.ndarray]:
         """Force (2) [N] of the ground on the block of each joint on the ground."""
@@ -150,7 +149,9 @@ def why_not(limit: LimitAnalysis) -> str:
             return _slides(limit)
         return "some block hangs: its joint would have to pull"
     if part < 1.0 and limit.strength is not None:
-        return f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
+        return (
+            f"a thrust line keeps to {part:.3f} of the joints, but the strength {limit.strength:g} Pa does not carry it"
+        )
     if limit.friction is not None and LimitAnalysis(assembly, loads=limit.loads).stands():
         return _slides(limit)
     off = 2.0 * np.abs(state.position - 0.5)

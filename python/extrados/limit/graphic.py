@@ -24,7 +24,9 @@ def _leads_to(assembly: Assembly, joints: list[int], i: int) -> bool:
     """True where block a of the i-th joint of a chain is the next along it."""
     if i + 1 < len(joints):
         j = joints[i + 1]
-        return int(assembly.a[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.a[joints[i]] != GROUND
+        return (
+            int(assembly.a[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.a[joints[i]] != GROUND
+        )
     j = joints[i - 1]
     return int(assembly.b[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.b[joints[i]] != GROUND
 

@@ -96,9 +96,9 @@ def _correct(pose, target, hinges, slides, driver, size) -> np.ndarray:
     for one, two, point in hinges:
         (at_one, spin_one), (at_two, spin_two) = place(one, point), place(two, point)
         for axis in (0, 1):
-            unit = np.eye(3)[axis]
+            x, y = float(axis == 0), float(axis == 1)
             equation(
-                one, two, unit + [0.0, 0.0, spin_one[axis]], unit + [0.0, 0.0, spin_two[axis]],
+                one, two, np.array([x, y, spin_one[axis]]), np.array([x, y, spin_two[axis]]),
                 at_two[axis] - at_one[axis],
             )  # fmt: skip
     for one, two, point in slides:
@@ -106,9 +106,9 @@ def _correct(pose, target, hinges, slides, driver, size) -> np.ndarray:
         wanted = target[one] - target[two]
         shift = wanted[:2] + wanted[2] * np.array([-point[1], point[0]])
         for axis in (0, 1):
-            unit = np.eye(3)[axis]
+            x, y = float(axis == 0), float(axis == 1)
             equation(
-                one, two, unit + [0.0, 0.0, spin_one[axis]], unit + [0.0, 0.0, spin_two[axis]],
+                one, two, np.array([x, y, spin_one[axis]]), np.array([x, y, spin_two[axis]]),
                 shift[axis] + at_two[axis] - at_one[axis],
             )  # fmt: skip
     if driver is not None:

@@ -51,7 +51,9 @@ class LimitAnalysis:
         if friction is not None:
             self._mu = np.broadcast_to(np.asarray(friction, dtype=float), m)
             self._cone = self._sliding(self._mu, np.zeros(m))
-        self._crush = None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
+        self._crush = (
+            None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
+        )
         self._cuts: Constraints | None = None
         self._programme: Programme | None = None
 

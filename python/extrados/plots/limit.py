@@ -1,5 +1,6 @@
 """Figures of limit analysis: section, thrust lines, hinges, mechanisms, force polygons, capacity curves."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ def paths(run: Stored, name: str, what: str) -> dict[str, np.ndarray]:
 def outlines(run: Stored, name: str, what: str = "outline") -> list[np.ndarray]:
     """Outlines of the blocks of an analysis."""
     vertices, start = run.array(name, what), run.array(name, what + "_start")
-    return [vertices[a:b] for a, b in zip(start[:-1], start[1:], strict=True)]
+    return [vertices[a:b] for a, b in itertools.pairwise(start)]
 
 
 def carried(blocks: list[np.ndarray], centroid: np.ndarray, pose: np.ndarray) -> list[np.ndarray]:
@@ -37,13 +38,17 @@ def carried(blocks: list[np.ndarray], centroid: np.ndarray, pose: np.ndarray) ->
 def stone(ax: Axes, blocks: list[np.ndarray], *, ghost: bool = False) -> None:
     """Blocks as hatched stone, or as dotted outlines where only their former place is meant."""
     if ghost:
-        ax.add_collection(PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=0.4, linestyles=":"))
+        ax.add_collection(
+            PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=0.4, linestyles=":")
+        )
     else:
         ax.add_collection(
             PolyCollection(blocks, facecolors=style.STONE, edgecolors=HATCH, hatch="////", linewidths=0.0, zorder=1)
         )
         width = 0.6 if len(blocks) < 200 else 0.25
-        ax.add_collection(PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=width, zorder=1.5))
+        ax.add_collection(
+            PolyCollection(blocks, facecolors="none", edgecolors=style.EDGE, linewidths=width, zorder=1.5)
+        )
     ax.autoscale_view()
 
 
@@ -56,7 +61,12 @@ def ground(ax: Axes, run: Stored, name: str, joints: list[int]) -> None:
 
 def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text: str) -> None:
     """A dimension line with arrows at both ends and its length beside it."""
-    ax.annotate("", one, two, arrowprops={"arrowstyle": "<->", "linewidth": 0.7, "color": style.EDGE, "shrinkA": 0, "shrinkB": 0})
+    ax.annotate(
+        "",
+        one,
+        two,
+        arrowprops={"arrowstyle": "<->", "linewidth": 0.7, "color": style.EDGE, "shrinkA": 0, "shrinkB": 0},
+    )
     upright = abs(one[0] - two[0]) < abs(one[1] - two[1])
     ax.annotate(
         text, (0.5 * (one[0] + two[0]), 0.5 * (one[1] + two[1])), textcoords="offset points",
@@ -121,12 +131,18 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         stone(axes[0], blocks)
         ground(axes[0], run, name, _standing(run, name))
         if with_lines:
-            thrust_lines(axes[0], paths(run, name, "collapse_line"))
+            thrust_lines(axes[0], paths(run, name, "collapse_line"), label="thrust line")
+            thrust_lines(
+                axes[0], paths(run, name, "collapse_funicular"), style.EDGE, "funicular", linewidth=0.6, linestyle="--"
+            )
+            axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2)
         else:
             axes[0].plot(*run.array(name, "collapse_point").T, ".", color=style.THRUST, markersize=3, zorder=3)
         hinge_marks(axes[0], r["hinges"])
         overall_dimensions(axes[0], blocks)
-        axes[0].set_title(f"Collapse at {r['collapse_acceleration_g']:.4f} g to +x (tilt {r['tilt_angle_deg']:.2f} deg)")
+        axes[0].set_title(
+            f"Collapse at {r['collapse_acceleration_g']:.4f} g to +x (tilt {r['tilt_angle_deg']:.2f} deg)"
+        )
         stone(axes[1], blocks, ghost=True)
         stone(axes[1], carried(blocks, centroid, run.array(name, "mechanism_pose")))
         axes[1].set_title("Mechanism (finite rotations)")
@@ -140,8 +156,12 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         with style.figure(10.0, height, columns=2, width_ratios=[1.3, 1]) as (fig, (ax, forces)):
             stone(ax, blocks)
             ground(ax, run, name, _standing(run, name))
-            thrust_lines(ax, paths(run, name, "least_line"), style.THRUST, f"least thrust {_per_metre(r, 'thrust_min_N')}")
-            thrust_lines(ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, 'thrust_max_N')}")
+            thrust_lines(
+                ax, paths(run, name, "least_line"), style.THRUST, f"least thrust {_per_metre(r, 'thrust_min_N')}"
+            )
+            thrust_lines(
+                ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, 'thrust_max_N')}"
+            )
             ax.legend(loc="lower center")
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
@@ -152,7 +172,10 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             }, (style.THRUST, style.HINGE))  # fmt: skip
             forces.set_title("Force polygons upright")
             found.append(
-                (style.save(fig, folder, f"{name}-upright"), "Thrust lines of least and greatest horizontal thrust under self-weight, and their force polygons.")
+                (
+                    style.save(fig, folder, f"{name}-upright"),
+                    "Thrust lines of least and greatest horizontal thrust under self-weight, and their force polygons.",
+                )
             )
     if r.get("fracture", {}).get("cracks"):
         found.append(_draw_fracture(run, name, folder, blocks, centroid, height))
@@ -165,7 +188,11 @@ def _per_metre(r: dict, key: str) -> str:
 
 def _caption(r: dict) -> str:
     letters = "; ".join(f"{chr(65 + i)} {h['side']} of {h['name']}" for i, h in enumerate(r["hinges"][:26]))
-    free = " Where the line is not fixed by the mechanism its most central course is drawn." if len(r.get("thrusts", {})) > 1 else ""
+    free = (
+        " Where the line is not fixed by the mechanism its most central course is drawn."
+        if len(r.get("thrusts", {})) > 1
+        else ""
+    )
     return f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}"
 
 
@@ -177,8 +204,15 @@ def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, heigh
         stone(whole, carried(blocks, centroid, run.array(name, "mechanism_pose")))
         whole.set_title(f"Monolithic: {r['collapse_acceleration_g']:.4f} g ({r['tilt_angle_deg']:.2f} deg)")
         stone(cracked, blocks, ghost=True)
-        stone(cracked, carried(outlines(run, name, "crack_outline"), run.array(name, "crack_centroid"), run.array(name, "crack_pose")))
-        cracked.plot(*run.array(name, "crack").T, "--", color=style.HINGE, linewidth=1.4, zorder=4, label="fracture line")
+        stone(
+            cracked,
+            carried(
+                outlines(run, name, "crack_outline"), run.array(name, "crack_centroid"), run.array(name, "crack_pose")
+            ),
+        )
+        cracked.plot(
+            *run.array(name, "crack").T, "--", color=style.HINGE, linewidth=1.4, zorder=4, label="fracture line"
+        )
         cracked.legend(loc="lower center")
         cracked.set_title(f"Buttress cracked: {f['collapse_acceleration_g']:.4f} g ({f['tilt_angle_deg']:.2f} deg)")
         for ax in (whole, cracked):
@@ -198,14 +232,25 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         stone(ax, blocks)
         ground(ax, run, name, [row["joint"] for row in r["central"]["reactions"]])
         for which, colour in colours.items():
-            thrust_lines(ax, paths(run, name, f"{which}_line"), colour, f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m")
+            thrust_lines(
+                ax, paths(run, name, f"{which}_line"), colour, f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m"
+            )
         overall_dimensions(ax, blocks)
-        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
+        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
         ax.set_title(f"Thrust lines at {r['gamma_g']:g} g, safety factor {r['geometric_safety_factor']:.2f}")
         style.section_axes(ax)
-        polygon(forces, {which: paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours}, tuple(colours.values()))
+        polygon(
+            forces,
+            {which: paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours},
+            tuple(colours.values()),
+        )
         forces.set_title(f"Force polygons of the {r['chain']}")
-        found = [(style.save(fig, folder, f"{name}-lines"), "Thrust lines of least, greatest and most central thrust, and their force polygons.")]
+        found = [
+            (
+                style.save(fig, folder, f"{name}-lines"),
+                "Thrust lines of least, greatest and most central thrust, and their force polygons.",
+            )
+        ]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
             ax.plot(run.array(name, f"{which}_friction"), color=colour, marker=".", markersize=3, label=which)
@@ -225,7 +270,15 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.plot(value, tilt, "-", color=style.EDGE, linewidth=1.0, zorder=2)
         for k in range(1, int(number.max()) + 1):
             here = number == k
-            ax.plot(value[here], tilt[here], "o", markersize=3.5, color=CHAIN_COLOURS[(k - 1) % len(CHAIN_COLOURS)], label=f"mechanism {k}", zorder=3)
+            ax.plot(
+                value[here],
+                tilt[here],
+                "o",
+                markersize=3.5,
+                color=CHAIN_COLOURS[(k - 1) % len(CHAIN_COLOURS)],
+                label=f"mechanism {k}",
+                zorder=3,
+            )
         if "fractured" in run.arrays[name]:
             cracked = np.degrees(np.arctan(run.array(name, "fractured")))
             ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
@@ -235,14 +288,27 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 f"{change['from'] or 'falls'}|{change['to'] or 'falls'}", (change["value"], 1.0), xycoords=("data", "axes fraction"),
                 ha="center", va="bottom", fontsize=7,
             )  # fmt: skip
-        ax.plot(r["optimum_value"], r["optimum_tilt_angle_deg"], "*", color="black", markersize=9, zorder=4, label=f"greatest: {r['optimum_value']:.4g}")
+        ax.plot(
+            r["optimum_value"],
+            r["optimum_tilt_angle_deg"],
+            "*",
+            color="black",
+            markersize=9,
+            zorder=4,
+            label=f"greatest: {r['optimum_value']:.4g}",
+        )
         for gap in r["gaps"]:
             ax.plot(gap["value"], 0.0, "x", color=style.THRUST, markersize=4)
         ax.set_ylim(bottom=0.0)
         ax.set_xlabel(f"{r['vary']}")
         ax.set_ylabel("tilt at collapse [deg]")
         ax.legend(loc="best")
-        found = [(style.save(fig, folder, f"{name}-curve"), "Tilt at collapse; dotted: changes of mechanism; crosses: values without a structure that stands.")]
+        found = [
+            (
+                style.save(fig, folder, f"{name}-curve"),
+                "Tilt at collapse; dotted: changes of mechanism; crosses: values without a structure that stands.",
+            )
+        ]
     if len(run.array(name, "example")):
         examples, moved = paths(run, name, "example"), paths(run, name, "example_moved")
         numbers = sorted({int(key.split("/")[0]) for key in examples})[:6]
@@ -252,7 +318,12 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 stone(ax, [v for key, v in moved.items() if key.startswith(f"{k}/")])
                 ax.set_title(f"Mechanism {k}")
                 style.section_axes(ax)
-            found.append((style.save(fig, folder, f"{name}-mechanisms"), "; ".join(f"{m['number']}: {m['hinges']}" for m in r["mechanisms"][:6])))
+            found.append(
+                (
+                    style.save(fig, folder, f"{name}-mechanisms"),
+                    "; ".join(f"{m['number']}: {m['hinges']}" for m in r["mechanisms"][:6]),
+                )
+            )
     return found
 
 
@@ -290,7 +361,12 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             ax.plot(*line.T, color=style.THRUST, zorder=3)
             ax.set_title(f"{u:.3f} m")
             style.section_axes(ax)
-        found = [(style.save(fig, folder, f"{name}-states"), "The arch as its right support moves (true scale), with the thrust line through its three hinges.")]
+        found = [
+            (
+                style.save(fig, folder, f"{name}-states"),
+                "The arch as its right support moves (true scale), with the thrust line through its three hinges.",
+            )
+        ]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         u, force = run.array(name, "movement"), run.array(name, "force")
         ax.plot(u, force[:, 0] / 1e3, color=style.THRUST, label="horizontal")
@@ -300,7 +376,12 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
         ax.set_xlabel("movement of the right support [m]")
         ax.set_ylabel("force on it [kN]")
         ax.legend()
-        found.append((style.save(fig, folder, f"{name}-thrust"), "Force of the arch on the moving support; dotted: a hinge moves."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-thrust"),
+                "Force of the arch on the moving support; dotted: a hinge moves.",
+            )
+        )
     return found
 
 
@@ -313,7 +394,9 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         stone(ax, blocks, ghost=True)
         stone(ax, carried(blocks, centroid, run.array(name, "mechanism_pose")))
         for x in run.array(name, "axle"):
-            ax.annotate("", (x, top), (x, top + 0.1 * np.ptp(place)), arrowprops={"arrowstyle": "-|>", "color": style.THRUST})
+            ax.annotate(
+                "", (x, top), (x, top + 0.1 * np.ptp(place)), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}
+            )
         ax.set_ylim(top=top + 0.13 * np.ptp(place))
         ax.set_title("Mechanism under the load at its worst place")
         style.section_axes(ax)
@@ -322,4 +405,6 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         curve.set_ylim(0.0, min(float(np.nanmax(capacity)) / 1e3 * 1.05, 8.0 * low))
         curve.set_xlabel("x of the first axle [m]")
         curve.set_ylabel("load at collapse [kN]")
-        return [(style.save(fig, folder, name), "Load that brings the structure down, over the place of the first axle.")]
+        return [
+            (style.save(fig, folder, name), "Load that brings the structure down, over the place of the first axle.")
+        ]

@@ -1,5 +1,6 @@
 """Pointed and elliptical arches on rigid springings."""
 
+import itertools
 from collections.abc import Callable
 
 import numpy as np
@@ -75,7 +76,7 @@ def make_elliptical_arch(
     joint = np.interp(run[-1] * np.arange(voussoirs + 1) / voussoirs, run, fine)
     joint[0], joint[-1] = np.pi, 0.0
     inner, outer = [], []
-    for start, end in zip(joint[:-1], joint[1:], strict=True):
+    for start, end in itertools.pairwise(joint):
         angle = np.linspace(start, end, FINE)
         point = np.column_stack([a * np.cos(angle), b * np.sin(angle)])
         normal = np.column_stack([b * np.cos(angle), a * np.sin(angle)])

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from extrados.structures.assembly import Assembly
+from extrados.structures.builder import BadGeometry
 from extrados.structures.contacts import find_contacts
 from extrados.structures.polygons import crosses_itself, following, properties, signed_area
-from extrados.structures.builder import BadGeometry
 
 LARGEST_FILE = 20_000_000  # bytes
 MOST_BLOCKS = 20_000
@@ -106,7 +106,9 @@ def _refuse_loose(assembly: Assembly, near: list[tuple[int, int, float]]) -> Non
     names = assembly.block_names
     shown = ", ".join(f"'{names[i]}'" for i in loose[:5]) + (f" and {len(loose) - 5} more" if len(loose) > 5 else "")
     gaps = [
-        f"'{names[i]}' and '{names[j]}' are {1000.0 * gap:.3g} mm apart" for i, j, gap in near if i in loose or j in loose
+        f"'{names[i]}' and '{names[j]}' are {1000.0 * gap:.3g} mm apart"
+        for i, j, gap in near
+        if i in loose or j in loose
     ]
     hint = f"; near misses: {'; '.join(gaps[:3])} (see contact_tolerance)" if gaps else ""
     raise BadGeometry(f"no joint leads from the ground to block{'s' if len(loose) > 1 else ''} {shown}{hint}")
@@ -123,7 +125,7 @@ def read_json(path: Path) -> tuple[list[Polygon], np.ndarray | None]:
     except (ValueError, RecursionError) as error:
         raise BadGeometry(f"{path.name}: is not JSON: {error}") from None
     if not isinstance(data, dict) or not isinstance(data.get("blocks"), list):
-        raise BadGeometry(f"{path.name}: expected an object with a list \"blocks\"")
+        raise BadGeometry(f'{path.name}: expected an object with a list "blocks"')
     if unknown := set(data) - {"unit", "blocks", "ground", "title"}:
         raise BadGeometry(f"{path.name}: unknown key '{sorted(unknown)[0]}'; known are unit, title, blocks, ground")
     unit = data.get("unit", "m")
@@ -136,11 +138,17 @@ def read_json(path: Path) -> tuple[list[Polygon], np.ndarray | None]:
     for i, entry in enumerate(data["blocks"]):
         name = entry.get("name", f"block {i + 1}") if isinstance(entry, dict) else None
         if not isinstance(entry, dict) or not isinstance(name, str) or set(entry) - {"name", "points", "density"}:
-            raise BadGeometry(f"{path.name}: blocks[{i}]: expected an object with points and, if wished, name and density")
+            raise BadGeometry(
+                f"{path.name}: blocks[{i}]: expected an object with points and, if wished, name and density"
+            )
         density = entry.get("density")
-        if density is not None and (isinstance(density, bool) or not isinstance(density, int | float) or not 0.0 < density < 3e4):
+        if density is not None and (
+            isinstance(density, bool) or not isinstance(density, int | float) or not 0.0 < density < 3e4
+        ):
             raise BadGeometry(f"{path.name}: block '{name}': density {density!r}, expected kg/m^3 above 0")
-        polygons.append(Polygon(name, scale * _numbers(entry.get("points"), 2, f"{path.name}: block '{name}': points"), density))
+        polygons.append(
+            Polygon(name, scale * _numbers(entry.get("points"), 2, f"{path.name}: block '{name}': points"), density)
+        )
     ground = data.get("ground")
     return polygons, None if ground is None else scale * _numbers(ground, 4, f"{path.name}: ground")
 

@@ -24,8 +24,9 @@ class Builder:
         self._joints: list[tuple[str, np.ndarray, np.ndarray, int, int, int]] = []
 
     def block(self, name: str, outline: np.ndarray, sector: tuple[float, np.ndarray, float] | None = None) -> int:
-        """A block of an outline; `sector` gives area, centroid and inertia where the sides are arcs."""
-        outline = outline if signed_area(outline) > 0.0 else outline[::-1]
+        """A block of an outline; `sector` gives area, centroid and inertia of a counter-clockwise one with arcs."""
+        if sector is None:
+            outline = outline if signed_area(outline) > 0.0 else outline[::-1]
         self._blocks.append((name, outline, *(sector or properties(outline))))
         return len(self._blocks) - 1
 

@@ -28,9 +28,7 @@ class Contacts:
     near: list[tuple[int, int, float]]
 
 
-def find_contacts(
-    outlines: list[np.ndarray], ground: np.ndarray, tolerance: float, names: list[str]
-) -> Contacts:
+def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: float, names: list[str]) -> Contacts:
     """Contacts of counter-clockwise outlines with each other and with ground segments (k, 4) x, y, x, y.
 
     Edges touch where they run opposite ways within `tolerance` [m] of one line. Stretches shorter than ten
@@ -47,7 +45,9 @@ def find_contacts(
     long_enough = high - low > 10.0 * tolerance
     touch = long_enough & (gap <= tolerance)
     near = {}
-    for i, j, g in zip(owner[one[long_enough & ~touch]], owner[two[long_enough & ~touch]], gap[long_enough & ~touch], strict=True):
+    for i, j, g in zip(
+        owner[one[long_enough & ~touch]], owner[two[long_enough & ~touch]], gap[long_enough & ~touch], strict=True
+    ):
         if g <= NEAR * tolerance:
             near[i, j] = min(g, near.get((i, j), np.inf))
     rows = [_stretches(first, last, one[touch], low[touch], high[touch], owner[one[touch]], owner[two[touch]])]
@@ -61,7 +61,9 @@ def find_contacts(
             rows.append(_stretches(first, last, e[on], low[on], high[on], owner[e[on]], np.full(int(on.sum()), -1)))
     table = _joined(np.concatenate(rows), 10.0 * tolerance)
     touching = {(int(r[0]), int(r[1])) for r in table}
-    misses = [(int(i), int(j), float(g)) for (i, j), g in near.items() if (i, j) not in touching and (j, i) not in touching]
+    misses = [
+        (int(i), int(j), float(g)) for (i, j), g in near.items() if (i, j) not in touching and (j, i) not in touching
+    ]
     return Contacts(table[:, 2:4], table[:, 4:6], table[:, 0].astype(int), table[:, 1].astype(int), misses)
 
 
@@ -84,7 +86,9 @@ def _edge_pairs(outlines: list[np.ndarray], start: np.ndarray, reach: float) -> 
     return np.repeat(start[i], total) + within // per, np.repeat(start[j], total) + within % per
 
 
-def _shared(a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _shared(
+    a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Stretch of edges a that opposite edges b share, as distances along a, and their gap there."""
     along = a1 - a0
     length = np.hypot(along[:, 0], along[:, 1])
@@ -153,7 +157,9 @@ def _refuse_overlaps(outlines, first, last, owner, one, two, tolerance, names) -
     for some in np.array_split(pairs, max(1, len(pairs) // PAIRS_AT_ONCE)):
         probe_count, edge_count = np.diff(begin)[some[:, 0]], np.diff(start)[some[:, 1]]
         pair = np.repeat(np.arange(len(some)), probe_count)
-        probe = begin[some[pair, 0]] + np.arange(len(pair)) - np.repeat(np.cumsum(probe_count) - probe_count, probe_count)
+        probe = (
+            begin[some[pair, 0]] + np.arange(len(pair)) - np.repeat(np.cumsum(probe_count) - probe_count, probe_count)
+        )
         edges = edge_count[pair]
         group = np.cumsum(edges) - edges
         at = np.repeat(np.arange(len(pair)), edges)

@@ -1,5 +1,6 @@
 """Blocks from a DXF drawing: closed polylines become blocks, lines on the ground layer the supports."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,9 @@ SAGITTA = 2e-4  # m: how far the chords of an arc may lie from it
 PASSED_OVER = {"TEXT", "MTEXT", "DIMENSION", "POINT", "HATCH", "LEADER", "MULTILEADER", "VIEWPORT", "ATTDEF"}
 
 
-def read_dxf(path: Path, unit: str | None = None, layers: list[str] | None = None) -> tuple[list[Polygon], np.ndarray | None]:
+def read_dxf(
+    path: Path, unit: str | None = None, layers: list[str] | None = None
+) -> tuple[list[Polygon], np.ndarray | None]:
     """Blocks and ground of a drawing; `layers` (with the ground layer) are read, all where it is None.
 
     A drawing without units is refused until `unit` is given. Needs the extra `dxf` (ezdxf).
@@ -66,7 +69,7 @@ def read_dxf(path: Path, unit: str | None = None, layers: list[str] | None = Non
 def _unit(path: Path, code: int) -> str:
     if code not in INSUNITS:
         what = "has no unit ($INSUNITS = 0)" if code == 0 else f"has a unit not known here ($INSUNITS = {code})"
-        raise BadGeometry(f"{path.name}: {what}; say which with  unit = \"mm\"  (one of {', '.join(UNITS)})")
+        raise BadGeometry(f'{path.name}: {what}; say which with  unit = "mm"  (one of {", ".join(UNITS)})')
     return INSUNITS[code]
 
 
@@ -86,4 +89,4 @@ def _segments(entity, kind: str, where: str) -> list[list[float]]:
         raise BadGeometry(f"{where}: the ground is drawn with lines or polylines")
     if kind != "LINE" and entity.is_closed:
         points.append(points[0])
-    return [[a.x, a.y, b.x, b.y] for a, b in zip(points[:-1], points[1:], strict=True)]
+    return [[a.x, a.y, b.x, b.y] for a, b in itertools.pairwise(points)]

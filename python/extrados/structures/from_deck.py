@@ -4,16 +4,15 @@ from pathlib import Path
 from typing import Any
 
 from extrados.decks import block as block_models
-from extrados.decks import masonry
+from extrados.decks import masonry, vaults, walls
 from extrados.decks import structures as models
-from extrados.decks import vaults, walls
 from extrados.decks.table import Structure
 from extrados.structures import from_vaults
 from extrados.structures.arch import make_arch
 from extrados.structures.arches import make_elliptical_arch, make_pointed_arch
 from extrados.structures.block import make_block
-from extrados.structures.panel import make_panel
 from extrados.structures.masonry import make_column, make_wall
+from extrados.structures.panel import make_panel
 
 BLOCK_KEYS = {"width", "height", "depth", "density", "mass", "inertia", "centre_height", "toe_right", "toe_left"}
 

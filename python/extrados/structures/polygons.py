@@ -64,7 +64,9 @@ def below(outline: np.ndarray, levels: np.ndarray) -> np.ndarray:
     for y, weight in ((start, 1.0), (0.5 * (start + end), 4.0), (end, 1.0)):
         x = x0 + (y - y0) / rise * (x1 - x0)
         share = weight / 6.0 * (end - start)
-        found += np.stack([(x * share).sum(axis=1), (0.5 * x * x * share).sum(axis=1), (x * y * share).sum(axis=1)], axis=1)
+        found += np.stack(
+            [(x * share).sum(axis=1), (0.5 * x * x * share).sum(axis=1), (x * y * share).sum(axis=1)], axis=1
+        )
     return found
 
 

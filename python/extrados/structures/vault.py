@@ -142,7 +142,9 @@ def make_church(
             measures[f"{word}_aisle_span_m"] = aisle.span
     levels = {name: fill_level if name == "nave" else aisle_fill_level for name in chains if "flyer" not in name}
     if any(level is not None for level in levels.values()):
-        fill = fill_loads(assembly, [(chains[n], level) for n, level in levels.items() if level is not None], fill_density)
+        fill = fill_loads(
+            assembly, [(chains[n], level) for n, level in levels.items() if level is not None], fill_density
+        )
         return replace(assembly, fill=fill, measures=measures)
     return replace(assembly, measures=measures)
 
@@ -173,7 +175,9 @@ def _aisle(
     builder.joint(f"{word} buttress base", outline[0], outline[1], buttress, GROUND, side)
     chains = {f"{word} aisle": chain}
     if aisle.flyer is not None:
-        chains[f"{word} flyer"] = _flyer(builder, word, side, aisle, aisle.flyer, pier, buttress, back, face, pier_top, top)
+        chains[f"{word} flyer"] = _flyer(
+            builder, word, side, aisle, aisle.flyer, pier, buttress, back, face, pier_top, top
+        )
     return chains, outside, buttress
 
 
@@ -191,7 +195,9 @@ def _flyer(
     down = np.array([chord[1], -chord[0]]) / length  # to the lower side of the chord
     centre = 0.5 * (head + foot) + sag * down
     if centre[0] > 1e-9 * length or aisle.span - centre[0] > 0.97 * flyer.radius:
-        raise BadGeometry(f"{word} flyer: with a radius of {flyer.radius:g} m its crown does not lie at or before the pier")
+        raise BadGeometry(
+            f"{word} flyer: with a radius of {flyer.radius:g} m its crown does not lie at or before the pier"
+        )
     outer = flyer.radius + flyer.thickness
 
     def at(radius: float, u: float) -> float:
@@ -212,7 +218,9 @@ def _flyer(
         np.array([aisle.span, at(outer, aisle.span)]),
     ]
     if np.any(np.diff([point[0] for point in q]) <= 0.0):
-        raise BadGeometry(f"{word} flyer: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer")
+        raise BadGeometry(
+            f"{word} flyer: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer"
+        )
 
     def place(points: np.ndarray) -> np.ndarray:
         return np.column_stack([back + side * points[:, 0], points[:, 1]])
