@@ -19,10 +19,6 @@ ROUNDS = 300
 INNER_REST = 1e-5
 
 
-class Immovable(NoEquilibrium):
-    """No load of the kind asked for makes a mechanism."""
-
-
 class LimitAnalysis:
     """All programmes of one assembly; successive solves start from the last basis."""
 
