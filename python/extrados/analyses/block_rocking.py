@@ -18,7 +18,9 @@ def run(context: Context, options: Rocking) -> Result:
     model = block_model(as_block(structure, context.structure), structure)
     context.warnings += model.warnings + context.motion.notes
     if structure.kind == "column":
-        context.warnings.append("the column is taken as one rigid body; joints that open are left to the analysis `dem`")
+        context.warnings.append(
+            "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
+        )
     ratio = initial_ratio(structure)
     end_time = options.end_time or context.motion.end + 30.0 / float(model.frequency.min())
     start = ratio * float(model.alpha[0 if ratio >= 0.0 else 1])

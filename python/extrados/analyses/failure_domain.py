@@ -192,7 +192,7 @@ def run(context: Context, options: FailureDomain) -> Result:
     model = rocking_model(context)
     # The arch keeps sqrt(R/g); a block has 1/p, and its curves span omega/p from about 1 to 12.
     unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
-    durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
+    durations = np.unique(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     mapper = Mapper(model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation)
     job = mapper.job(np.repeat(np.arange(len(durations)), len(amplitudes)), np.tile(amplitudes, len(durations)))

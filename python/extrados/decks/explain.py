@@ -38,9 +38,17 @@ def json_schema() -> dict[str, Any]:
     }
 
 
+#: Bounds of keys of several types stay in pydantic's words; JSON Schema has its own.
+_BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
+
+
 def _allow_units(schema: Any) -> None:
     """A key with a unit takes a number or text with a unit."""
     if isinstance(schema, dict):
+        bounds = {json_word: schema.pop(word) for word, json_word in _BOUNDS.items() if word in schema}
+        for branch in schema.get("anyOf", []) if bounds else []:
+            if branch.get("type") in ("number", "integer"):
+                branch.update(bounds)
         for value in schema.values():
             _allow_units(value)
         if "unit" in schema and schema.get("type") == "number":
@@ -75,6 +83,7 @@ def _facts(about: dict[str, Any]) -> str:
             ("minimum", ">="),
             ("exclusiveMaximum", "<"),
             ("maximum", "<="),
+            *((word, sign) for word, sign in (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))),
         ):
             if word in branch:
                 facts.append(f"{sign} {branch[word]:g}")

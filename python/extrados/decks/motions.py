@@ -37,11 +37,13 @@ class Harmonic(Motion):
 
     kind: Literal["harmonic"]
     amplitude: Acceleration = key(about="greatest amplitude")
-    frequency: Frequency = key(about="in Hz, not rad/s", gt=0)
+    frequency: Frequency = key(about="in Hz, not rad/s", gt=0, le=1000)
     duration: Time = key(10.0, "how long it acts", gt=0)
     phase: Literal["sine", "cosine"] = key("sine", "starts at zero (sine) or at the amplitude (cosine)")
     ramp: Time = key(0.0, "the amplitude grows linearly from zero over this time", ge=0)
-    carrier: Frequency | None = key(None, "frequency of a sinusoidal carrier that modulates the amplitude")
+    carrier: Frequency | None = key(
+        None, "frequency of a sinusoidal carrier that modulates the amplitude", gt=0, le=1000
+    )
 
     @model_validator(mode="after")
     def _one_envelope(self) -> "Harmonic":
