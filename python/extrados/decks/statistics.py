@@ -121,7 +121,7 @@ class CodeChecks(Analysis):
     """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
-    structures: ClassVar = ("block", "column")
+    structures: ClassVar = ("block", "column", "panel")
     peak_acceleration: Acceleration | None = key(None, "demand; default that of the motion", gt=0)
     peak_velocity: float | None = key(None, "demand [m/s]; default that of the motion", gt=0)
     behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")
