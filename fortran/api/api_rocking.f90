@@ -42,7 +42,7 @@ contains
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: time(nt)                !! output times [s]
       integer(c_int), intent(in) :: room                    !! for events
-      integer(c_int), intent(out) :: outcome(5)             !! outcome, half cycles, impacts, steps, rejected
+      integer(c_int), intent(out) :: outcome(6)             !! outcome, half cycles, impacts, steps, rejected, settled
       real(c_double), intent(out) :: state(8, nt)           !! see response_history
       integer(c_int), intent(out) :: points                 !! output times reached
       integer(c_int), intent(out) :: event_kind(room)
@@ -92,7 +92,8 @@ contains
          record%event => happened
          call respond(structure, ground, response_options(end_time=end_time, tolerance=tolerance, &
             start_q=start_q, start_v=start_v, start_side=int(start_side)), answer, status, record)
-         outcome = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected]
+         outcome = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected, &
+            merge(1_c_int, 0_c_int, answer%settled)]
          summary = [answer%peak, answer%peak_ratio, answer%stop_time]
          points = int(record%points, c_int)
          events = int(record%events, c_int)
@@ -137,7 +138,7 @@ contains
       real(c_double), intent(in) :: tolerance
       integer(c_int), intent(in) :: stop_when_safe          !! 1: outcome and peak only
       integer(c_int), intent(in) :: threads
-      integer(c_int), intent(out) :: outcome(4, nrun)       !! outcome, half cycles, impacts, steps
+      integer(c_int), intent(out) :: outcome(5, nrun)       !! outcome, half cycles, impacts, steps, settled
       real(c_double), intent(out) :: peak(2, nrun)          !! rotation [rad], ratio to the critical
       real(c_double), intent(out) :: stop_time(nrun)        !! [s]
       integer(c_int), intent(out) :: run_status(nrun)
@@ -176,7 +177,8 @@ contains
          call run_ensemble(kind, bodies, set, run_body, run_motion, run_scale, options, threads, answers, &
             run_status, status)
          do k = 1, nrun
-            outcome(:, k) = [answers(k)%outcome, answers(k)%half_cycles, answers(k)%impacts, answers(k)%steps]
+            outcome(:, k) = [answers(k)%outcome, answers(k)%half_cycles, answers(k)%impacts, answers(k)%steps, &
+               merge(1_c_int, 0_c_int, answers(k)%settled)]
             peak(:, k) = [answers(k)%peak, answers(k)%peak_ratio]
             stop_time(k) = answers(k)%stop_time
          end do

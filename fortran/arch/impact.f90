@@ -2,6 +2,7 @@
 !> (thesis 5.2.2, Eqs 5.3 and B.3a-e).
 module arch_impact
    use common_kinds, only : wp
+   use arch_four_hinge, only : normal
    use common_small_solve, only : small_solve
    use common_status, only : status_ok, status_bad_geometry, status_out_of_memory
    use, intrinsic :: iso_c_binding, only : c_int
@@ -17,7 +18,8 @@ contains
    !> balance of the whole arch (B.3a-c), of the part left of joint B about the point opposite to
    !> hinge B (B.3d) and of the part right of joint C about the point opposite to hinge C (B.3e).
    !> Projection: the velocity field u_b before impact is projected on the field u_a of the next
-   !> mechanism in the kinetic-energy product, c_v = |<u_b, u_a>| / (|u_b| |u_a|) <= 1.
+   !> mechanism in the kinetic-energy product, c_v = -<u_b, u_a> / <u_a, u_a>, of size <= 1.
+   !> Either is negative where the mirrored mechanism would have to close further: the hinges do not reflect then.
    subroutine impact_restitution(mass, centroid, inertia, joint, hinge, opposite, thesis, projection, status)
       real(wp), intent(in) :: mass(:)         !! (n) voussoirs, left to right, symmetric about x = 0 [kg]
       real(wp), intent(in) :: centroid(:, :)  !! (2, n) [m]
@@ -45,7 +47,8 @@ contains
       do i = 1, n
          after(:, i) = [-before(1, n + 1 - i), before(2, n + 1 - i), -before(3, n + 1 - i)]
       end do
-      projection = abs(energy_product(before, after)) / energy_product(after, after)
+      ! Before impact the links close, after it they open: both fields are those of opening.
+      projection = -energy_product(before, after) / energy_product(after, after)
 
       next_left = [-hinge(1, 4), hinge(2, 4)]
       next_right = [-hinge(1, 1), hinge(2, 1)]
@@ -63,7 +66,6 @@ contains
       a(5, 5) = -spin_momentum(after, int(joint(3)) + 1, n, opposite(:, 3))
       b(5) = -spin_momentum(before, int(joint(3)) + 1, n, opposite(:, 3))
       call small_solve(a, b, status)
-      ! Before impact the links close, after it they open: the fields are those of opening.
       if (status == status_ok) thesis = -b(5)
 
    contains
@@ -122,12 +124,12 @@ contains
       status = status_bad_geometry
       bc = hinge(:, 3) - hinge(:, 2)
       dc = hinge(:, 3) - hinge(:, 4)
-      velocity_b = turned(hinge(:, 2) - hinge(:, 1))
-      denominator = dot_product(turned(dc), bc)
+      velocity_b = normal(hinge(:, 2) - hinge(:, 1))
+      denominator = dot_product(normal(dc), bc)
       if (abs(denominator) <= 1.0e-12_wp * norm2(bc) * norm2(dc)) return
       spin(1) = 1.0_wp
       spin(3) = dot_product(velocity_b, bc) / denominator
-      spin(2) = dot_product(velocity_b, dc) / denominator  ! dot(turned(bc), dc) = -denominator
+      spin(2) = dot_product(velocity_b, dc) / denominator  ! dot(normal(bc), dc) = -denominator
       do k = joint(1) + 1, joint(4)
          link = 1
          if (k > joint(2)) link = 2
@@ -135,16 +137,10 @@ contains
          pivot = hinge(:, merge(4, link, link == 3))
          pivot_velocity = 0.0_wp
          if (link == 2) pivot_velocity = velocity_b
-         field(1:2, k) = pivot_velocity + spin(link) * turned(centroid(:, k) - pivot)
+         field(1:2, k) = pivot_velocity + spin(link) * normal(centroid(:, k) - pivot)
          field(3, k) = spin(link)
       end do
       status = status_ok
    end subroutine velocity_field
-
-   pure function turned(vector) result(normal)
-      real(wp), intent(in) :: vector(2)
-      real(wp) :: normal(2)
-      normal = [-vector(2), vector(1)]
-   end function turned
 
 end module arch_impact

@@ -43,6 +43,8 @@ module rocking_response
       real(wp) :: stop_time = 0.0_wp            !! collapse, or the time reached [s]
       integer(c_int) :: steps = 0               !! accepted
       integer(c_int) :: rejected = 0
+      !> False where the run ended while the structure could still come to rest or to fall
+      logical :: settled = .true.
    end type response
 
    !> What is recorded besides the outcome, in the caller's arrays
@@ -107,7 +109,7 @@ contains
       type(rocking_problem) :: problem
       type(dense_step) :: step
       type(step_memory) :: memory
-      real(wp) :: t, t_next, q, v, a, h, h_next, remaining, factor, s, v_before, barrier
+      real(wp) :: t, t_next, window, q, v, a, h, h_next, remaining, factor, s, v_before, energy
       real(wp) :: atol_q, atol_v, m, half_dm
       integer :: attempts, found_side, i
       logical :: resting, from_rest, quiet, renew, closed
@@ -162,11 +164,13 @@ contains
                call record_rest(t)
                exit
             end if
-            call find_uplift(problem, t, t_next, s, found_side)
+            ! Long sines are searched in pieces, so that the loop answers a request to stop.
+            window = min(t_next, t + 64.0_wp * ground%shortest_period(problem%segment))
+            call find_uplift(problem, t, window, s, found_side)
             if (found_side == 0) then
-               t = t_next
+               t = window
                call record_rest(t)
-               if (t < options%end_time) problem%segment = problem%segment + 1
+               if (t >= t_next .and. t < options%end_time) problem%segment = problem%segment + 1
                cycle
             end if
             call record_rest(s)
@@ -286,8 +290,8 @@ contains
          call advance_segment()
          if (options%stop_when_safe .and. quiet .and. v <= 0.0_wp) then
             if (q < body%critical(i)) then
-               call body_energy(q, v, barrier)
-               if (barrier < minval_barrier()) exit
+               call body_energy(q, v, energy)
+               if (energy < minval_barrier()) exit
             end if
          end if
       end do
@@ -295,6 +299,13 @@ contains
       if (answer%outcome /= outcome_collapse) then
          answer%stop_time = t
          if (answer%half_cycles > 0) answer%outcome = outcome_recovery
+         if (.not. resting) then
+            call body_energy(q, v, energy)
+            answer%settled = problem%segment > ground%segments .and. q < body%critical(i) &
+               .and. energy < minval_barrier()
+         else
+            answer%settled = status == status_ok
+         end if
       end if
 
    contains
@@ -601,12 +612,12 @@ contains
       real(wp), intent(in) :: t_next
       real(wp), intent(out) :: when
       integer, intent(out) :: side              !! 0 where it stays at rest
-      real(wp) :: t0, t1, f0(2), f1(2), best, root, grid
+      real(wp) :: t0, t1, f0(2), f1(2), best, root, grid, top, at_top(2)
       integer :: j
 
       side = 0
       when = t_next
-      ! Straight lines are tested at their ends; sines 32 times a cycle.
+      ! Straight lines are tested at their ends; sines 32 times a cycle, and between where they come near.
       grid = problem%ground%shortest_period(problem%segment) / 32.0_wp
       t1 = t
       f1 = drive(t1)
@@ -622,7 +633,11 @@ contains
             else if (f1(j) > 0.0_wp) then
                root = crossing(j, t0, t1)
             else
-               cycle
+               if (grid >= huge(grid) / 64.0_wp .or. max(f0(j), f1(j)) < -0.02_wp * problem%rest_dv(j)) cycle
+               call crest(j, t0, t1, top)
+               at_top = drive(top)
+               if (at_top(j) <= 0.0_wp) cycle
+               root = crossing(j, t0, top)
             end if
             if (root < best) then
                best = root
@@ -645,6 +660,31 @@ contains
          call problem%ground%value_at(problem%segment, time, horizontal, vertical)
          f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity)
       end function drive
+
+      !> Where the drive of side j is greatest between two times, by golden section
+      subroutine crest(j, first, last, top)
+         integer, intent(in) :: j
+         real(wp), intent(in) :: first
+         real(wp), intent(in) :: last
+         real(wp), intent(out) :: top
+         real(wp), parameter :: golden = 0.6180339887498949_wp
+         real(wp) :: low, high, x, y, fx(2), fy(2)
+         integer :: n
+         low = first
+         high = last
+         do n = 1, 30
+            x = high - golden * (high - low)
+            y = low + golden * (high - low)
+            fx = drive(x)
+            fy = drive(y)
+            if (fx(j) > fy(j)) then
+               high = y
+            else
+               low = x
+            end if
+         end do
+         top = 0.5_wp * (low + high)
+      end subroutine crest
 
       !> The first time at which side j is driven up, between a quiet and a driven time
       function crossing(j, quiet_time, driven_time) result(root)

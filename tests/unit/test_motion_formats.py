@@ -244,6 +244,20 @@ def test_suites_stay_in_the_folder(tmp_path) -> None:
         list_suite(None, None, "..", tmp_path)
 
 
+def test_a_broken_record_does_not_stop_a_suite(tmp_path) -> None:
+    import extrados
+
+    put(tmp_path, "a.at2", FILES["peer.at2"][0])
+    put(tmp_path, "b.at2", FILES["peer.at2"][0][:900])
+    deck = put(
+        tmp_path, "d.toml", '[motion]\nkind = "suite"\npattern = "*.at2"\n[analysis]\nkind = "motion"\nperiods = 20\n'
+    )
+    run = extrados.run(deck, tmp_path / "out")
+    assert run["motion"]["count"] == 1 and "b.at2" in run.analyses[0]["warnings"][0]
+    put(tmp_path, "a.at2", "words")
+    assert extrados.run(deck, tmp_path / "out").analyses[0]["status"] == "refused"
+
+
 def test_components_are_kept_together(tmp_path) -> None:
     ns, ud = put(tmp_path, "ns.at2", files.at2(A)), put(tmp_path, "ud.at2", files.at2(0.5 * A[:-3]))
     motion = record_motion(read_record(ns), Treatment(pga=1.0, scale=2.0), vertical=read_record(ud))

@@ -7,8 +7,8 @@ import numpy as np
 
 from extrados.analyses import dem_files, dem_model
 from extrados.analyses.dem_model import JointValues, Model
+from extrados.analyses.limit_common import geometry_arrays
 from extrados.analyses.run import Context, Refused
-from extrados.analyses.tilt import geometry_arrays
 from extrados.core import dem
 from extrados.core.ground import Ground
 from extrados.decks.dem import Dem

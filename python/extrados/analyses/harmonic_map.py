@@ -2,10 +2,10 @@
 
 import numpy as np
 
+from extrados.analyses.batches import sweep
 from extrados.analyses.rocking_model import rocking_model
 from extrados.analyses.run import Context
 from extrados.analyses.runs import runs_job
-from extrados.analyses.batches import sweep
 from extrados.decks.statistics import HarmonicMap
 from extrados.motions import pulses
 from extrados.motions.motion import GRAVITY

@@ -1,5 +1,7 @@
 """motion: what a ground motion is, alone or as a set: peaks, measures, spectra, pulses, export."""
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from extrados.analyses.run import Context, Refused
@@ -166,6 +168,22 @@ def _spectra_arrays(spectra: core.Spectra) -> dict[str, Array]:
     }
 
 
+def _readable(members: Iterator[Motion | RecordError], warnings: list[str]) -> Iterator[Motion]:
+    """The motions of a set; a record that cannot be read becomes a warning, and a refusal if it is the only one."""
+    found, wrong = 0, []
+    for member in members:
+        if isinstance(member, RecordError):
+            wrong.append(str(member))
+            warnings += wrong[-1:] if len(wrong) <= 10 else []
+            continue
+        found += 1
+        yield member
+    if len(wrong) > 10:
+        warnings.append(f"and {len(wrong) - 10} more records that cannot be read")
+    if not found:
+        raise Refused(f"none of the {len(wrong)} records can be read; the first: {wrong[0]}")
+
+
 def _run_set(context: Context, options: MotionStudy) -> Result:
     model, folder = context.deck.motion, context.deck.folder
     suite = isinstance(model, models.Suite)
@@ -178,7 +196,7 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     psa, shown, impulses, squares, warnings = [], [], [], None, []
     periods = None
     try:
-        for k, motion in enumerate(make_members(model, folder, options.count)):
+        for k, motion in enumerate(_readable(make_members(model, folder, options.count), warnings)):
             a, step = _series(motion)
             m = core.measures(a, step)
             for name, value in (("name", motion.name), ("pga_g", m.pga[0] / GRAVITY), ("pgv_m_s", m.pgv[0]), ("pgd_m", m.pgd[0]),

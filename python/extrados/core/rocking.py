@@ -78,8 +78,10 @@ class Response:
     potential: np.ndarray
     ledger: np.ndarray
     events: list[tuple[str, float, float]]
+    events_found: int  # may exceed the room for them
     work: float
     loss: float
+    settled: bool  # it rests, has fallen, or can no longer fall
     interrupted: bool = False
 
 
@@ -139,8 +141,10 @@ def history(
         times[:points],
         *state,
         [(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)],
+        int(events),
         work,
         loss,
+        bool(outcome[5]),
         interrupted,
     )
 
@@ -156,6 +160,7 @@ class Ensemble:
     peak_ratio: np.ndarray
     stop_time: np.ndarray  # [s]
     steps: np.ndarray
+    settled: np.ndarray  # False where end_time came before rest or fall
     interrupted: bool = False
     failed: dict[int, str] = field(default_factory=dict)
 
@@ -219,6 +224,7 @@ def ensemble(
         peak[1] * gone,
         stop_time * gone,
         outcome[3],
+        outcome[4] != 0,
         status == cancelled,
         failed,
     )

@@ -38,7 +38,9 @@ class SupportMovement(Table):
 class Joints(Analysis):
     """What all analyses with discrete elements share: joints and their damping."""
 
-    structures: ClassVar = ("arch", "block", "column", "wall", "vault", "aisled-vault", "blocks")
+    structures: ClassVar = (
+        "arch", "block", "column", "wall", "vault", "aisled-vault", "pointed-arch", "elliptical-arch", "blocks",
+    )  # fmt: skip
     friction: float = key(0.7, "coefficient of friction of the joints", ge=0, le=10)
     youngs_modulus: Stress = key(
         10e9,

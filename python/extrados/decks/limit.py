@@ -7,7 +7,7 @@ from pydantic import model_validator
 from extrados.decks.quantities import Force, Length, Stress
 from extrados.decks.table import Analysis, Table, key
 
-ASSEMBLIES = ("arch", "vault", "aisled-vault", "pointed-arch", "elliptical-arch", "blocks")
+ASSEMBLIES = ("arch", "vault", "aisled-vault", "pointed-arch", "elliptical-arch", "blocks", "column", "wall")
 CHAINS = ("arch", "vault", "aisled-vault", "pointed-arch", "elliptical-arch")
 ARCHES = ("arch", "pointed-arch", "elliptical-arch")
 

@@ -1,6 +1,6 @@
 """Finite-element walls: `panel` (built-in mesher) and `mesh` (from a file), with materials, supports and ties."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -151,8 +151,18 @@ class Panel(Wall):
     """A rectangular wall or beam with rectangular openings and notches, meshed here; x from left, y from bottom."""
 
     kind: Literal["panel"]
-    width: Length = key(about="length along x", gt=0)
-    height: Length = key(about="length along y", gt=0)
+    starter: ClassVar = {
+        "thickness": '"30 cm"',
+        "material": '{ young = "6.9 GPa", poisson = 0.25, density = 1900, tensile_strength = "0.2 MPa", '
+        'fracture_energy = "50 N/m" }',
+        "supports": '[{ edge = "bottom" }]',
+        "width": "3.0",
+        "height": "3.0",
+        "size": '"15 cm"',
+        "openings": "[{ x = [1.05, 1.95], y = [0.9, 2.1] }]",
+    }
+    width: Length | None = key(None, "length along x; needed unless an outline is given", gt=0)
+    height: Length | None = key(None, "length along y; needed unless an outline is given", gt=0)
     element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element")
     size: Length = key(about="wanted size of the elements", gt=0)
     mesh: Literal["structured", "random"] = key(
@@ -166,6 +176,7 @@ class Panel(Wall):
     outline: str | None = key(
         None, "DXF file of closed polylines: the outer one and the openings; replaces width, height, openings"
     )
+    outline_unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(None, "unit of the drawing where it names none")
 
     @model_validator(mode="after")
     def _sensible(self) -> "Panel":
@@ -173,6 +184,13 @@ class Panel(Wall):
             raise ValueError(f'a random mesh has triangles: element is {self.element}, expected "T3" or "T6"')
         if self.outline and self.element not in ("T3", "T6"):
             raise ValueError(f'an outline is filled with triangles: element is {self.element}, expected "T3" or "T6"')
+        if self.outline:
+            given = {"width", "height", "openings", "lines_x", "lines_y", "refine"} & self.model_fields_set
+            if given:
+                raise ValueError(f"an outline replaces {', '.join(sorted(given))}: give one or the other")
+            return self
+        if self.width is None or self.height is None:
+            raise ValueError("width and height are missing (or an outline)")
         smallest = min([self.size, *(r.size for r in self.refine)])
         count = self.width * self.height / smallest**2
         if count > LARGEST_MESH:
@@ -189,5 +207,13 @@ class Mesh(Wall):
     """A wall from a mesh file (gmsh, Abaqus and others; needs the extra `extrados[mesh]`)."""
 
     kind: Literal["mesh"]
+    starter: ClassVar = {
+        "thickness": '"30 cm"',
+        "material": '{ young = "6.9 GPa", poisson = 0.25, density = 1900, tensile_strength = "0.2 MPa", '
+        'fracture_energy = "50 N/m" }',
+        "supports": '[{ edge = "bottom" }]',
+        "file": '"wall.msh"',
+        "scale": "0.001",
+    }
     file: str = key(about="mesh file of triangles or quadrilaterals in the x, y plane", min_length=1, max_length=1000)
     scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)

@@ -5,7 +5,7 @@ import numpy as np
 from extrados.limit.equilibrium import spanning_tree
 from extrados.limit.interior import Interior, collapse_load
 from extrados.limit.loads import Loads, tilt_loads
-from extrados.limit.solver import BOUND, NoAnswer, NoEquilibrium, Programme, Solution
+from extrados.limit.solver import BOUND, Immovable, NoAnswer, NoEquilibrium, Programme, Solution
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
 from extrados.structures.assembly import Assembly
@@ -17,10 +17,6 @@ LAW = 1e-9
 ROUNDS = 300
 # Joints that move less than this part of the fastest block are at rest to an interior-point method.
 INNER_REST = 1e-5
-
-
-class Immovable(NoEquilibrium):
-    """No load of the kind asked for makes a mechanism."""
 
 
 class LimitAnalysis:

@@ -54,12 +54,18 @@ def is_set(model: Model) -> bool:
     return isinstance(model, Sets)
 
 
-def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion]:
-    """All records of a suite, the first `count` motions of a generated or compatible set, or the one motion."""
+def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion | RecordError]:
+    """All records of a suite, the first `count` motions of a generated or compatible set, or the one motion.
+
+    A record of a suite that cannot be read comes as its error: the others go on.
+    """
     match model:
         case models.Suite():
             for path in suite_files(model, folder):
-                yield _suite_member(model, path)
+                try:
+                    yield _suite_member(model, path)
+                except RecordError as error:
+                    yield error
         case models.Generated():
             made = generated_set(model, folder)
             for first, batch in made.batches(count):

@@ -1,6 +1,7 @@
 """The built-in mesher: rectangles with rectangular openings and notches."""
 
 import itertools
+from pathlib import Path
 
 import numpy as np
 
@@ -10,12 +11,12 @@ from extrados.structures.wall import BadWall, WallMesh, add_middles, build_wall
 JITTER = 0.33  # of the spacing: Delaunay triangles stay well shaped and keep to straight edges
 
 
-def make_panel(model: Panel, folder=None, seed: int | None = None) -> WallMesh:
+def make_panel(model: Panel, folder: Path | None = None, seed: int | None = None) -> WallMesh:
     """Mesh of a panel; `seed` overrides the deck's."""
     if model.outline is not None:
         from extrados.structures.outline import fill_outline
 
-        xy, connect = fill_outline(model, folder, model.seed if seed is None else seed)
+        xy, connect = fill_outline(model, folder or Path.cwd(), model.seed if seed is None else seed)
     else:
         columns, rows = grid_lines(model, 0), grid_lines(model, 1)
         if model.mesh == "random":

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-LARGEST = 200_000_000  # bytes
+LARGEST = 50_000_000  # bytes: three hours at 200 samples a second, ten times what a record needs
 
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
 ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254,

@@ -1,0 +1,154 @@
+"""Discrete elements as a user asks for them: answers beside the other strategies, and refusals that name the block."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from extrados.analyses.run import Context, run_analyses
+from extrados.decks.reader import DeckError, make_deck
+
+ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
+PULSE = {"kind": "step-pulse", "amplitude": "-1.0 g", "duration": 0.27}
+
+
+def answers(deck: dict, folder: Path | None = None, **context) -> list:
+    return run_analyses(Context(make_deck(deck, folder), **context))
+
+
+def test_three_bars_follow_the_four_hinge_model() -> None:
+    """Before the impact at 0.861 s the bars are the same mechanism: within 1 %."""
+    dem = {"kind": "dem", "merge": "three-bars", "end_time": 0.84, "friction": 2.0, "joint_stiffness": 1e12}
+    rocking, found = answers(
+        {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0}, dem]}
+    )
+    assert rocking["impact_times_s"][0] == pytest.approx(0.861, abs=0.002)
+    exact = np.interp(found["time"], rocking["time"], rocking["rotation"].ravel())
+    assert np.abs(found["rotation"][:, 0] - exact).max() < 0.01 * np.abs(exact).max()
+    assert found["energy_residual_ratio"] < 0.01
+
+
+def test_worn_corners_weaken() -> None:
+    """The tilt capacity follows the effective width of the base: B - 2 r."""
+    capacity = []
+    for worn in (0.0, 0.05):
+        dem = {
+            "kind": "dem", "test": "tilt", "friction": 2.0, "joint_stiffness": 1e11, "worn_corners": worn,
+            "tilt_limit": "0.5 g", "tilt_accuracy": 0.002,
+        }  # fmt: skip
+        (found,) = answers({"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "analysis": [dem]})
+        capacity.append(found["collapse_acceleration_g"])
+    assert capacity[0] == pytest.approx(0.25, rel=0.01)
+    assert capacity[1] == pytest.approx(0.9 * 0.25, rel=0.02)
+
+
+def test_a_support_that_sinks() -> None:
+    """An arch whose springing moves out hinges and stands; its support is named by a joint."""
+    move = {"joint": "joint 7", "dx": 0.1, "duration": 1.0}
+    dem = {"kind": "dem", "end_time": 1.5, "joint_stiffness": 1e10, "support_movements": [move]}
+    (found,) = answers({"structure": ARCH, "analysis": [dem]})
+    assert found.status == "ok" and found["outcome"] == "recovery"
+    hinged = np.flatnonzero(np.abs(found["hinge"][-1]) == 1)
+    assert len(hinged) >= 3  # spreading makes a three-hinge arch
+    move["joint"] = "joint 3"
+    (refused,) = answers({"structure": ARCH, "analysis": [dem]})
+    assert refused.status == "refused" and "joint 3" in refused.reason
+
+
+def test_refusals_name_what_is_wrong() -> None:
+    base = {"kind": "dem", "end_time": 1.0}
+
+    def reason(structure: dict = ARCH, **keys) -> str:
+        (found,) = answers({"structure": structure, "motion": PULSE, "analysis": [base | keys]})
+        assert found.status == "refused", found.status
+        return found.reason
+
+    assert "joint 99" in reason(joint_types=[{"joints": ["joint 99"], "friction": 0.3}])
+    twice = [{"joints": ["joint 1"], "friction": 0.3}, {"joints": ["joint 1"], "friction": 0.4}]
+    assert "named twice" in reason(joint_types=twice)
+    assert "critical" in reason(time_step=0.1)
+    assert "voussoir 77" in reason(track=["voussoir 77"])
+    thin = ARCH | {"thickness": 0.3}
+    assert "does not come to rest" in reason(thin)
+    assert "needs an arch" in reason({"kind": "column", "width": 1.0, "height": 2.0, "drums": 2}, merge="three-bars")
+
+
+@pytest.mark.parametrize("wrong", [{"friction": -0.1}, {"joint_stiffness": -1.0}, {"fraction": 1.5}, {"beta": -1e-3}])
+def test_deck_complains(wrong: dict) -> None:
+    with pytest.raises(DeckError) as error:
+        make_deck({"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "dem"} | wrong]})
+    assert next(iter(wrong)) in str(error.value)
+
+
+def test_overlapping_blocks_are_refused_by_name(tmp_path: Path) -> None:
+    from extrados.analyses import dem_model
+    from extrados.core import dem
+    from extrados.decks.dem import Dem
+    from extrados.structures.masonry import make_column
+
+    column = make_column(1.0, [1.0, 1.0])
+    column.outlines[1][:2, 1] -= 0.2  # the upper drum reaches into the lower one
+    context = Context(
+        make_deck(
+            {
+                "structure": {"kind": "column", "width": 1.0, "height": 2.0, "drums": 2},
+                "analysis": [{"kind": "dem", "end_time": 1.0}],
+            }
+        )
+    )
+    context.__dict__["structure"] = column
+    model = dem_model.make_model(context, Dem(kind="dem"))
+    with pytest.raises(Exception, match="drum 1 and drum 2 overlap"):
+        dem_model.checked(dem.run(model.bodies(), dem.Options(1.0)), model)
+
+
+def test_failure_curve_resumes(tmp_path: Path) -> None:
+    """An interrupted sweep goes on from what it has: the answers kept are not computed again."""
+    from extrados.analyses import dem_domain, dem_model
+
+    deck = make_deck(
+        {
+            "structure": {"kind": "block", "width": 1.0, "height": 4.0},
+            "analysis": [
+                {
+                    "kind": "dem-domain", "amplitudes": ["0.6 g"], "durations": [0.2, 0.4, 0.8], "accuracy": 0.1,
+                    "friction": 2.0, "joint_stiffness": 1e9,
+                }
+            ],
+        }
+    )  # fmt: skip
+    options = deck.analyses[0]
+    first = Context(deck, out=tmp_path / "run")
+    model = dem_model.make_model(first, options)
+    sweep = dem_domain.Sweep(first, options, model, [model.values])
+    sweep.fails([(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)], lambda n: None)
+    kept = json.loads((tmp_path / ".run.dem-domain.json").read_text())
+    assert len(kept["answers"]) == 2
+    again = dem_domain.Sweep(Context(deck, out=tmp_path / "run", resume=True), options, model, [model.values])
+    assert len(again.memory.answers) == 2
+    again.fails([(0, 0.6 * 9.80665, 0.2)], lambda n: pytest.fail("was computed again"))
+    fresh = dem_domain.Sweep(Context(deck, out=tmp_path / "run"), options, model, [model.values])
+    assert not fresh.memory.answers
+    (found,) = run_analyses(Context(deck, threads=2, out=tmp_path / "run"))
+    assert found.status == "ok" and 0.2 < found["shortest_durations_s"][0] <= 0.8
+    assert not (tmp_path / ".run.dem-domain.json").exists()
+
+
+def test_vtk_collection(tmp_path: Path) -> None:
+    deck = {
+        "structure": {"kind": "wall", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 2},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.8 g", "period": 0.5},
+        "analysis": [{"kind": "dem", "end_time": 0.3, "output_step": 0.1, "vtk": True, "joint_stiffness": 1e9}],
+    }
+    (found,) = answers(deck)
+    assert found.files["dem.pvd"].count(b"<DataSet") == len(found["time"]) == 4
+    frame = found.files["dem/frame_0000.vtu"]
+    assert b'NumberOfCells="6"' in frame  # five units and their support
+
+
+def test_limit_analysis_takes_columns_and_walls() -> None:
+    (found,) = answers(
+        {"structure": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 8}, "analysis": [{"kind": "tilt"}]}
+    )
+    assert found["collapse_acceleration_g"] == pytest.approx(0.25, rel=1e-6)

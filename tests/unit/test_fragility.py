@@ -1,0 +1,231 @@
+"""Fragility from decks: counts, intensities, sampling, broken members, spectra and checks."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.analyses.block_model import BlockModel
+from extrados.analyses.code_checks import asce43, ishiyama, piers
+from extrados.analyses.resonance import cap_for_collapse_within, half_cycles_to_collapse, least_cap, optimal_motion
+from extrados.analyses.rocking_model import RockingModel
+from extrados.analyses.run import Context, run_analyses
+from extrados.core import rocking
+from extrados.decks.reader import DeckError, make_deck
+from extrados.motions import pulses
+from extrados.structures.block import make_block
+
+G = 9.80665
+BLOCK = {"kind": "block", "width": 0.1, "height": 0.4}
+GENERATED = {"kind": "generated", "mmi": 7, "duration": 4.0, "seed": 3}
+
+
+def run(analysis: dict, structure: dict = BLOCK, motion: dict | None = GENERATED, folder: Path | None = None):
+    deck = {"structure": structure, "analysis": analysis}
+    if motion:
+        deck["motion"] = motion
+    return run_analyses(Context(make_deck(deck, folder), threads=2))[0]
+
+
+def test_shares_are_those_of_single_runs() -> None:
+    """Every member is the response that a single run of that motion gives."""
+    result = run({"kind": "fragility", "count": 12})
+    outcome = result.arrays["outcome"].data
+    for k in (0, 5, 11):
+        one = extrados.run(
+            {
+                "structure": BLOCK,
+                "motion": {**GENERATED, "member": k + 1},
+                "analysis": {"kind": "rocking", "end_time": 8.0},
+            }
+        )
+        assert one["rocking"]["outcome"] == rocking.OUTCOMES[outcome[k]]
+        assert one["rocking"]["peak_rotation_ratio"] == pytest.approx(result.arrays["peak_ratio"].data[k], rel=1e-9)
+    r = result.results
+    assert r["count"] == 12 and r["collapsed"] == (outcome == 2).sum() and r["uplifted"] == (outcome > 0).sum()
+    assert r["confidence_interval"][0] <= r["collapse_probability"] <= r["confidence_interval"][1]
+
+
+def test_levels_scale_the_motions() -> None:
+    levels = [0.3, 0.6, 1.0]
+    for intensity, column in (("pga", "pga"), ("arias", "arias"), ("scale", "scale")):
+        result = run({"kind": "fragility", "count": 5, "intensity": intensity, "levels": levels, "bootstrap": 0})
+        table = result.tables["ensemble"].columns
+        assert table[column].reshape(5, 3) == pytest.approx(np.tile(levels, (5, 1)))
+    ratio = run({"kind": "fragility", "count": 3, "intensity": "pga-ratio", "levels": [1.0, 2.0], "bootstrap": 0})
+    assert ratio.tables["ensemble"].columns["pga"].reshape(3, 2) == pytest.approx(np.tile([0.25, 0.5], (3, 1)))
+    # PGA of g tan alpha is where uplift begins
+    assert ratio.tables["fragility"].columns["uplift_probability"][1] == 1.0
+    speed = run({"kind": "fragility", "count": 3, "intensity": "pgv-ratio", "levels": [1.0], "bootstrap": 0})
+    p = BlockModel(make_block(0.1, 0.4)).frequency[0]
+    assert speed.tables["ensemble"].columns["pgv"] * p / (G * 0.25) == pytest.approx(np.ones(3))
+
+
+def test_curve_and_resurrections() -> None:
+    result = run({"kind": "fragility", "count": 60, "levels": [0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0], "bootstrap": 50})
+    r, table = result.results, result.tables["fragility"].columns
+    assert r["median_interval"][0] < r["median"] < r["median_interval"][1]
+    outcome = result.arrays["outcome"].data.reshape(60, 7)
+    assert np.array_equal(table["collapsed"], (outcome == 2).sum(axis=0))
+    later = [(o[np.argmax(o == 2) :] != 2).any() for o in outcome if (o == 2).any()]
+    assert r["resurrections"] == sum(later)
+    assert r["motions_that_collapse"] == len(later)
+    assert len(result.arrays["curve_lower"].data) == 200
+
+
+def test_uncertain_values_are_sampled_evenly() -> None:
+    result = run({"kind": "fragility", "count": 256, "uncertain": {"width": 0.1, "restitution": 0.02}, "seed": 5})
+    again = run({"kind": "fragility", "count": 256, "uncertain": {"width": 0.1, "restitution": 0.02}, "seed": 5})
+    plain = run({"kind": "fragility", "count": 256, "seed": 5})
+    assert np.array_equal(result.arrays["peak_ratio"].data, again.arrays["peak_ratio"].data)
+    assert not np.array_equal(result.arrays["peak_ratio"].data, plain.arrays["peak_ratio"].data)
+    from extrados.analyses.fragility import sampled_models
+    from extrados.analyses.rocking_model import rocking_model
+
+    context = Context(
+        make_deck(
+            {"structure": BLOCK, "motion": GENERATED, "analysis": {"kind": "fragility", "uncertain": {"width": 0.1}}}
+        )
+    )
+    models = sampled_models(context, context.deck.analyses[0], rocking_model(context), 256)
+    tangent = np.array([m.uplift for m in models])
+    assert tangent.mean() == pytest.approx(0.25, rel=2e-3) and tangent.std() == pytest.approx(0.025, rel=0.03)
+
+
+def test_a_broken_record_fails_alone(tmp_path: Path) -> None:
+    t = 0.01 * np.arange(200)
+    for k, peak in enumerate((0.2, 0.5)):
+        lines = "\n".join(f"{x:.2f} {peak * np.sin(9 * x):.6f}" for x in t)
+        (tmp_path / f"r{k}.csv").write_text("# t [s], a [g]\n" + lines)
+    (tmp_path / "r2.csv").write_text("0.0 0.1\n0.01 oops\n")
+    suite = {"kind": "suite", "pattern": "*.csv", "unit": "g"}
+    result = run({"kind": "fragility"}, motion=suite, folder=tmp_path)
+    assert result.status == "ok" and result.results["count"] == 2 and result.results["failed"] == 1
+    assert any("r2" in w and "oops" in w for w in result.warnings)
+    assert list(result.tables["ensemble"].columns["outcome"]).count("failed") == 1
+    (tmp_path / "r0.csv").unlink()
+    (tmp_path / "r1.csv").unlink()
+    assert run({"kind": "fragility"}, motion=suite, folder=tmp_path).status == "refused"
+
+
+def test_durations() -> None:
+    result = run(
+        {"kind": "fragility", "count": 40, "durations": [1.0, 4.0, 8.0]},
+        motion={**GENERATED, "mmi": 5, "scaling": "thesis", "factor": 5.0},
+    )
+    mean = result.results["mean_peak_rotation_ratio"]
+    assert len(mean) == 3 and mean[0] < mean[2]
+    assert (
+        run(
+            {"kind": "fragility", "durations": [1.0]}, motion={"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}
+        ).status
+        == "refused"
+    )
+
+
+@pytest.mark.parametrize(
+    ("analysis", "said"),
+    [
+        ({"count": 0}, "greater than or equal to 1"),
+        ({"count": -3}, "greater than or equal to 1"),
+        ({"levels": [0.1, 0.0]}, "above zero"),
+        ({"levels": [0.1], "durations": [1.0]}, "not both"),
+        ({"levels": [0.1], "intensity": "sa"}, "go together"),
+        ({"uncertain": {"widht": 0.1}}, "unknown"),
+        ({"uncertain": {"width": 2.0}}, "at most 0.5"),
+        ({"initial_rotation_ratio": 1.2}, "falls by itself"),
+    ],
+)
+def test_bad_questions(analysis: dict, said: str) -> None:
+    with pytest.raises(DeckError, match=said):
+        run({"kind": "fragility", **analysis})
+
+
+def test_refusals() -> None:
+    outside = run({"kind": "fragility", "count": 2}, motion={**GENERATED, "mmi": 11})
+    assert outside.status == "refused" and "outside the spectrum" in outside.reason
+    pulse = {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}
+    assert "expected at most 1" in run({"kind": "fragility", "count": 2}, motion=pulse).reason
+    arch = {"kind": "arch", "radius": 1.0, "thickness": 0.15, "embrace": 157.5, "voussoirs": 7}
+    assert "does not belong" in run({"kind": "fragility", "count": 2, "uncertain": {"width": 0.1}}, arch).reason
+    ok = run(
+        {"kind": "fragility", "count": 8, "uncertain": {"thickness": 0.05}}, {**arch, "restitution": "energy-safe"}
+    )
+    assert ok.status == "ok" and ok.results["count"] == 8
+
+
+def test_least_cap_is_where_the_optimal_motion_grows() -> None:
+    """Closed form by energies against the integrated response with the sign changed at every turning point."""
+    block = BlockModel(make_block(0.5, 1.0))
+    model = RockingModel(
+        "block", block.body, 0.5, tuple(block.alpha), float(block.restitution[0]), float(1 / block.frequency[0]), 0.5
+    )
+    least = float(least_cap(block, 0.1))
+    for factor, grows in ((0.995, False), (1.005, True)):
+        peaks = np.abs(optimal_motion(model, factor * least * G, 0.1, 4).peaks)
+        assert bool(peaks[1] > peaks[0]) is grows and bool(peaks[3] > peaks[2]) is grows
+    # Half cycles to collapse by energies are those of the integration.
+    cap = 1.02 * cap_for_collapse_within(block, 0.1, 4)
+    optimum = optimal_motion(model, cap * G, 0.1, 40)
+    assert optimum.response.outcome == "collapse"
+    assert half_cycles_to_collapse(block, 0.1, cap) == optimum.response.impacts == 4
+
+
+def test_rocking_spectrum_of_one_block_is_its_response() -> None:
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.3}
+    result = run(
+        {"kind": "rocking-spectrum", "periods": [2.0, 3.0], "slenderness": [15.0]},
+        {"kind": "block", "width": 1.0, "height": 1.0},
+        motion,
+    )
+    radius = 0.75 * G / np.pi**2
+    alpha = np.radians(15.0)
+    m = BlockModel(make_block(2 * radius * np.sin(alpha), 2 * radius * np.cos(alpha)))
+    one = rocking.history(m.body, pulses.sine_pulse(0.5 * G, 0.3).ground, 12.0, 0.1)
+    found = result.arrays["peak_ratio"].data[0, 0]
+    assert one.outcome == "recovery" and found == pytest.approx(one.peak_ratio, rel=1e-9)
+
+
+def test_harmonic_map() -> None:
+    result = run({"kind": "harmonic-map", "frequencies": [1.0, 3.0], "amplitudes": 12, "cycles": 10}, motion=None)
+    outcome = result.arrays["outcome"].data
+    amplitude = result.arrays["amplitude"].data
+    assert (outcome[:, amplitude < 0.25] == 0).all() and (outcome[:, amplitude > 0.2501] >= 1).all()
+    assert (outcome == 2).any()
+
+
+def test_code_checks_against_the_formulas() -> None:
+    ratio = asce43(1.0, 4.0, None)
+    th, b_h, h = np.arctan(0.25), 0.25, 2.0
+    f1, c3 = np.cos(th) + b_h * np.sin(th) - 1, 4 / 3 * (1 + b_h**2)
+    frequency = np.sqrt(2 * f1 * G / (c3 * th**2 * h)) / (2 * np.pi)
+    # SA capacity is the displacement theta h of an oscillator of that frequency
+    assert ratio.capacity * G == pytest.approx((2 * np.pi * frequency) ** 2 * th * h, rel=1e-12)
+    a, v = ishiyama(1.0, 4.0, 0.3, 0.4)
+    assert (
+        a.capacity == 0.25
+        and v.capacity == pytest.approx(10 * 100 / np.sqrt(400) / 100)
+        and a.verdict == "fails"
+        and v.verdict == "holds"
+    )
+    strong = {x.rule: x.capacity for x in piers(2.0, 3.0, 0.3, 200e3, 3e6, 0.1e6, 0.4, False)}
+    assert strong["FEMA 356 rocking"] == pytest.approx(0.9 * 0.5 * 200e3 * 2 / 3)
+    assert strong["Magenes-Calvi rocking"] == pytest.approx(2.0 * 200e3 / 6.0 * (1 - 200e3 / 0.6 / (0.85 * 3e6)))
+    fixed = {x.rule: x.capacity for x in piers(2.0, 3.0, 0.3, 200e3, 3e6, 0.1e6, 0.4, True)}
+    assert fixed["FEMA 356 rocking"] == pytest.approx(2 * strong["FEMA 356 rocking"])
+
+
+def test_code_checks_deck() -> None:
+    result = run(
+        {"kind": "code-checks"},
+        {"kind": "block", "width": 0.5, "height": 2.4},
+        {"kind": "record", "file": "extrados:el-centro-1940"},
+    )
+    checks = result.results["checks"]
+    assert checks["uplift"]["verdict"] == "fails" and all(c["source"] for c in checks.values())
+    assert result.results["dynamic_outcome"] == "recovery"
+    crushed = run(
+        {"kind": "code-checks", "axial_load": "10 MN", "compressive_strength": "2 MPa", "cohesion": 0.0}, motion=None
+    )
+    assert crushed.status == "refused" and "crushes" in crushed.reason

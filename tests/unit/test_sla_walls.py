@@ -1,0 +1,179 @@
+"""Walls from files, repetitions, stored results and figures, Ctrl-C."""
+
+import os
+import signal
+import threading
+import time
+import xml.etree.ElementTree as ET
+
+import numpy as np
+import pytest
+from test_sla_events import run_deck, wall
+
+from extrados.analyses.run import Context, run_analyses
+from extrados.decks.reader import DeckError, make_deck
+from extrados.results.store import read
+from extrados.session import run_deck as run_to_folder
+
+
+def write_mesh(path, clockwise: bool = False, extra=()):
+    """A 6 x 4 grid of quadrilaterals in millimetres, 1200 mm x 900 mm."""
+    meshio = pytest.importorskip("meshio")
+    x, y = np.meshgrid(np.linspace(0, 1200, 7), np.linspace(0, 900, 5), indexing="ij")
+    at = (np.arange(6)[:, None] * 5 + np.arange(4)).ravel()
+    quads = np.column_stack([at, at + 5, at + 6, at + 1])
+    form = "gmsh22" if path.suffix == ".msh" else None
+    cells = [("quad", quads[:, ::-1] if clockwise else quads), ("line", np.array([[0, 1]])), *extra]
+    meshio.write(path, meshio.Mesh(np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]), cells), form)
+
+
+def from_file(file: str, folder, **structure):
+    data = wall(events=30, constant=[])
+    data["structure"] = {
+        "kind": "mesh", "file": file, "scale": 0.001, "thickness": 0.2, "material": data["structure"]["material"],
+        "supports": [{"edge": "bottom"}], **structure,
+    }  # fmt: skip
+    return run_analyses(Context(make_deck(data, folder)))[0]
+
+
+@pytest.mark.parametrize(("name", "clockwise"), [("wall.msh", False), ("wall.inp", False), ("wall.vtu", True)])
+def test_mesh_files_agree_with_the_built_in_mesh(tmp_path, name, clockwise) -> None:
+    write_mesh(tmp_path / name, clockwise)
+    found = from_file(name, tmp_path)
+    data = wall(events=30, constant=[])
+    data["structure"] |= {
+        "width": 1.2,
+        "height": 0.9,
+        "openings": [],
+        "regions": [],
+        "lines_y": [0.225, 0.45, 0.675],
+        "size": 0.2,
+    }
+    built = run_deck(data)
+    assert found.results["elements"] == built.results["elements"] == 24
+    assert found.results["peak_load_N"] == pytest.approx(built.results["peak_load_N"], rel=1e-6)
+
+
+def test_bad_mesh_files(tmp_path) -> None:
+    write_mesh(tmp_path / "twice.vtu", extra=[("quad", np.array([[0, 5, 6, 1]]))])
+    assert "stand twice" in from_file("twice.vtu", tmp_path).reason
+    write_mesh(tmp_path / "bow.vtu", extra=[("quad", np.array([[0, 6, 5, 1]]))])
+    assert (
+        "without area" in from_file("bow.vtu", tmp_path).reason or "inverted" in from_file("bow.vtu", tmp_path).reason
+    )
+    write_mesh(tmp_path / "mixed.vtu", extra=[("triangle", np.array([[0, 5, 6]]))])
+    assert "expected exactly one of" in from_file("mixed.vtu", tmp_path).reason
+    (tmp_path / "noise.msh").write_text("no mesh at all")
+    assert "is not a mesh that meshio reads" in from_file("noise.msh", tmp_path).reason
+    assert "cannot be read" in from_file("missing.msh", tmp_path).reason
+    assert "outside the deck's folder" in from_file("../wall.msh", tmp_path).reason
+
+
+def test_outline_from_a_drawing(tmp_path) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new(units=4)
+    space = drawing.modelspace()
+    space.add_lwpolyline([(0, 0), (3000, 0), (3000, 1800), (1500, 2600), (0, 1800)], close=True)
+    space.add_lwpolyline([(1100, 700), (1900, 700), (1900, 1500), (1100, 1500)], close=True)
+    drawing.saveas(tmp_path / "gable.dxf")
+    data = wall(events=40)
+    data["structure"] = {
+        "kind": "panel", "outline": "gable.dxf", "thickness": 0.2, "size": 0.15, "element": "T3", "mesh": "random",
+        "material": data["structure"]["material"], "supports": [{"edge": "bottom"}],
+    }  # fmt: skip
+    data["analysis"][0] |= {
+        "constant": [{"kind": "gravity"}],
+        "reference": [{"kind": "gravity", "ax": "1 m/s^2", "ay": "0 m/s^2"}],
+    }
+    result = run_analyses(Context(make_deck(data, tmp_path)))[0]
+    assert result.status == "ok", result.reason
+    area = 3.0 * 1.8 + 0.5 * 3.0 * 0.8 - 0.8**2
+    assert result.results["reference_load_N"] == pytest.approx(1950.0 * 0.2 * area, rel=1e-6)
+    del data["structure"]["outline"]
+    with pytest.raises(DeckError, match="width and height are missing"):
+        make_deck(data, tmp_path)
+    data["structure"] |= {"outline": "gable.dxf", "width": 3.0}
+    with pytest.raises(DeckError, match="an outline replaces width"):
+        make_deck(data, tmp_path)
+
+
+def test_repetitions_give_a_band() -> None:
+    """Random meshes and strengths: another seed is another wall, the same seed the same."""
+    data = wall(events=60, seeds=[4, 9, 4], strength_variation=0.2, strength_length=0.5)
+    data["structure"] |= {"element": "T3", "mesh": "random"}
+    scatter = run_deck(data)
+    peaks = scatter.results["scatter"]["peak_loads_N"]
+    assert peaks[0] == peaks[2] != peaks[1]
+    assert scatter["scatter_load"].shape[0] == 3
+    assert "seeds ask for a random mesh" in run_deck(wall(events=5, seeds=[1])).reason
+
+
+def test_strength_field_has_its_mean_and_scatter() -> None:
+    from extrados.analyses.sla_model import strength_factors
+
+    deck = make_deck(wall(0.05, strength_variation=0.3))
+    factors = strength_factors(Context(deck).structure, deck.analyses[0], 11)
+    assert factors.mean() == pytest.approx(1.0, abs=0.02)
+    assert factors.std() == pytest.approx(0.3, abs=0.02)
+
+
+def test_results_fields_and_figures(tmp_path) -> None:
+    """A run as a user makes it: CSV, VTU in a PVD series, figures, report; and going on from it."""
+    data = wall(events=90, directions=["+", "-"], states=[20], section_x=[0.5])
+    out, (result,) = run_to_folder(Context(make_deck(data)), tmp_path / "run")
+    stored = read(out)
+    assert stored["sla"]["events"] == 90
+    lines = (out / "load_displacement.csv").read_text().splitlines()
+    assert lines[0].startswith("event,load [N],displacement [m]")
+    assert len(lines) == 91
+    series = ET.parse(out / "fields.pvd").getroot().findall(".//DataSet")
+    assert len(series) == len(result["state_event"])
+    grid = ET.parse(out / series[0].get("file")).getroot().find(".//Piece")
+    assert int(grid.get("NumberOfCells")) == result.results["elements"]
+    names = {p.stem for p in (out / "figures").iterdir()}
+    assert {"sla-curve", "sla-cracks", "sla-stress", "sla-energy", "sla-section-0", "sla-minus-cracks"} <= names
+    again = wall(events=20, resume_from=str(out), resume_event=71)
+    found = run_deck(again)
+    np.testing.assert_allclose(found["event_load"], result["event_load"][70:90], rtol=1e-9)
+    meshio = pytest.importorskip("meshio")
+    field = meshio.read(out / series[0].get("file"))
+    np.testing.assert_allclose(field.point_data["displacement"][:, :2], result["state_displacement"][0], rtol=1e-12)
+
+
+def test_interrupt_keeps_the_events_so_far() -> None:
+    """Ctrl-C in a long run: the partial curve comes back, the handler too."""
+    before = signal.getsignal(signal.SIGINT)
+    timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    begin = time.monotonic()
+    result = run_deck(wall(0.03, events=1_000_000, mechanism_ratio=1e12))
+    timer.join()
+    assert result.status == "interrupted"
+    assert 0 < result.results["events"] < 1_000_000
+    assert len(result["event_load"]) == result.results["events"]
+    assert time.monotonic() - begin < 60.0
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_cracks_of_path_4b_curve() -> None:
+    """Thesis Fig. 4-7d: the two cracks leave the plane of the notches to either side."""
+    import tomllib
+    from pathlib import Path
+
+    deck = Path(__file__).resolve().parents[2] / "cases" / "sla" / "nooru-mohamed.toml"
+    result = run_deck(tomllib.loads(deck.read_text(encoding="utf-8")))
+    width, at = result["state_width_n"][-1], result["point_xy"]
+    wide = width > 0.3 * width.max()
+    left, right = (wide & (at[:, 0] > 0.06) & (at[:, 0] < 0.1)), (wide & (at[:, 0] > 0.1) & (at[:, 0] < 0.14))
+    assert at[left, 1].min() < 0.093
+    assert at[right, 1].max() > 0.107
+
+
+def test_the_starter_deck_runs(tmp_path) -> None:
+    from extrados.decks.explain import starter
+    from extrados.decks.reader import read_text
+
+    result = run_analyses(Context(read_text(starter("sla").encode())))[0]
+    assert result.status == "ok", result.reason
+    assert result.results["stop"] == "target displacement"
+    assert read_text(starter("mesh").encode()).structure.file == "wall.msh"
