@@ -68,7 +68,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             )
         )
     moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
-    if moving.any():
+    if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))
     times = run.arrays[name].get("snapshot_time")
     if times is not None and len(times.data):
