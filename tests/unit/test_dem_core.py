@@ -197,3 +197,26 @@ def test_a_block_that_leaves_the_domain_is_named() -> None:
     options = dem.Options(3.0, 0.1, domain=(-40.0, 40.0, -2.0, 40.0))
     run = dem.run(bodies, options, shift=np.zeros((3, 3)))
     assert run.reason == "left" and run.blamed == [1]
+
+
+def test_an_open_ledger_stops_the_run() -> None:
+    """A ledger that must close to the impossible stops at once, with step and block."""
+    bodies = block_on_floor(1.0, 4.0, STIFF)
+    run = dem.run(bodies, dem.Options(2.0, 0.1, residual_limit=1e-12), cosine(0.5 * G, 10.88))
+    assert run.reason == "blow-up" and run.blamed == [0] and 0 < run.steps and run.stop_time < 2.0
+
+
+def test_cancel_answers_quickly_with_what_it_has() -> None:
+    import threading
+    import time
+
+    from extrados import _core
+
+    bodies = block_on_floor(1.0, 4.0, dem.Law(1e12, 1e12, 2.0, damping=1e-4))
+    timer = threading.Timer(2.0, lambda: _core.api_support.set_cancel(1))
+    timer.start()
+    begin = time.monotonic()
+    run = dem.run(bodies, dem.Options(3600.0, 0.05), cosine(0.5 * G, 10.88, 3600.0))
+    assert run.interrupted and len(run.time) > 1
+    assert time.monotonic() - begin < 30.0  # an hour of shaking was asked for
+    assert np.isfinite(run.place).all()
