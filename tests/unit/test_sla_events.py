@@ -107,6 +107,34 @@ def test_threads_do_not_change_a_bit() -> None:
             assert getattr(found[0], name).tobytes() == getattr(other, name).tobytes()
 
 
+def test_a_turned_wall_cracks_alike() -> None:
+    """The whole problem turned by 31 degrees: the same events at the same loads."""
+    deck = make_deck(wall())
+    model = build(Context(deck).structure, deck.analyses[0])
+    found = []
+    for angle in (0.0, np.radians(31.0)):
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        with Model(model.wall.xy @ turn, model.freedoms, model.groups) as core:
+            core.loads(model.constant @ turn, model.reference @ turn)
+            found.append(core.run(200, [model.control]))
+    np.testing.assert_allclose(found[1].load, found[0].load, rtol=1e-9)
+    assert (found[1].point == found[0].point).all()
+
+
+def test_ties_go_to_the_first_point() -> None:
+    """Two equal bars in series reach their strength together: the first one cracks, and goes on alone."""
+    from extrados.core.sla import Bars, Freedoms, Softening
+
+    xy = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]])
+    bars = Bars(np.array([[0, 1], [1, 2]]), 0.02, 5.3e9, 0.25, Softening(1.7e6, 130.0))
+    force = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]])
+    with Model(xy, Freedoms.make(3, [(0, 0), (0, 1), (1, 1), (2, 1)]), [bars]) as core:
+        core.loads(np.zeros((3, 2)), force)
+        events = core.run(100, [Monitor.of(2, 0)])
+    assert (events.point == 0).all()
+    assert len(events) > 5
+
+
 def test_batches_do_not_matter() -> None:
     deck = make_deck(wall())
     model = build(Context(deck).structure, deck.analyses[0])
