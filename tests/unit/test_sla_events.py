@@ -122,7 +122,8 @@ def test_a_turned_wall_cracks_alike() -> None:
 
 
 def test_ties_go_to_the_first_point() -> None:
-    """Two equal bars in series reach their strength together: the first one cracks, and goes on alone."""
+    """Two equal bars in series reach their strength together: the first one cracks and softens to its end; what
+    it leaves (a millionth) then carries the second to its own."""
     from extrados.core.sla import Bars, Freedoms, Softening
 
     xy = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]])
@@ -131,8 +132,9 @@ def test_ties_go_to_the_first_point() -> None:
     with Model(xy, Freedoms.make(3, [(0, 0), (0, 1), (1, 1), (2, 1)]), [bars]) as core:
         core.loads(np.zeros((3, 2)), force)
         events = core.run(100, [Monitor.of(2, 0)])
-    assert (events.point == 0).all()
-    assert len(events) > 5
+    half = len(events) // 2
+    assert half > 5
+    assert events.point.tolist() == [0] * half + [1] * half
 
 
 def test_batches_do_not_matter() -> None:
