@@ -10,6 +10,7 @@ from extrados.analyses.run import Context, Refused, run_analyses
 from extrados.analyses.sla_curve import bilinear, envelope
 from extrados.analyses.sla_model import build
 from extrados.analyses.sla_run import damage_before, run_curves
+from extrados.core.errors import CoreError
 from extrados.core.sla import Behaviour, Model, Monitor, Stop
 from extrados.decks.reader import DeckError, make_deck
 
@@ -135,6 +136,32 @@ def test_ties_go_to_the_first_point() -> None:
     half = len(events) // 2
     assert half > 5
     assert events.point.tolist() == [0] * half + [1] * half
+
+
+def test_a_point_that_no_multiplier_relieves_goes_first() -> None:
+    """Not in the thesis: A overloads a bar that B does not touch; it is damaged, without equilibrium, before B acts."""
+    from extrados.core.sla import Bars, Freedoms, Softening
+
+    xy = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.7]])
+    law, area, young = Softening(1.7e6, 130.0), 0.02, 5.3e9
+    bars = Bars(np.array([[0, 1], [1, 2]]), area, young, 0.25, law)
+    freedoms = Freedoms.make(3, [(0, 0), (0, 1), (2, 0), (2, 1)])
+    along, across = np.zeros((3, 2)), np.zeros((3, 2))
+    along[1, 0], across[1, 1] = 1.4 * 1.7e6 * area, -1.0
+    with Model(xy, freedoms, [bars]) as core:
+        core.loads(along, across)
+        events = core.run(100, [Monitor.of(1, 1)])
+        core.set_damage(np.zeros((11, 2)) + np.array([[0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0]]).T)
+        core.loads(along, across)
+        with pytest.raises(CoreError, match="constant loads alone exceed"):
+            core.run(100, [Monitor.of(1, 1)], Stop(refuse_overload=True))
+    teeth_of_one = int((events.point == 0).sum())
+    assert teeth_of_one > 5
+    assert (events.point[:teeth_of_one] == 0).all()
+    assert not events.equilibrium[:teeth_of_one].any()
+    assert events.equilibrium[teeth_of_one:].all()
+    assert events.load[teeth_of_one] == pytest.approx(events.load[teeth_of_one:].max())
+    assert events.load[teeth_of_one] / area > 1.7e6
 
 
 def test_batches_do_not_matter() -> None:
