@@ -9,7 +9,8 @@ module sla_group
    implicit none
    private
    public :: element_group, point_group, group_holder, bound, scan_result, event_vectors, material_options
-   public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, report_rows, state_rows
+   public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
+      report_rows, state_rows
    public :: code_tension, code_compression, code_close, code_open
 
    real(wp), parameter :: unbounded = huge(1.0_wp)

@@ -305,6 +305,7 @@ def test_refusals(path, value, says) -> None:
     ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
     ("analysis.0.reference", [], "at least 1 item"),
     ("structure.material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
+    ("structure.material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
     ("structure.supports", [{"fix": "x"}], "the place is missing"),
     ("structure.supports", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
     ("structure.supports", [{"x": [2, 1], "y": 0}], "the range runs backward"),
