@@ -70,13 +70,15 @@ contains
       real(c_double), intent(out) :: place(3, nb, nt)         !! x, y [m], rotation [rad]
       real(c_double), intent(out) :: rate(3, nb, nt)          !! [m/s, rad/s]
       real(c_double), intent(out) :: energy(9, nt)            !! [J], see energy_terms
-      integer(c_int), intent(out) :: counts(9)                !! points, reason, blamed (2), settling, searches, pairs, steps, contacts
+      !> points, reason, blamed (2), settling, searches, pairs, steps, contacts
+      integer(c_int), intent(out) :: counts(9)
       real(c_double), intent(out) :: measures(4)              !! least step, critical step, stop time [s], residual
       integer(c_int), intent(out) :: bounces(nb)
       real(c_double), intent(out) :: airborne(nb)             !! [s]
       real(c_double), intent(out) :: settled(3, nb)           !! place after settling
       integer(c_int), intent(out) :: contact_body(2, room)
-      real(c_double), intent(out) :: contact(6, room)         !! x, y [m], force on the second body x, y [N], normal, shear [N]
+      !> x, y [m], force on the second body x, y [N], normal, shear [N]
+      real(c_double), intent(out) :: contact(6, room)
       integer(c_int), intent(out) :: status
       !f2py threadsafe
       call with_targets(samples, breaks, linear, harmonic, wanted, time, place, rate, energy)
@@ -147,8 +149,9 @@ contains
          record%rate => rates
          record%energy => energies
          call run_model(it, options, record, status)
+         record%most_pairs = max(record%most_pairs, it%contacts%pairs)
          counts(1:8) = [int(record%points, c_int), record%reason, int(record%blamed, c_int), &
-            int(record%settling, c_int), int(record%searches, c_int), int(max(record%most_pairs, it%contacts%pairs), c_int), &
+            int(record%settling, c_int), int(record%searches, c_int), int(record%most_pairs, c_int), &
             int(it%steps, c_int)]
          measures = [record%least_step, record%critical, record%stop_time, record%residual]
          bounces = int(it%set%item%bounces, c_int)
