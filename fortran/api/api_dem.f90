@@ -149,9 +149,9 @@ contains
          record%rate => rates
          record%energy => energies
          call run_model(it, options, record, status)
-         record%most_pairs = max(record%most_pairs, it%contacts%pairs)
          counts(1:8) = [int(record%points, c_int), record%reason, int(record%blamed, c_int), &
-            int(record%settling, c_int), int(record%searches, c_int), int(record%most_pairs, c_int), &
+            int(record%settling, c_int), int(record%searches, c_int), &
+            int(max(record%most_pairs, it%contacts%pairs), c_int), &
             int(it%steps, c_int)]
          measures = [record%least_step, record%critical, record%stop_time, record%residual]
          bounces = int(it%set%item%bounces, c_int)

@@ -286,8 +286,8 @@ contains
 
    !> A batch of events
    subroutine run(handle, room, stop_lambda, stop_displacement, stop_fraction, stop_compliance, refuse_overload, &
-                  monitors, entries, first, node, direction, share, count, reals, integers, monitored, guard, cracked, reason, &
-                  status)
+                  monitors, entries, first, node, direction, share, count, reals, integers, monitored, guard, &
+                  cracked, reason, status)
       use sla_events, only : run_events, stop_rules, event_log
       use sla_handle, only : model_of
       use sla_model, only : model

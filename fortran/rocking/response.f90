@@ -301,7 +301,8 @@ contains
          if (answer%half_cycles > 0) answer%outcome = outcome_recovery
          if (.not. resting) then
             call body_energy(q, v, energy)
-            answer%settled = problem%segment > ground%segments .and. q < body%critical(i) .and. energy < minval_barrier()
+            answer%settled = problem%segment > ground%segments .and. q < body%critical(i) &
+               .and. energy < minval_barrier()
          else
             answer%settled = status == status_ok
          end if

@@ -2,6 +2,7 @@
 
 import json
 import logging
+import signal
 import sys
 import time
 from contextlib import contextmanager
@@ -87,8 +88,8 @@ def run(
 ) -> None:
     """Run decks: print the answer, write results, figures and report."""
     from extrados.analyses.run import Context, default_threads
-    from extrados.decks.reader import read_deck
-    from extrados.session import run_deck
+    from extrados.decks.reader import DeckError, read_deck
+    from extrados.session import default_out, run_deck
 
     if out is not None and len(decks) > 1:
         err_console.print("--out takes one deck at a time")
@@ -96,6 +97,10 @@ def run(
     worst = 0
     with _errors(as_json):
         checked = [read_deck(path) for path in decks]
+        folders = [default_out(deck) for deck in checked]
+        twice = next((f for f in folders if folders.count(f) > 1), None)
+        if twice is not None:
+            raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
         for deck in checked:
             progress = _Progress(quiet or as_json)
             context = Context(deck, threads or default_threads(), progress, resume=resume, scheduler=scheduler)
@@ -120,16 +125,19 @@ def run(
 def _tell(deck, results, folder: Path, figures: bool) -> None:
     if deck.title:
         out_console.print(deck.title, style="bold", markup=False)
-    for result in results:
+    from extrados.results.store import group_names
+
+    for name, result in zip(group_names([r.kind for r in results]), results, strict=True):
         if result.status != "ok":
-            out_console.print(f"{result.kind}: {result.status}: {result.reason}", markup=False)
+            out_console.print(f"{name}: {result.status}: {result.reason}", markup=False)
         if result.answer:
-            out_console.print(f"{result.kind}: {result.answer}", markup=False)
+            out_console.print(f"{name}: {result.answer}", markup=False)
         for warning in result.warnings:
-            out_console.print(f"{result.kind}: warning: {warning}", markup=False)
+            out_console.print(f"{name}: warning: {warning}", markup=False)
     if figures:
         out_console.print(f"Report:  {folder / 'report.html'}", markup=False)
-        out_console.print(f"Figures: {folder / 'figures'}", markup=False)
+        if (folder / "figures").is_dir():
+            out_console.print(f"Figures: {folder / 'figures'}", markup=False)
     else:
         out_console.print(f"Results: {folder}", markup=False)
 
@@ -253,6 +261,7 @@ def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("
     """List the decks below a folder with their titles."""
     import tomllib
 
+    found = False
     for path in sorted(folder.rglob("*.toml")):
         if path.name.endswith(".expect.toml"):
             continue
@@ -261,6 +270,10 @@ def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("
         except (OSError, ValueError):
             title = "(cannot be read)"
         out_console.print(f"{path}: {title}", markup=False)
+        found = True
+    if not found:
+        err_console.print(f"no decks below {folder}", markup=False)
+        raise typer.Exit(NOT_DONE)
 
 
 @app.command()
@@ -269,17 +282,16 @@ def report(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> 
     from extrados.plots.report import write_report
 
     with _errors():
-        out_console.print(f"Report:  {write_report(folder)}", markup=False)
+        out_console.print(f"Report:  {write_report(folder)[0]}", markup=False)
 
 
 @app.command()
 def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
-    """Draw the figures of stored results anew."""
-    from extrados.plots.report import draw
-    from extrados.results.store import read
+    """Draw the figures and the report anew, and list the figures."""
+    from extrados.plots.report import write_report
 
     with _errors():
-        for figures in draw(read(folder), folder).values():
+        for figures in write_report(folder)[1].values():
             for name, caption in figures:
                 out_console.print(f"{folder / 'figures' / name}.png: {caption}", markup=False)
 
@@ -296,6 +308,7 @@ def version() -> None:
 def main() -> None:
     """Entry point of the `extrados` command."""
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a request to end is answered like Ctrl-C
     try:
         app()
     except BrokenPipeError:  # the reader of our output went away, as in `extrados cases | head`

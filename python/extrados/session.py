@@ -1,5 +1,6 @@
 """A whole run: deck, analyses, results folder, figures and report."""
 
+import contextlib
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -15,14 +16,15 @@ def provenance() -> dict[str, Any]:
     """Version, commit and compilers of this copy."""
     commit = ""
     folder = Path(__file__).resolve().parent
-    try:
-        answer = subprocess.run(
-            ["git", "-C", str(folder), "describe", "--always", "--dirty", "--exclude=*"],
-            capture_output=True, text=True, timeout=5,
-        )  # fmt: skip
-        commit = answer.stdout.strip() if answer.returncode == 0 else ""
-    except (OSError, subprocess.TimeoutExpired):
-        pass  # an installed copy without git: the version stands alone
+    root = folder.parents[1]
+    # Only a checkout of this project is asked: git would also answer for a repository that happens to lie around.
+    if (root / ".git").exists() and (root / "python" / "extrados") == folder:
+        with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+            answer = subprocess.run(
+                ["git", "-C", str(root), "describe", "--always", "--dirty", "--exclude=*"],
+                capture_output=True, text=True, timeout=5,
+            )  # fmt: skip
+            commit = answer.stdout.strip() if answer.returncode == 0 else ""
     return {
         "version": VERSION,
         "commit": commit,
@@ -57,10 +59,10 @@ def run_deck(context: Context, out: Path | None = None, figures: bool = True) ->
             },
         }
         store.write(folder, head, results)
-        if figures:
-            from extrados.plots.report import write_report
+    if figures:  # the results are safe by now, whatever happens while drawing
+        from extrados.plots.report import write_report
 
-            write_report(folder)
+        write_report(out)
     if all(r.status in ("ok", "refused") for r in results):
         checkpoint.discard(out)
     return out, results

@@ -11,12 +11,13 @@ import time
 import numba
 import numpy as np
 from scipy.integrate import solve_ivp
+from tests.bench.rocking_peers import GRAVITY, rk4_many
+from tests.verification.rocking_oracle import reference
 
 from extrados.analyses.block_model import BlockModel
 from extrados.core import rocking
 from extrados.core.rocking import Ground
 from extrados.structures.block import make_block
-from tests.bench.rocking_peers import GRAVITY, reference, rk4_many
 
 STEP, END, THREADS = 0.005, 10.0, 2
 
@@ -82,7 +83,16 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
 
     def ours(tolerance: float):
         return rocking.ensemble(
-            [m.body], grounds, zero, each, 1.0, END, start_rotation=start, tolerance=tolerance, stop_when_safe=False, threads=THREADS
+            [m.body],
+            grounds,
+            zero,
+            each,
+            1.0,
+            END,
+            start_rotation=start,
+            tolerance=tolerance,
+            stop_when_safe=False,
+            threads=THREADS,
         )
 
     def error(peaks: np.ndarray) -> str:
@@ -94,7 +104,9 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
     print(f"block {width} x {height} m, {count} motions of {END:g} s, peak {peak:g} g, {THREADS} threads")
     rate = count / best(lambda: ours(1e-8))
     e = ours(1e-8)
-    print(f"  extrados, tolerance 1e-8      {rate:9.0f} runs/s   error {error(e.peak_ratio)}; {100 * (e.outcome == 2).mean():.0f} % collapse, {e.impacts.mean():.0f} impacts a run")
+    print(
+        f"  extrados, tolerance 1e-8      {rate:9.0f} runs/s   error {error(e.peak_ratio)}; {100 * (e.outcome == 2).mean():.0f} % collapse, {e.impacts.mean():.0f} impacts a run"
+    )
     slow = scipy_rate(p, alpha, c_v, samples, start, 4)
     print(f"  SciPy RK45, rtol 1e-8         {slow:9.2f} runs/s   extrados is {rate / slow:.0f} times as fast")
     numba.set_num_threads(THREADS)
@@ -102,7 +114,9 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
         rk4_many(p, alpha, c_v, samples[:2], STEP, start, END, parts)
         peer = count / best(lambda parts=parts: rk4_many(p, alpha, c_v, samples, STEP, start, END, parts))
         peaks, _ = rk4_many(p, alpha, c_v, samples, STEP, start, END, parts)
-        print(f"  numba RK4 at {name:9s}        {peer:9.0f} runs/s   extrados is {rate / peer:.1f} times as fast; error {error(peaks)}")
+        print(
+            f"  numba RK4 at {name:9s}        {peer:9.0f} runs/s   extrados is {rate / peer:.1f} times as fast; error {error(peaks)}"
+        )
 
 
 def many() -> None:
@@ -121,7 +135,9 @@ def many() -> None:
             job.run(first, min(2500, count - first), THREADS)
         seconds = time.perf_counter() - begin
         memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-        print(f"  {count:8d} generated motions of {made.end_time:g} s: {count / seconds:7.0f} runs/s with their generation, {memory:.0f} MB at most")
+        print(
+            f"  {count:8d} generated motions of {made.end_time:g} s: {count / seconds:7.0f} runs/s with their generation, {memory:.0f} MB at most"
+        )
 
 
 def main() -> None:

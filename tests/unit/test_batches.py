@@ -84,7 +84,9 @@ def test_only_missing_batches_run_again(tmp_path: Path, monkeypatch: pytest.Monk
     kept[1].write_bytes(b"cut off")
     ran = []
     real = Squares.run
-    monkeypatch.setattr(Squares, "run", lambda self, first, count, threads: ran.append(first) or real(self, first, count, threads))
+    monkeypatch.setattr(
+        Squares, "run", lambda self, first, count, threads: ran.append(first) or real(self, first, count, threads)
+    )
     s = sweep(context(out, resume=True), "t", Squares(), 3000, "squares")
     assert s.complete and np.array_equal(s["value"], np.arange(3000) ** 2)
     assert ran and min(ran) == int(kept[1].stem) and max(ran) < int(kept[2].stem)
@@ -151,7 +153,18 @@ count = {count}
 def test_resume_after_kill_gives_the_same_bytes(tmp_path: Path) -> None:
     deck = tmp_path / "deck.toml"
     deck.write_text(FRAGILITY.format(count=12000))
-    command = [sys.executable, "-m", "extrados.cli", "run", str(deck), "--no-figures", "--quiet", "--threads", "1", "--out"]
+    command = [
+        sys.executable,
+        "-m",
+        "extrados.cli",
+        "run",
+        str(deck),
+        "--no-figures",
+        "--quiet",
+        "--threads",
+        "1",
+        "--out",
+    ]
     process = subprocess.Popen([*command, str(tmp_path / "a")])
     while len(list(tmp_path.glob("a.checkpoint/*/*.npz"))) < 3:
         assert process.poll() is None, "the run was over before it could be killed"
@@ -195,9 +208,13 @@ def cluster(tmp_path: Path):
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
         )  # fmt: skip
 
-    processes = [start("dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))]
+    processes = [
+        start("dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
+    ]
     for _ in range(2):
-        processes.append(start("dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny", "--no-dashboard"))
+        processes.append(
+            start("dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny", "--no-dashboard")
+        )
     deadline = time.monotonic() + 60
     while not file.exists() or not file.read_text().strip():
         assert time.monotonic() < deadline

@@ -19,7 +19,8 @@ def rectangle(width=1.0, height=4.0, **options) -> BlockModel:
 
 
 @pytest.mark.parametrize(
-    ("share", "period"), [(0.1, 1.86858), (0.25, 3.18146), (0.5, 5.26783), (0.75, 8.25375), (0.9, 11.97289), (0.99, 21.19317)]
+    ("share", "period"),
+    [(0.1, 1.86858), (0.25, 3.18146), (0.5, 5.26783), (0.75, 8.25375), (0.9, 11.97289), (0.99, 21.19317)],
 )
 def test_free_period_of_the_linear_form(share: float, period: float) -> None:
     """p T = 4 acosh(1/(1 - theta0/alpha)) (Housner 1963)."""
@@ -58,7 +59,9 @@ def lowest_overturning(m: BlockModel, motion, low: float, high: float) -> float:
     return high
 
 
-@pytest.mark.parametrize(("x", "length"), [(1.1, 2.39790), (1.5, 1.09861), (2.0, 0.69315), (3.0, 0.40547), (4.0, 0.28768)])
+@pytest.mark.parametrize(
+    ("x", "length"), [(1.1, 2.39790), (1.5, 1.09861), (2.0, 0.69315), (3.0, 0.40547), (4.0, 0.28768)]
+)
 def test_rectangular_pulse(x: float, length: float) -> None:
     """p t1 = ln(x/(x - 1)), linear form, no return after the pulse."""
     m = rectangle(linear=True)
@@ -100,7 +103,9 @@ def test_fig_7_1() -> None:
     m = rectangle()
     r = rocking.history(m.body, pulses.harmonic(0.5 * G, 10.88 / (2 * np.pi), 5.0, "cosine").ground, 5.0, 0.01)
     impacts = [t for kind, t, _ in r.events if kind == "impact"]
-    assert impacts[:10] == pytest.approx([0.2576, 0.8048, 1.0647, 1.1967, 1.5393, 1.9515, 2.1565, 2.366, 2.7574, 3.0659], abs=1e-3)
+    assert impacts[:10] == pytest.approx(
+        [0.2576, 0.8048, 1.0647, 1.1967, 1.5393, 1.9515, 2.1565, 2.366, 2.7574, 3.0659], abs=1e-3
+    )
     assert len(impacts) == 16
     peaks = [x for kind, _, x in r.events if kind == "peak"][:4]
     assert peaks == pytest.approx([-0.00625, 0.05391, -0.01626, 0.00534], abs=1e-4)
@@ -220,9 +225,38 @@ BLOCK = {"kind": "block", "width": 0.5, "height": 2.0}
 def test_bad_blocks(change: dict, said: str) -> None:
     table = {k: v for k, v in {**BLOCK, **change}.items() if v is not None}
     with pytest.raises(DeckError, match=said):
-        make_deck({"structure": table, "motion": {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}, "analysis": {"kind": "rocking"}})
+        make_deck(
+            {
+                "structure": table,
+                "motion": {"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0},
+                "analysis": {"kind": "rocking"},
+            }
+        )
 
 
 def test_stocky_block_lands_flat() -> None:
     m = BlockModel(make_block(3.0, 1.0))
     assert m.restitution[0] == 0.0 and "lands flat" in m.warnings[0]
+
+
+def test_column_is_taken_as_one_body() -> None:
+    """Drums of one width are the block of the same size; a tapered column keeps its mass, centre and base."""
+    import extrados
+
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
+    one = extrados.run(
+        {"structure": {"kind": "block", "width": 0.5, "height": 2.0}, "motion": motion, "analysis": {"kind": "rocking"}}
+    )
+    two = extrados.run(
+        {
+            "structure": {"kind": "column", "width": 0.5, "height": 2.0, "drums": 5},
+            "motion": motion,
+            "analysis": {"kind": "rocking"},
+        }
+    )
+    assert two["rocking"]["impact_times_s"] == pytest.approx(one["rocking"]["impact_times_s"], abs=1e-9)
+    assert two["rocking"]["peak_rotation_rad"] == pytest.approx(one["rocking"]["peak_rotation_rad"], rel=1e-9)
+    tapered = {"kind": "column", "width": 0.5, "top_width": 0.4, "height": 2.0, "drums": 4}
+    r = extrados.run({"structure": tapered, "motion": motion, "analysis": {"kind": "rocking"}})["rocking"]
+    centre = 2.0 / 3.0 * (0.5 + 2 * 0.4) / (0.5 + 0.4)  # of a trapezium
+    assert r["critical_rotation_rad"] == pytest.approx(np.arctan(0.25 / centre), rel=1e-9)

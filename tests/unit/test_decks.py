@@ -44,8 +44,8 @@ def test_good_deck() -> None:
     ("old", "new", "line", "words"),
     [
         ("radius = 10.0", "radus = 10.0", 4, ["radus", "did you mean 'radius'"]),
-        ("radius = 10.0", "radius = -10.0", 4, ["greater than 0", "m"]),
-        ('"150 cm"', '"0 cm"', 5, ["thickness", "greater than 0"]),
+        ("radius = 10.0", "radius = -10.0", 4, ["greater than or equal to 0.001 m"]),
+        ('"150 cm"', '"0 cm"', 5, ["thickness", "greater than 0 m"]),
         ('"150 cm"', '"1,5 m"', 5, ["not a quantity", "decimal sign is a point"]),
         ('"150 cm"', '"1.5 s"', 5, ["'s' is not a unit of m"]),
         ('"150 cm"', '"1.5 parsnip"', 5, ["unknown unit 'parsnip'"]),
@@ -59,6 +59,11 @@ def test_good_deck() -> None:
         ('"150 cm"', "12.0", 2, ["not below the radius"]),
         ("voussoirs = 7", "voussoirs = 3", 7, ["greater than or equal to 4"]),
         ("voussoirs = 7", "voussoirs = 7.5", 7, ["voussoirs"]),
+        ("embrace = 157.5", "embrace-x = 157.5", 6, ["unknown key", "did you mean 'embrace'"]),
+        ("embrace = 157.5", "embrace = 157.5\nfloat = 1", 7, ["unknown key"]),
+        ("voussoirs = 7", 'voussoirs = 7\nrestitution = "thess"', 8, ["'thesis' or 'energy-safe', or", "number"]),
+        ("voussoirs = 7", "voussoirs = 7\nrestitution = 1.2", 8, ["less than or equal to 1"]),
+        ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
         ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),
         ('kind = "step-pulse"', 'kind = "step-puls"', 9, ["did you mean 'step-pulse'"]),
@@ -98,6 +103,31 @@ def test_hostile_files(tmp_path) -> None:
     for path, words in ((big, "5.0 MB"), (tmp_path, "is not a file"), (tmp_path / "no.toml", "no such file")):
         with pytest.raises(DeckError, match=words):
             read_deck(path)
+
+
+def test_every_prefix_of_a_deck() -> None:
+    """A deck cut off anywhere is a deck or a list of complaints."""
+    text = GOOD + '[[analysis]]\nkind = "failure-domain"\ndurations = [\n0.1,\n0.2,\n]\n'
+    for cut in range(len(text)):
+        try:
+            read_text(text[:cut].encode())
+        except DeckError as error:
+            assert error.complaints
+
+
+def test_analysis_settings_are_checked() -> None:
+    for bad, words in (
+        ('kind = "failure-domain"\ndurations = [0.0, 0.2]', "greater than 0 s"),
+        ('kind = "failure-domain"\ndurations = [-0.1]', "greater than 0 s"),
+        ('kind = "failure-domain"\naccuracy = 1e-18', "greater than or equal"),
+        ('kind = "assessment"\nmin_period = 5.0', "not below max_period"),
+    ):
+        found = complaints(GOOD.replace('kind = "tilt"', bad))
+        assert any(words in c for c in found), found
+    assert any(
+        "no [analysis]" in c
+        for c in complaints(GOOD[: GOOD.index("[[analysis]]")].replace("title", "analysis = []\ntitle", 1))
+    )
 
 
 def test_empty_deck() -> None:

@@ -33,7 +33,13 @@ def test_shares_are_those_of_single_runs() -> None:
     result = run({"kind": "fragility", "count": 12})
     outcome = result.arrays["outcome"].data
     for k in (0, 5, 11):
-        one = extrados.run({"structure": BLOCK, "motion": {**GENERATED, "member": k + 1}, "analysis": {"kind": "rocking", "end_time": 8.0}})
+        one = extrados.run(
+            {
+                "structure": BLOCK,
+                "motion": {**GENERATED, "member": k + 1},
+                "analysis": {"kind": "rocking", "end_time": 8.0},
+            }
+        )
         assert one["rocking"]["outcome"] == rocking.OUTCOMES[outcome[k]]
         assert one["rocking"]["peak_rotation_ratio"] == pytest.approx(result.arrays["peak_ratio"].data[k], rel=1e-9)
     r = result.results
@@ -77,7 +83,11 @@ def test_uncertain_values_are_sampled_evenly() -> None:
     from extrados.analyses.fragility import sampled_models
     from extrados.analyses.rocking_model import rocking_model
 
-    context = Context(make_deck({"structure": BLOCK, "motion": GENERATED, "analysis": {"kind": "fragility", "uncertain": {"width": 0.1}}}))
+    context = Context(
+        make_deck(
+            {"structure": BLOCK, "motion": GENERATED, "analysis": {"kind": "fragility", "uncertain": {"width": 0.1}}}
+        )
+    )
     models = sampled_models(context, context.deck.analyses[0], rocking_model(context), 256)
     tangent = np.array([m.uplift for m in models])
     assert tangent.mean() == pytest.approx(0.25, rel=2e-3) and tangent.std() == pytest.approx(0.025, rel=0.03)
@@ -100,10 +110,18 @@ def test_a_broken_record_fails_alone(tmp_path: Path) -> None:
 
 
 def test_durations() -> None:
-    result = run({"kind": "fragility", "count": 40, "durations": [1.0, 4.0, 8.0]}, motion={**GENERATED, "mmi": 5, "scaling": "thesis", "factor": 5.0})
+    result = run(
+        {"kind": "fragility", "count": 40, "durations": [1.0, 4.0, 8.0]},
+        motion={**GENERATED, "mmi": 5, "scaling": "thesis", "factor": 5.0},
+    )
     mean = result.results["mean_peak_rotation_ratio"]
     assert len(mean) == 3 and mean[0] < mean[2]
-    assert run({"kind": "fragility", "durations": [1.0]}, motion={"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}).status == "refused"
+    assert (
+        run(
+            {"kind": "fragility", "durations": [1.0]}, motion={"kind": "sine-pulse", "amplitude": "1 g", "period": 1.0}
+        ).status
+        == "refused"
+    )
 
 
 @pytest.mark.parametrize(
@@ -131,14 +149,18 @@ def test_refusals() -> None:
     assert "expected at most 1" in run({"kind": "fragility", "count": 2}, motion=pulse).reason
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.15, "embrace": 157.5, "voussoirs": 7}
     assert "does not belong" in run({"kind": "fragility", "count": 2, "uncertain": {"width": 0.1}}, arch).reason
-    ok = run({"kind": "fragility", "count": 8, "uncertain": {"thickness": 0.05}}, {**arch, "restitution": "energy-safe"})
+    ok = run(
+        {"kind": "fragility", "count": 8, "uncertain": {"thickness": 0.05}}, {**arch, "restitution": "energy-safe"}
+    )
     assert ok.status == "ok" and ok.results["count"] == 8
 
 
 def test_least_cap_is_where_the_optimal_motion_grows() -> None:
     """Closed form by energies against the integrated response with the sign changed at every turning point."""
     block = BlockModel(make_block(0.5, 1.0))
-    model = RockingModel("block", block.body, 0.5, tuple(block.alpha), float(block.restitution[0]), float(1 / block.frequency[0]), 0.5)
+    model = RockingModel(
+        "block", block.body, 0.5, tuple(block.alpha), float(block.restitution[0]), float(1 / block.frequency[0]), 0.5
+    )
     least = float(least_cap(block, 0.1))
     for factor, grows in ((0.995, False), (1.005, True)):
         peaks = np.abs(optimal_motion(model, factor * least * G, 0.1, 4).peaks)
@@ -152,7 +174,11 @@ def test_least_cap_is_where_the_optimal_motion_grows() -> None:
 
 def test_rocking_spectrum_of_one_block_is_its_response() -> None:
     motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.3}
-    result = run({"kind": "rocking-spectrum", "periods": [2.0, 3.0], "slenderness": [15.0]}, {"kind": "block", "width": 1.0, "height": 1.0}, motion)
+    result = run(
+        {"kind": "rocking-spectrum", "periods": [2.0, 3.0], "slenderness": [15.0]},
+        {"kind": "block", "width": 1.0, "height": 1.0},
+        motion,
+    )
     radius = 0.75 * G / np.pi**2
     alpha = np.radians(15.0)
     m = BlockModel(make_block(2 * radius * np.sin(alpha), 2 * radius * np.cos(alpha)))
@@ -177,7 +203,12 @@ def test_code_checks_against_the_formulas() -> None:
     # SA capacity is the displacement theta h of an oscillator of that frequency
     assert ratio.capacity * G == pytest.approx((2 * np.pi * frequency) ** 2 * th * h, rel=1e-12)
     a, v = ishiyama(1.0, 4.0, 0.3, 0.4)
-    assert a.capacity == 0.25 and v.capacity == pytest.approx(10 * 100 / np.sqrt(400) / 100) and a.verdict == "fails" and v.verdict == "holds"
+    assert (
+        a.capacity == 0.25
+        and v.capacity == pytest.approx(10 * 100 / np.sqrt(400) / 100)
+        and a.verdict == "fails"
+        and v.verdict == "holds"
+    )
     strong = {x.rule: x.capacity for x in piers(2.0, 3.0, 0.3, 200e3, 3e6, 0.1e6, 0.4, False)}
     assert strong["FEMA 356 rocking"] == pytest.approx(0.9 * 0.5 * 200e3 * 2 / 3)
     assert strong["Magenes-Calvi rocking"] == pytest.approx(2.0 * 200e3 / 6.0 * (1 - 200e3 / 0.6 / (0.85 * 3e6)))
@@ -186,9 +217,15 @@ def test_code_checks_against_the_formulas() -> None:
 
 
 def test_code_checks_deck() -> None:
-    result = run({"kind": "code-checks"}, {"kind": "block", "width": 0.5, "height": 2.4}, {"kind": "record", "file": "extrados:el-centro-1940"})
+    result = run(
+        {"kind": "code-checks"},
+        {"kind": "block", "width": 0.5, "height": 2.4},
+        {"kind": "record", "file": "extrados:el-centro-1940"},
+    )
     checks = result.results["checks"]
     assert checks["uplift"]["verdict"] == "fails" and all(c["source"] for c in checks.values())
     assert result.results["dynamic_outcome"] == "recovery"
-    crushed = run({"kind": "code-checks", "axial_load": "10 MN", "compressive_strength": "2 MPa", "cohesion": 0.0}, motion=None)
+    crushed = run(
+        {"kind": "code-checks", "axial_load": "10 MN", "compressive_strength": "2 MPa", "cohesion": 0.0}, motion=None
+    )
     assert crushed.status == "refused" and "crushes" in crushed.reason

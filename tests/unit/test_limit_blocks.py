@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extrados.limit.programme import LimitAnalysis
+from extrados.limit.interior import collapse_load
+from extrados.limit.programme import Immovable, LimitAnalysis
 from extrados.structures.arch import make_arch
 from extrados.structures.assembly import GROUND
 from extrados.structures.blocks import Polygon, make_blocks, read_json
@@ -80,6 +81,33 @@ def test_wall_tilts_as_one_or_slides() -> None:
     # As one stone it turns about its toe.
     one = make_blocks([square("wall", 0.0, 0.0, 2.0, 1.5)], None)
     assert LimitAnalysis(one).collapse()[0].gamma == pytest.approx(2.0 / 1.5)
+
+
+@pytest.mark.parametrize("friction", [0.25, 0.5, 0.8])
+def test_interior_point_method_on_a_wall(friction: float) -> None:
+    """Against HiGHS on the reduced form: capacity, bounds both ways, laws of the joints, work of the mechanism."""
+    section = make_blocks(wall(10, 6), None)
+    exact, _ = LimitAnalysis(section, friction, form="reduced").collapse()
+    inner = collapse_load(LimitAnalysis(section, friction, form="sparse").system, np.full(len(section.a), friction), 1)
+    assert inner is not None and inner.gamma == pytest.approx(exact.gamma, abs=2e-9)
+    assert inner.corners[:, :2].min() > 0.0
+    assert (np.abs(inner.corners[:, 2]) <= friction * inner.corners[:, :2].sum(axis=1)).all()
+    # Openings dilate at least as much as they slide: the flow rule of the bound.
+    assert (inner.motion[:, :2].min(axis=1) >= friction * np.abs(inner.motion[:, 2]) - 1e-9).all()
+    for direction in (1, -1):
+        state, mechanism = LimitAnalysis(section, friction, form="sparse").collapse(direction)
+        assert abs(state.gamma - mechanism.upper_bound) < 1e-9 and mechanism.defect < 1e-9
+        # A wall is its own mirror image but for the bond: the courses are symmetric here.
+        assert state.gamma == pytest.approx(direction * exact.gamma, abs=5e-9)
+
+
+def test_a_stone_in_a_vice_cannot_be_moved() -> None:
+    """Held between two walls that are ground, it bears any sideways load: no capacity is made up."""
+    ground = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 1.0, 1.0]])
+    held = make_blocks([square("held", 0, 0)], ground)
+    for form in ("reduced", "sparse"):
+        with pytest.raises(Immovable, match="no such load"):
+            LimitAnalysis(held, form=form).collapse()
 
 
 def test_contacts_of_many_stones() -> None:

@@ -78,6 +78,15 @@ def test_impulses_of_a_known_sum_are_found() -> None:
         assert impulse.goodness > 0.99
 
 
+@pytest.mark.parametrize("period", [0.2, 0.5, 1.3])
+def test_a_sine_pulse_is_its_own_impulse(period) -> None:
+    """Although the motion is no longer than the impulse."""
+    t, a = pulses.sine_pulse(-3.0, period).series()
+    (impulse,) = primary_impulses(t, a, 1)
+    assert (impulse.amplitude, impulse.period) == (pytest.approx(-3.0, rel=2e-3), pytest.approx(period, rel=2e-3))
+    assert impulse.start == pytest.approx(0.0, abs=2e-3 * period) and impulse.goodness > 0.9999
+
+
 def test_classification() -> None:
     """A near-fault pulse is one, noise is not, and neither is a pulse that comes late or is weak."""
     _, a = pulses.velocity_pulse(0.8, 2.0, 1.5, 90.0).series(0.01)
@@ -294,3 +303,17 @@ def test_measures_of_spectra_agree_with_their_definitions() -> None:
     frequency, amplitude = fourier_spectrum(a, step)
     # Parseval: int a^2 dt = 2 int |X|^2 df
     assert 2 * np.trapezoid(amplitude**2, frequency) == pytest.approx(np.sum(a**2) * step, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    "raw",
+    [b"", b"\xff\xfe0\x001\x00", b"\0" * 100, b"0,1\n0,2\n0,3\n", b"0 1\n1 nan\n2 3\n", files.at2(files.series())[:900].encode(), b"\xe9" * 400],
+    ids=["empty", "utf-16", "binary", "commas", "nan", "cut", "latin"],
+)  # fmt: skip
+def test_hostile_files_on_the_command_line(tmp_path, monkeypatch, raw) -> None:
+    """A message with the file and exit code 3, never a traceback."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "x.at2").write_bytes(raw)
+    answer = CliRunner().invoke(app, ["motion", "x.at2", "--no-figures"])
+    assert answer.exit_code == 3 and "x.at2" in answer.output and "Traceback" not in answer.output
+    assert isinstance(answer.exception, SystemExit)

@@ -167,3 +167,13 @@ def test_cracks_of_path_4b_curve() -> None:
     left, right = (wide & (at[:, 0] > 0.06) & (at[:, 0] < 0.1)), (wide & (at[:, 0] > 0.1) & (at[:, 0] < 0.14))
     assert at[left, 1].min() < 0.093
     assert at[right, 1].max() > 0.107
+
+
+def test_the_starter_deck_runs(tmp_path) -> None:
+    from extrados.decks.explain import starter
+    from extrados.decks.reader import read_text
+
+    result = run_analyses(Context(read_text(starter("sla").encode())))[0]
+    assert result.status == "ok", result.reason
+    assert result.results["stop"] == "target displacement"
+    assert read_text(starter("mesh").encode()).structure.file == "wall.msh"

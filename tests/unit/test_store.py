@@ -69,7 +69,15 @@ def test_never_replaces_what_is_not_ours(tmp_path) -> None:
     (tmp_path / "home").mkdir()
     (tmp_path / "home" / "thesis.tex").write_text("x")
     (tmp_path / "file").write_text("x")
-    for bad in (tmp_path / "home", tmp_path / "file"):
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other" / "summary.json").write_text('{"mine": 1}')
+    with store.new_folder(tmp_path / "run") as folder:
+        store.write(folder, HEAD, [sample()])
+    (tmp_path / "run" / "figures").mkdir()
+    (tmp_path / "run" / "figures" / "tilt.png").write_text("x")
+    store.prepare(tmp_path / "run")
+    (tmp_path / "run" / "my-notes.txt").write_text("x")
+    for bad in (tmp_path / "home", tmp_path / "file", tmp_path / "other", tmp_path / "run"):
         with pytest.raises(store.StoreError):
             store.prepare(bad)
     assert (tmp_path / "home" / "thesis.tex").exists()
@@ -107,4 +115,5 @@ def test_full_disk(tmp_path, limit) -> None:
     run = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, cwd=tmp_path)
     assert run.returncode == 3, run.stderr
     assert "Traceback" not in run.stderr and str(tmp_path / "out") in run.stderr
-    assert not (tmp_path / "out").exists()
+    if (tmp_path / "out").exists():  # the results fitted and are whole; only the report did not
+        assert store.read(tmp_path / "out")["tilt"] and not (tmp_path / "out" / "report.html").exists()

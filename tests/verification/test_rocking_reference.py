@@ -1,18 +1,13 @@
 """Blocks under 200 random motions against SciPy's DOP853 at rtol 1e-10, restarted at every sample."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from rocking_oracle import reference
 
 from extrados.analyses.block_model import BlockModel
 from extrados.core import rocking
 from extrados.core.rocking import Ground
 from extrados.structures.block import make_block
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "bench"))
-pytest.importorskip("numba")
 
 STEP, POINTS = 0.02, 301
 
@@ -23,7 +18,12 @@ def motions(count: int, seed: int) -> np.ndarray:
     t = STEP * np.arange(POINTS)
     window = (np.arctan((t - 0.5) / 0.1) - np.arctan((t - 5.0) / 0.1)) / np.pi
     lines = np.geomspace(0.4, 10.0, 15)
-    raw = np.array([np.sin(2 * np.pi * np.outer(t, lines) + rng.uniform(0, 2 * np.pi, 15)).sum(axis=1) * window for _ in range(count)])
+    raw = np.array(
+        [
+            np.sin(2 * np.pi * np.outer(t, lines) + rng.uniform(0, 2 * np.pi, 15)).sum(axis=1) * window
+            for _ in range(count)
+        ]
+    )
     return raw / np.abs(raw).max(axis=1, keepdims=True) * rng.uniform(0.15, 0.6, (count, 1)) * 9.80665
 
 
@@ -32,8 +32,6 @@ def compare(count: int, seed: int, width: float, height: float) -> tuple[np.ndar
 
     On the edge: the outcome, or the peak by more than 1e-3, changes when the motion is scaled by 1 +- 1e-6.
     """
-    from rocking_peers import reference
-
     m = BlockModel(make_block(width, height))
     alpha, p, c_v = float(m.alpha[0]), float(m.frequency[0]), float(m.restitution[0])
     samples, start, end = motions(count, seed), float(m.alpha[0]) / 32.0, STEP * (POINTS - 1) + 1.0
@@ -41,7 +39,15 @@ def compare(count: int, seed: int, width: float, height: float) -> tuple[np.ndar
 
     def run(scale: float):
         return rocking.ensemble(
-            [m.body], grounds, np.zeros(count, int), np.arange(count), scale, end, start_rotation=start, stop_when_safe=False, threads=2
+            [m.body],
+            grounds,
+            np.zeros(count, int),
+            np.arange(count),
+            scale,
+            end,
+            start_rotation=start,
+            stop_when_safe=False,
+            threads=2,
         )
 
     ours, more, less = run(1.0), run(1.0 + 1e-6), run(1.0 - 1e-6)
@@ -64,7 +70,9 @@ def test_a_few_motions() -> None:
 def test_two_hundred_motions(width: float, height: float, seed: int) -> None:
     """Half of the 200 on each of two sizes."""
     difference, same, edge = compare(100, seed, width, height)
-    print(f"{width} x {height} m: greatest difference {difference[~edge].max():.1e}, {edge.sum()} of 100 on the edge of collapse")
+    print(
+        f"{width} x {height} m: greatest difference {difference[~edge].max():.1e}, {edge.sum()} of 100 on the edge of collapse"
+    )
     assert edge.sum() <= 10
     assert same[~edge].all()
     assert difference[~edge].max() < 1e-6

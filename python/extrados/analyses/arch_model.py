@@ -9,7 +9,8 @@ import numpy as np
 from extrados.analyses.run import Refused
 from extrados.core import arch as core_arch
 from extrados.core.rocking import Body, arch_body
-from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.limit.programme import LimitAnalysis, Mechanism, State
+from extrados.limit.solver import Immovable, NoEquilibrium
 from extrados.structures.arch import Arch, make_arch
 
 #: Bounds of thickness over radius between which the minimum thickness is sought.
@@ -23,6 +24,8 @@ def minimum_thickness(embrace: float, voussoirs: int) -> float:
         arch = make_arch(1.0, ratio, embrace, voussoirs)
         try:
             return LimitAnalysis(arch).collapse()[0].gamma
+        except Immovable:
+            return np.inf
         except NoEquilibrium:
             return -1.0
 
@@ -74,6 +77,10 @@ class ArchModel:
         """State and mechanism under the greatest load to +x; Refused where the arch cannot stand."""
         try:
             state, mechanism = self.limit.collapse(1)
+        except Immovable:
+            raise Refused(
+                "no horizontal load makes a mechanism of this arch: its joints hold it from all sides"
+            ) from None
         except NoEquilibrium:
             state = None
         if state is None or state.gamma <= 0.0:
@@ -111,11 +118,17 @@ class ArchModel:
 
     @property
     def restitution(self) -> float:
-        """c_v used: by the rule, never above 1."""
+        """c_v used: by the rule, never above 1; Refused where the hinges do not reflect."""
         if not isinstance(self.rule, str):
             return float(self.rule)
         thesis, projection = self.restitutions
-        return projection if self.rule == "energy-safe" else min(max(thesis, 0.0), 1.0)
+        value = projection if self.rule == "energy-safe" else thesis
+        if value < 0.0:
+            raise Refused(
+                f'the impact rule "{self.rule}" gives c_v = {value:.3f}: the hinges of an arch this stocky do not reflect '
+                "at impact; give restitution a number between 0 and 1"
+            )
+        return min(value, 1.0)
 
     @property
     def warnings(self) -> list[str]:

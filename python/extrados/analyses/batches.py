@@ -138,7 +138,9 @@ def _on_cluster(context: Context, batches: _Batches, job: Job) -> Swept:
     try:
         from distributed import Client
     except ImportError:
-        raise Refused("a scheduler was given, but dask.distributed is not installed: pip install 'extrados[cluster]'") from None
+        raise Refused(
+            "a scheduler was given, but dask.distributed is not installed: pip install 'extrados[cluster]'"
+        ) from None
     address = context.scheduler
     try:
         client = Client(address, timeout=CONNECT_SECONDS, set_as_default=False)

@@ -2,12 +2,14 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from extrados.core.rocking import Body, block_body
+from extrados.decks.table import Structure
 from extrados.motions.motion import GRAVITY
-from extrados.structures.block import Block
+from extrados.structures.block import Block, monolith
 
 
 @dataclass(frozen=True)
@@ -71,6 +73,20 @@ class BlockModel:
         )
 
 
-def block_model(block: Block, options) -> BlockModel:
-    """The model that a deck's [structure] of kind block asks for."""
-    return BlockModel(block, options.restitution, options.energy_ratio, options.form == "linear")
+def as_block(structure: Structure, made: Any) -> Block | None:
+    """The rigid block that a structure rocks as: a `block`, or a `column` taken as one body; None for others."""
+    if isinstance(made, Block):
+        return made
+    return monolith(made) if structure.kind == "column" else None
+
+
+def block_model(block: Block, structure: Structure) -> BlockModel:
+    """The model that a deck's [structure] asks for; a column has Housner's impact and the full equations."""
+    if structure.kind != "block":
+        return BlockModel(block)
+    return BlockModel(block, structure.restitution, structure.energy_ratio, structure.form == "linear")
+
+
+def initial_ratio(structure: Structure) -> float:
+    """Rotation at the start over the critical one."""
+    return getattr(structure, "initial_rotation_ratio", 0.0)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from extrados.analyses.block_model import BlockModel, block_model
+from extrados.analyses.block_model import BlockModel, as_block, block_model, initial_ratio
 from extrados.analyses.rocking_history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.run import Context
 from extrados.analyses.tilt import geometry_arrays
@@ -14,9 +14,14 @@ from extrados.results.model import Array, Result
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, and the friction that keeps the toe from sliding."""
-    model = block_model(context.structure, context.deck.structure)
+    structure = context.deck.structure
+    model = block_model(as_block(structure, context.structure), structure)
     context.warnings += model.warnings + context.motion.notes
-    ratio = context.deck.structure.initial_rotation_ratio
+    if structure.kind == "column":
+        context.warnings.append(
+            "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
+        )
+    ratio = initial_ratio(structure)
     end_time = options.end_time or context.motion.end + 30.0 / float(model.frequency.min())
     start = ratio * float(model.alpha[0 if ratio >= 0.0 else 1])
     response = run_history(context, options, model.body, end_time, 12, start)

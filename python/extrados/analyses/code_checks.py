@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.analyses.block_model import BlockModel, block_model
+from extrados.analyses.block_model import BlockModel, as_block, block_model, initial_ratio
 from extrados.analyses.run import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
@@ -43,7 +43,9 @@ def west(tan_alpha: float, pga: float | None) -> Line:
 def housner(p: float, alpha: float, pga: float | None, pulse: float | None) -> Line:
     """Half sine of circular frequency w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
     x = float(np.sqrt(1.0 + (pulse / p) ** 2)) if pulse else 1.0
-    note = "for the primary impulse of the motion taken as a half sine" if pulse else "static limit: no impulse was found"
+    note = (
+        "for the primary impulse of the motion taken as a half sine" if pulse else "static limit: no impulse was found"
+    )
     return Line("Housner half sine", "PGA", x * np.tan(alpha), pga, "g", "Housner 1963, Eq. 15 (verify clause)", note)
 
 
@@ -66,7 +68,14 @@ def ntc(model: BlockModel, pga: float | None, q: float, fc: float, sd) -> list[L
     # d* is the displacement of the centre of mass; it vanishes the multiplier at the rotation alpha.
     d0 = b.centre_height * alpha0
     lines = [
-        Line("NTC linear (ground level)", "a_g S", a0 * q, pga, "g", "NTC 2018 C8.7.1.2.1: a0* >= a_g S/q (verify clause)"),
+        Line(
+            "NTC linear (ground level)",
+            "a_g S",
+            a0 * q,
+            pga,
+            "g",
+            "NTC 2018 C8.7.1.2.1: a0* >= a_g S/q (verify clause)",
+        ),
     ]
     d_u = 0.4 * d0
     d_s = 0.4 * d_u
@@ -96,7 +105,16 @@ def asce43(width: float, height: float, sa) -> Line:
                 f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha")  # fmt: skip
 
 
-def piers(width: float, height: float, thickness: float, load: float, strength: float, cohesion: float, friction: float, double: bool) -> list[Line]:
+def piers(
+    width: float,
+    height: float,
+    thickness: float,
+    load: float,
+    strength: float,
+    cohesion: float,
+    friction: float,
+    double: bool,
+) -> list[Line]:
     """Lateral strength of a wall pier, `load` [N] in all at its base; lengths [m], stresses [Pa]."""
     area = width * thickness
     stress = load / area
@@ -107,23 +125,54 @@ def piers(width: float, height: float, thickness: float, load: float, strength: 
     sliding_fema = 0.75 * cohesion * area + friction * load
     rocking = width * load * share / (2.0 * effective)
     # Magenes and Calvi 1997: bed-joint sliding of the cracked base, and diagonal cracking of the units left out
-    cracked = thickness * width * (1.5 * cohesion + friction * stress) / (1.0 + 3.0 * cohesion * slenderness / max(stress, 1e-300))
+    cracked = (
+        thickness
+        * width
+        * (1.5 * cohesion + friction * stress)
+        / (1.0 + 3.0 * cohesion * slenderness / max(stress, 1e-300))
+    )
     shear = area * (cohesion + friction * stress) / (1.0 + slenderness)
     crushing = load * width * share / (2.0 * effective)
     return [
-        Line("FEMA 356 rocking", "lateral strength", fema, None, "N", "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)"),
-        Line("FEMA 356 bed-joint sliding", "lateral strength", sliding_fema, None, "N", "FEMA 356 Eq. 7-3 with v_me = 0.75 c + mu P/A (verify clause)"),
+        Line(
+            "FEMA 356 rocking", "lateral strength", fema, None, "N", "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)"
+        ),
+        Line(
+            "FEMA 356 bed-joint sliding",
+            "lateral strength",
+            sliding_fema,
+            None,
+            "N",
+            "FEMA 356 Eq. 7-3 with v_me = 0.75 c + mu P/A (verify clause)",
+        ),
         Line("FEMA 356 toe crushing", "lateral strength", crushing, None, "N", "FEMA 356 Eq. 7-6 (verify clause)"),
-        Line("Magenes-Calvi rocking", "lateral strength", rocking, None, "N", "Magenes and Calvi 1997, Eq. 1 (verify clause)"),
-        Line("Magenes-Calvi shear", "lateral strength", shear, None, "N", "Magenes and Calvi 1997, Eq. 6 (verify clause)"),
-        Line("Magenes-Calvi sliding", "lateral strength", cracked, None, "N", "Magenes and Calvi 1997, Eq. 4 (verify clause)"),
+        Line(
+            "Magenes-Calvi rocking",
+            "lateral strength",
+            rocking,
+            None,
+            "N",
+            "Magenes and Calvi 1997, Eq. 1 (verify clause)",
+        ),
+        Line(
+            "Magenes-Calvi shear", "lateral strength", shear, None, "N", "Magenes and Calvi 1997, Eq. 6 (verify clause)"
+        ),
+        Line(
+            "Magenes-Calvi sliding",
+            "lateral strength",
+            cracked,
+            None,
+            "N",
+            "Magenes and Calvi 1997, Eq. 4 (verify clause)",
+        ),
     ]
 
 
 def run(context: Context, options: CodeChecks) -> Result:
     """All rules that apply, with the computed rocking of the deck's motion beside them."""
-    block = context.structure
-    model = block_model(block, context.deck.structure)
+    structure = context.deck.structure
+    block = as_block(structure, context.structure)
+    model = block_model(block, structure)
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
     pga = options.peak_acceleration / GRAVITY if options.peak_acceleration else None
@@ -153,7 +202,7 @@ def run(context: Context, options: CodeChecks) -> Result:
         pulse = 2.0 * np.pi / found[0].period if found else None
         dynamic = core_rocking.history(
             model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
-            start_rotation=abs(context.deck.structure.initial_rotation_ratio) * float(model.alpha[0]),
+            start_rotation=abs(initial_ratio(structure)) * float(model.alpha[0]),
         )  # fmt: skip
     alpha = float(model.alpha.min())
     lines = [
@@ -184,7 +233,9 @@ def run(context: Context, options: CodeChecks) -> Result:
         "note": [x.note for x in lines],
     })  # fmt: skip
     result.arrays = {
-        "capacity": Array(np.array([x.capacity for x in lines]), ("rule",), "", "each in its unit, see code_checks.csv"),
+        "capacity": Array(
+            np.array([x.capacity for x in lines]), ("rule",), "", "each in its unit, see code_checks.csv"
+        ),
         "demand": Array(np.array([np.nan if x.demand is None else x.demand for x in lines]), ("rule",)),
     }
     said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]

@@ -63,7 +63,13 @@ class Mapper:
     """Runs pulses of many durations and amplitudes on one structure."""
 
     def __init__(
-        self, body: Body, pulse: str, durations: Sequence[float], settle: float, threads: int, start_rotation: float = 0.0
+        self,
+        body: Body,
+        pulse: str,
+        durations: Sequence[float],
+        settle: float,
+        threads: int,
+        start_rotation: float = 0.0,
     ):
         self.body = body
         self.motions = [unit_pulse(pulse, t) for t in durations]
@@ -186,7 +192,7 @@ def run(context: Context, options: FailureDomain) -> Result:
     model = rocking_model(context)
     # The arch keeps sqrt(R/g); a block has 1/p, and its curves span omega/p from about 1 to 12.
     unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
-    durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
+    durations = np.unique(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     mapper = Mapper(model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation)
     job = mapper.job(np.repeat(np.arange(len(durations)), len(amplitudes)), np.tile(amplitudes, len(durations)))
@@ -209,7 +215,9 @@ def run(context: Context, options: FailureDomain) -> Result:
         "uplift_acceleration_g": gamma,
         "restitution": model.restitution,
         "natural_time_s": unit if model.what == "arch" else model.time_unit,
-        "safe_pockets": int((((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()),
+        "safe_pockets": int(
+            (((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()
+        ),
     }
     if options.at_amplitudes:
         at = np.array(options.at_amplitudes)
@@ -222,8 +230,12 @@ def run(context: Context, options: FailureDomain) -> Result:
             "mode_I_durations_s": [None if np.isnan(t) else t for t in found[0]],
             "mode_II_durations_s": [None if np.isnan(t) else t for t in found[1]],
         }
-    columns = {"duration": durations, **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()}, "pocket_begins": curves.pocket / GRAVITY}
-    if model.what == "block":
+    columns = {
+        "duration": durations,
+        **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
+        "pocket_begins": curves.pocket / GRAVITY,
+    }
+    if model.what != "arch":
         # omega/p and a/(g tan alpha), the axes of overturning spectra
         ratio = 2.0 * np.pi / durations * model.time_unit
         columns |= {"frequency_ratio": ratio, **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()}}
@@ -235,14 +247,20 @@ def run(context: Context, options: FailureDomain) -> Result:
             "Mode I: overturning after an impact (mode 1, with impact, of Zhang and Makris 2001); "
             "Mode II: without impact (their mode 2)"
         )
-    result.tables["failure_domain"] = TableData(columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"})
+    result.tables["failure_domain"] = TableData(
+        columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"}
+    )
     result.arrays = {
         "duration": Array(durations, ("duration",), "s", "t_p of step and rectangular pulses, else the period T_p"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
         "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in any half cycle"),
-        "pocket": Array(curves.pocket / GRAVITY, ("duration",), "g", "where the first safe pocket above the curve begins"),
-        "mode_II": Array(curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"),
+        "pocket": Array(
+            curves.pocket / GRAVITY, ("duration",), "g", "where the first safe pocket above the curve begins"
+        ),
+        "mode_II": Array(
+            curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"
+        ),
     }
     result.answer = _answer(model, options, durations, curves, result.results["safe_pockets"])
     return result

@@ -75,7 +75,9 @@ class EnsembleJob:
                 if self.measure == "arias":
                     scale = np.sqrt(scale)
             level_ok = np.isfinite(scale)
-            reason = np.where(np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason)
+            reason = np.where(
+                np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason
+            )
             good, index, scale = good[level_ok], index[level_ok], scale[level_ok]
             body = member[good] // per_motion if len(self.bodies) > 1 else np.zeros(len(good), int)
             used, body = np.unique(body, return_inverse=True)
@@ -103,12 +105,14 @@ class EnsembleJob:
 def sampled_models(context: Context, options: Fragility, base: RockingModel, count: int) -> list[RockingModel]:
     """One model for each motion with lognormal factors of mean 1 on the uncertain keys, by a scrambled Sobol sequence."""
     structure = context.deck.structure
-    known = UNCERTAIN[base.what]
+    known = UNCERTAIN.get(base.what, ())
     for name in options.uncertain:
         if name not in known or (name != "restitution" and getattr(structure, name) is None):
-            raise Refused(f"uncertain.{name} does not belong to this {base.what}; it has {', '.join(known)}")
+            raise Refused(f"uncertain.{name} does not belong to this {base.what}; it has {', '.join(known) or 'none'}")
     names = sorted(options.uncertain)
-    draws = qmc.Sobol(len(names), scramble=True, seed=options.seed or 0).random_base2(max(1, int(np.ceil(np.log2(count)))))[:count]
+    draws = qmc.Sobol(len(names), scramble=True, seed=options.seed or 0).random_base2(
+        max(1, int(np.ceil(np.log2(count))))
+    )[:count]
     spread = np.sqrt(np.log1p(np.array([options.uncertain[n] for n in names]) ** 2))
     factors = np.exp(spread * norm.ppf(np.clip(draws, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
     made = []
@@ -146,11 +150,15 @@ def run(context: Context, options: Fragility) -> Result:
     return result
 
 
-def _job(context: Context, options: Fragility, base: RockingModel, duration: float | None) -> tuple[EnsembleJob, int, int]:
+def _job(
+    context: Context, options: Fragility, base: RockingModel, duration: float | None
+) -> tuple[EnsembleJob, int, int]:
     source, available = source_of(context, options.seed, duration)
     motions = options.count or available or 1000
     if available is not None and motions > available and not options.uncertain:
-        raise Refused(f"count is {motions}, but the deck has {available} motion{'s' if available > 1 else ''}: expected at most {available}")
+        raise Refused(
+            f"count is {motions}, but the deck has {available} motion{'s' if available > 1 else ''}: expected at most {available}"
+        )
     models = sampled_models(context, options, base, motions) if options.uncertain else [base]
     levels = np.array(options.levels) if options.levels else None
     measure, unit = options.intensity, INTENSITIES[options.intensity][1]
@@ -173,7 +181,11 @@ def shares(swept: Swept, confidence: float, initial: float) -> dict[str, Any]:
     n = int(ok.sum())
     collapsed = int((swept["outcome"] == COLLAPSE).sum())
     # With a start off rest every member rocks: uplift then means that it rose beyond its start.
-    lifted = int((ok & (swept["outcome"] > 0)).sum()) if initial == 0.0 else int((ok & (swept["peak_ratio"] > abs(initial) * (1 + 1e-9))).sum())
+    lifted = (
+        int((ok & (swept["outcome"] > 0)).sum())
+        if initial == 0.0
+        else int((ok & (swept["peak_ratio"] > abs(initial) * (1 + 1e-9))).sum())
+    )
     ratio = np.minimum(swept["peak_ratio"][ok], 1.0)
     low, high = wilson(collapsed, n, confidence)
     up_low, up_high = wilson(lifted, n, confidence)
@@ -193,7 +205,13 @@ def shares(swept: Swept, confidence: float, initial: float) -> dict[str, Any]:
 
 
 def _describe(
-    context: Context, options: Fragility, base: RockingModel, job: EnsembleJob, swept: Swept, motions: int, result: Result
+    context: Context,
+    options: Fragility,
+    base: RockingModel,
+    job: EnsembleJob,
+    swept: Swept,
+    motions: int,
+    result: Result,
 ) -> None:
     _stopped(swept, result)
     if not len(swept.members):
@@ -225,7 +243,11 @@ def _describe(
             )
     failures = swept.members[~ok]
     for k in failures[:5]:
-        name = job.source.names[k // per_motion % len(job.source.names)] if isinstance(job.source, ListSource) else f"motion {k // per_motion + 1}"
+        name = (
+            job.source.names[k // per_motion % len(job.source.names)]
+            if isinstance(job.source, ListSource)
+            else f"motion {k // per_motion + 1}"
+        )
         result.warnings.append(f"{name} has no result: {swept['reason'][np.searchsorted(swept.members, k)]}")
     if len(failures) > 5:
         result.warnings.append(f"{len(failures)} members in all have no result, see ensemble.csv")
@@ -235,7 +257,9 @@ def _describe(
     upright = ok & (swept["outcome"] != COLLAPSE)
     result.arrays |= {
         "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
-        "bin_count": Array(np.histogram(np.minimum(swept["peak_ratio"][upright], 1.0), edges)[0], ("bin",), "", "members that stay up"),
+        "bin_count": Array(
+            np.histogram(np.minimum(swept["peak_ratio"][upright], 1.0), edges)[0], ("bin",), "", "members that stay up"
+        ),
     }
     if job.levels is not None:
         _curves(options, base, job, swept, motions, result)
@@ -279,7 +303,9 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
     }
 
 
-def _curves(options: Fragility, base: RockingModel, job: EnsembleJob, swept: Swept, motions: int, result: Result) -> None:
+def _curves(
+    options: Fragility, base: RockingModel, job: EnsembleJob, swept: Swept, motions: int, result: Result
+) -> None:
     """Stripes, lognormal curves, two stages, incremental curves with their resurrections."""
     levels, order = job.levels, np.argsort(job.levels, kind="stable")
     n = len(levels)
@@ -320,7 +346,9 @@ def _curves(options: Fragility, base: RockingModel, job: EnsembleJob, swept: Swe
         product = fits["uplift_"].probability(grid) * fits["overturning_given_uplift_"].probability(grid)
         curves["two_stage_curve"] = Array(product, ("grid",), "", "P(uplift) P(collapse | uplift)")
     if options.bootstrap and fits[""] is not None:
-        median, spread, lower, upper = bootstrap(levels, over, valid, options.bootstrap, options.confidence, options.seed or 0, grid)
+        median, spread, lower, upper = bootstrap(
+            levels, over, valid, options.bootstrap, options.confidence, options.seed or 0, grid
+        )
         r |= {"median_interval": [float(x) for x in median], "dispersion_interval": [float(x) for x in spread]}
         curves |= {"curve_lower": Array(lower, ("grid",)), "curve_upper": Array(upper, ("grid",))}
     # Incremental dynamic analysis: first level that brings each motion's structure down, and levels above that do not.
@@ -333,24 +361,38 @@ def _curves(options: Fragility, base: RockingModel, job: EnsembleJob, swept: Swe
         "motions_that_collapse": int(fell.sum()),
         "resurrections": int(risen.any(axis=1).sum()),
         "first_collapse_median": float(np.exp(np.mean(np.log(first[fell])))) if fell.all() and whole.all() else None,
-        "first_collapse_dispersion": float(np.std(np.log(first[fell]), ddof=1)) if fell.all() and whole.all() and motions > 1 else None,
+        "first_collapse_dispersion": float(np.std(np.log(first[fell]), ddof=1))
+        if fell.all() and whole.all() and motions > 1
+        else None,
     }
     result.tables["incremental"] = TableData(
-        {"motion": np.arange(motions) + 1, "first_collapse": first, "resurrected_levels": risen.sum(axis=1)}, {"first_collapse": unit}
+        {"motion": np.arange(motions) + 1, "first_collapse": first, "resurrected_levels": risen.sum(axis=1)},
+        {"first_collapse": unit},
     )
     shown = min(motions, 200)
     result.arrays |= {
-        **{f"stripe_{k}": Array(np.asarray(v, float), ("stripe",), unit if k == "level" else "") for k, v in table.items()},
+        **{
+            f"stripe_{k}": Array(np.asarray(v, float), ("stripe",), unit if k == "level" else "")
+            for k, v in table.items()
+        },
         **curves,
         "incremental_ratio": Array(ratio[:shown], ("shown", "stripe"), "", "peak rotation ratio of the first motions"),
-        "incremental_risen": Array(risen[:shown].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"),
+        "incremental_risen": Array(
+            risen[:shown].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"
+        ),
     }
     fit = fits[""]
-    said = f"fitted median {fit.median:.4g}{' ' + unit if unit else ''}, dispersion {fit.dispersion:.3f}" if fit else "no curve could be fitted"
+    said = (
+        f"fitted median {fit.median:.4g}{' ' + unit if unit else ''}, dispersion {fit.dispersion:.3f}"
+        if fit
+        else "no curve could be fitted"
+    )
     if fit and "median_interval" in r and np.isfinite(r["median_interval"][0]):
         said += f" (median between {r['median_interval'][0]:.4g} and {r['median_interval'][1]:.4g} at {100 * options.confidence:g} %)"
     if fit and fit.freedom > 0 and fit.p_value < 0.01:
-        result.warnings.append(f"the lognormal curve fits badly (deviance {fit.deviance:.1f} at {fit.freedom} degrees of freedom, p = {fit.p_value:.2g})")
+        result.warnings.append(
+            f"the lognormal curve fits badly (deviance {fit.deviance:.1f} at {fit.freedom} degrees of freedom, p = {fit.p_value:.2g})"
+        )
     result.answer = (
         f"{motions} motions at {n} levels of {name}: {said}. "
         f"Collapse runs from {100 * np.nanmin(table['collapse_probability']):.1f} % at the lowest to {100 * table['collapse_probability'][-1]:.1f} % at the "
@@ -358,7 +400,9 @@ def _curves(options: Fragility, base: RockingModel, job: EnsembleJob, swept: Swe
     )
 
 
-def _describe_durations(options: Fragility, base: RockingModel, parts: list[tuple[float, Swept]], result: Result) -> None:
+def _describe_durations(
+    options: Fragility, base: RockingModel, parts: list[tuple[float, Swept]], result: Result
+) -> None:
     """Mean and deviation of the peak rotation against the duration (Fig. 6-8)."""
     _stopped(parts[-1][1], result)
     initial = base.start_rotation / base.critical[0]
@@ -376,7 +420,13 @@ def _describe_durations(options: Fragility, base: RockingModel, parts: list[tupl
     }  # fmt: skip
     intervals = np.array([row["confidence_interval"] for row in rows]).reshape(-1, 2)
     result.tables["durations"] = TableData(
-        {"duration": durations, "count": np.array([row["count"] for row in rows]), **values, "lower": intervals[:, 0], "upper": intervals[:, 1]},
+        {
+            "duration": durations,
+            "count": np.array([row["count"] for row in rows]),
+            **values,
+            "lower": intervals[:, 0],
+            "upper": intervals[:, 1],
+        },
         {"duration": "s"},
     )
     result.tables["ensemble"] = TableData(

@@ -52,7 +52,10 @@ class CompatibleSource:
     folder: str
 
     def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]:
-        return [_try(self.model.model_copy(update={"member": k + 1}), Path(self.folder)) for k in range(first, first + count)]
+        return [
+            _try(self.model.model_copy(update={"member": k + 1}), Path(self.folder))
+            for k in range(first, first + count)
+        ]
 
 
 def _try(model: models.Motion, folder: Path) -> Ground | str:
@@ -109,5 +112,7 @@ def measures(grounds: list[Ground], sa: tuple[float, float] | None, threads: int
         for name in MEASURES:
             out[name][index] = getattr(found, name)
         if sa:
-            out["sa"][index] = core_motion.response_spectra(batch, step, [sa[0]], [sa[1]], threads=threads).psa.reshape(len(index))
+            out["sa"][index] = core_motion.response_spectra(batch, step, [sa[0]], [sa[1]], threads=threads).psa.reshape(
+                len(index)
+            )
     return out

@@ -12,7 +12,7 @@ from extrados.core.rocking import Ground
 from extrados.decks.statistics import Resonance
 from extrados.motions.motion import GRAVITY
 from extrados.results.model import Array, Result, TableData
-from extrados.structures.block import Block, make_block
+from extrados.structures.block import make_block
 
 #: Axes of Fig. 6-3
 ASPECTS = np.linspace(0.05, 0.6, 12)
@@ -56,7 +56,9 @@ def optimal_motion(model: RockingModel, cap: float, ratio: float, half_cycles: i
     while True:
         end = (switches[-1] if switches else 0.0) + horizon
         ground = steps(cap, switches, end, sign)
-        r = core_rocking.history(model.body, ground, end, horizon / 2000.0, start_rotation=start, room=4 * half_cycles + 64)
+        r = core_rocking.history(
+            model.body, ground, end, horizon / 2000.0, start_rotation=start, room=4 * half_cycles + 64
+        )
         turns = [(t, x) for kind, t, x in r.events if kind == "peak" and t > (switches[-1] if switches else 0.0) + 1e-9]
         if (r.outcome == "collapse" and not turns) or not turns or len(switches) >= half_cycles:
             return Optimum(ground, np.array(switches), np.array(peaks), r)
@@ -147,7 +149,8 @@ def run(context: Context, options: Resonance) -> Result:
         "ledger": Array(r.ledger[keep], ("time",), "J", "work of the ground less the energy lost at impacts"),
     }
     result.tables["resonance"] = TableData(
-        {"switch": optimum.switches, "peak_rotation": np.abs(optimum.peaks[1:])}, {"switch": "s", "peak_rotation": "rad"}
+        {"switch": optimum.switches, "peak_rotation": np.abs(optimum.peaks[1:])},
+        {"switch": "s", "peak_rotation": "rad"},
     )
     fate = (
         f"overturned after {len(optimum.switches)} half cycles, {r.stop_time:.2f} s" if collapse
@@ -156,18 +159,26 @@ def run(context: Context, options: Resonance) -> Result:
     result.answer = (
         f"Pushed by +-{cap / GRAVITY:.3f} g ({cap / GRAVITY / model.uplift:.2f} of uplift) always against its motion, from "
         f"{options.initial_rotation_ratio:g} of the critical rotation, the {model.what} is {fate}"
-        + (f"; between the changes of sign lie {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last." if len(spacing) > 1 else ".")
+        + (
+            f"; between the changes of sign lie {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last."
+            if len(spacing) > 1
+            else "."
+        )
     )
-    if isinstance(context.structure, Block):
+    if context.deck.structure.kind == "block":
         _block_figures(context, options, model, result)
     return result
 
 
 def _default_cap(context: Context, options: Resonance, model: RockingModel) -> float:
     """A little above the least cap, so that the growth is seen; half of uplift where that is not known."""
-    if not isinstance(context.structure, Block):
+    if context.deck.structure.kind != "block":
         return 0.5 * model.uplift * GRAVITY
-    return 1.1 * float(least_cap(block_model(context.structure, context.deck.structure), options.initial_rotation_ratio)) * GRAVITY
+    return (
+        1.1
+        * float(least_cap(block_model(context.structure, context.deck.structure), options.initial_rotation_ratio))
+        * GRAVITY
+    )
 
 
 def _block_figures(context: Context, options: Resonance, model: RockingModel, result: Result) -> None:
@@ -180,7 +191,8 @@ def _block_figures(context: Context, options: Resonance, model: RockingModel, re
     least = float(least_cap(own, options.initial_rotation_ratio)) if own.block.toe_right == own.block.toe_left else None
     if least is not None and not linear:
         result.results["cap_ratio_for_collapse_within"] = {
-            str(n): cap_for_collapse_within(own, options.initial_rotation_ratio, n) / model.uplift for n in (1, 2, 3, 5, 10)
+            str(n): cap_for_collapse_within(own, options.initial_rotation_ratio, n) / model.uplift
+            for n in (1, 2, 3, 5, 10)
         }
     result.results |= {
         "least_cap_g": least,
@@ -190,24 +202,41 @@ def _block_figures(context: Context, options: Resonance, model: RockingModel, re
         "initial_ratios": INITIAL,
     }
     result.tables["least_cap"] = TableData(
-        {"aspect": np.repeat(ASPECTS, len(INITIAL)), "initial_ratio": np.tile(INITIAL, len(ASPECTS)), "cap_ratio": table.ravel()}
+        {
+            "aspect": np.repeat(ASPECTS, len(INITIAL)),
+            "initial_ratio": np.tile(INITIAL, len(ASPECTS)),
+            "cap_ratio": table.ravel(),
+        }
     )
     amplitude = options.impulse_amplitude or 0.5 * model.uplift * GRAVITY
-    by_period = np.array([[_energy_change(own, model, 0.25, amplitude, tp, s) for s in STARTS] for tp in IMPULSE_PERIODS])
-    by_rotation = np.array([[_energy_change(own, model, x, amplitude, 0.5, s) for s in STARTS] for x in INITIAL_ROTATIONS])
+    by_period = np.array(
+        [[_energy_change(own, model, 0.25, amplitude, tp, s) for s in STARTS] for tp in IMPULSE_PERIODS]
+    )
+    by_rotation = np.array(
+        [[_energy_change(own, model, x, amplitude, 0.5, s) for s in STARTS] for x in INITIAL_ROTATIONS]
+    )
     result.arrays |= {
         "aspect": Array(ASPECTS, ("aspect",), "", "B/H"),
         "initial_ratio": Array(INITIAL, ("initial_ratio",), "", "initial rotation over the critical one"),
         "least_cap_ratio": Array(table, ("aspect", "initial_ratio"), "", "least acceleration over uplift"),
         "impulse_period_ratio": Array(np.array(IMPULSE_PERIODS), ("impulse_period_ratio",), "", "T_p/T_n"),
-        "impulse_rotation": Array(np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "initial rotation over the critical one"),
+        "impulse_rotation": Array(
+            np.array(INITIAL_ROTATIONS), ("impulse_rotation",), "", "initial rotation over the critical one"
+        ),
         "impulse_start": Array(STARTS, ("impulse_start",), "", "t_start/T_n"),
-        "energy_by_period": Array(by_period, ("impulse_period_ratio", "impulse_start"), "", "energy supplied over that at the start, theta_cr/4"),
+        "energy_by_period": Array(
+            by_period,
+            ("impulse_period_ratio", "impulse_start"),
+            "",
+            "energy supplied over that at the start, theta_cr/4",
+        ),
         "energy_by_rotation": Array(by_rotation, ("impulse_rotation", "impulse_start"), "", "the same for T_p = T_n/2"),
     }
     result.results |= {
         "impulse_amplitude_g": amplitude / GRAVITY,
-        "share_of_starts_that_add": {f"{tp:g}": float((row > 0.0).mean()) for tp, row in zip(IMPULSE_PERIODS, by_period, strict=True)},
+        "share_of_starts_that_add": {
+            f"{tp:g}": float((row > 0.0).mean()) for tp, row in zip(IMPULSE_PERIODS, by_period, strict=True)
+        },
     }
     if least is not None:
         result.answer += (
@@ -221,7 +250,9 @@ def natural_period(model: BlockModel, ratio: float) -> float:
     return 4.0 / float(model.frequency[0]) * float(np.arccosh(1.0 / (1.0 - ratio)))
 
 
-def _energy_change(own: BlockModel, model: RockingModel, ratio: float, amplitude: float, period_ratio: float, start_ratio: float) -> float:
+def _energy_change(
+    own: BlockModel, model: RockingModel, ratio: float, amplitude: float, period_ratio: float, start_ratio: float
+) -> float:
     """Energy that one sine impulse supplies to free rocking from `ratio` alpha, over the initial energy (Fig. 6-4).
 
     Period and start of the impulse over T_n. Losses at impacts are not counted: they happen without it too.
@@ -234,7 +265,9 @@ def _energy_change(own: BlockModel, model: RockingModel, ratio: float, amplitude
         linear=np.zeros((2, 1, 2)),
         harmonic=np.array([[[[0.0, 0.0, 0.0, 0.0]]], [[[amplitude, 0.0, 2.0 * np.pi / period, 0.0]]]]),
     )
-    r = core_rocking.history(model.body, ground, begin + period, begin + period, start_rotation=ratio * model.critical[0])
+    r = core_rocking.history(
+        model.body, ground, begin + period, begin + period, start_rotation=ratio * model.critical[0]
+    )
     alpha = own.alpha[0]
     q = ratio * alpha
     moment = GRAVITY * own.block.mass[0] * own.block.radius[0]

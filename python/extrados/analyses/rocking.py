@@ -4,6 +4,7 @@ import numpy as np
 
 from extrados.analyses import block_rocking
 from extrados.analyses.arch_model import ArchModel
+from extrados.analyses.block_model import as_block
 from extrados.analyses.rocking_history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.run import Context
 from extrados.analyses.tilt import geometry_arrays
@@ -13,7 +14,6 @@ from extrados.decks.analyses import Rocking
 from extrados.motions.motion import GRAVITY
 from extrados.results.model import Array, Result
 from extrados.structures.arch import Arch
-from extrados.structures.block import Block
 
 #: How far the thrust line may leave a joint, as a fraction of its length, before it is a warning.
 OUTSIDE = 0.01
@@ -21,7 +21,7 @@ OUTSIDE = 0.01
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, dynamic thrust line and friction needed."""
-    if isinstance(context.structure, Block):
+    if as_block(context.deck.structure, context.structure) is not None:
         return block_rocking.run(context, options)
     model = ArchModel(context.structure, context.deck.structure.restitution)
     context.warnings += model.warnings + context.motion.notes

@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from extrados.analyses.arch_model import ArchModel
-from extrados.analyses.block_model import block_model
+from extrados.analyses.block_model import as_block, block_model, initial_ratio
 from extrados.analyses.run import Context
 from extrados.core.rocking import Body
 from extrados.decks.table import Structure
-from extrados.structures.block import Block
 from extrados.structures.from_deck import make_structure
 
 
@@ -37,13 +36,14 @@ class RockingModel:
 def make_model(structure: Structure, folder: Path, ratio: float | None = None) -> RockingModel:
     """The model of a deck's [structure]; `ratio` replaces its initial rotation over the critical one."""
     made = make_structure(structure, folder)
-    if isinstance(made, Block):
-        block = block_model(made, structure)
-        ratio = structure.initial_rotation_ratio if ratio is None else ratio
+    body = as_block(structure, made)
+    if body is not None:
+        block = block_model(body, structure)
+        ratio = initial_ratio(structure) if ratio is None else ratio
         alpha = block.alpha
         return RockingModel(
-            "block", block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])), float(block.restitution[0]),
-            float(1.0 / block.frequency[0]), float(made.radius[0]), ratio * float(alpha[0 if ratio >= 0.0 else 1]),
+            structure.kind, block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])), float(block.restitution[0]),
+            float(1.0 / block.frequency[0]), float(body.radius[0]), ratio * float(alpha[0 if ratio >= 0.0 else 1]),
             tuple(block.warnings),
         )  # fmt: skip
     arch = ArchModel(made, structure.restitution)

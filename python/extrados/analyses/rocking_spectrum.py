@@ -61,7 +61,11 @@ def run(context: Context, options: RockingSpectrum) -> Result:
     }
     words = []
     for a, row, last in zip(options.slenderness, overturned, longest, strict=True):
-        size = "" if last is None else f", up to 2 pi/p = {last:.3g} s (half-diagonal {0.75 * GRAVITY * (last / 2 / np.pi) ** 2:.3g} m)"
+        size = (
+            ""
+            if last is None
+            else f", up to 2 pi/p = {last:.3g} s (half-diagonal {0.75 * GRAVITY * (last / 2 / np.pi) ** 2:.3g} m)"
+        )
         words.append(f"alpha {a:g} deg: {int(row.sum())} of {len(periods)} overturn{size}")
     result.answer = f"Peak ground acceleration {motion.peak / GRAVITY:.3f} g. " + "; ".join(words) + "."
     return result

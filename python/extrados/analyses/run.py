@@ -3,6 +3,7 @@
 import importlib
 import os
 import time
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -111,6 +112,12 @@ def run_analyses(context: Context) -> list[Result]:
             result = Result(options.kind, "failed", str(error) or "not enough memory")
         except (CoreError, NoAnswer) as error:
             result = Result(options.kind, "failed", str(error))
+        except Exception as error:  # a fault of ours: the other analyses of the deck still count
+            name = f"internal-error-{options.kind}.txt"
+            result = Result(
+                options.kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}"
+            )
+            result.files[name] = traceback.format_exc().encode()
         result.seconds = time.perf_counter() - begin
         stopped = result.status == "interrupted"
         results.append(result)

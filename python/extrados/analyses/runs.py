@@ -47,7 +47,16 @@ class RunsJob:
 
 
 def runs_job(
-    bodies: list[Body], grounds: list[Ground], body, motion, scale, end, start=0.0, *, tolerance: float = 1e-8, strict: bool = True
+    bodies: list[Body],
+    grounds: list[Ground],
+    body,
+    motion,
+    scale,
+    end,
+    start=0.0,
+    *,
+    tolerance: float = 1e-8,
+    strict: bool = True,
 ) -> RunsJob:
     """The job of these runs; numbers are spread over all members."""
     n = max(np.size(v) for v in (body, motion, scale, end, start))

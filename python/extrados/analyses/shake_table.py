@@ -7,7 +7,7 @@ from extrados.core import motion as core
 from extrados.decks.motion_analyses import ShakeTable
 from extrados.motions import export
 from extrados.motions.motion import GRAVITY
-from extrados.motions.shake_table import DEFAULT_LOW_CUT, Table, fit, make_drive
+from extrados.motions.shake_table import Table, fit, make_drive
 from extrados.results.model import Array, Result, TableData
 
 
@@ -67,9 +67,8 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
     motion = context.motion
     time, acceleration = motion.series()
     step = float(time[1] - time[0])
-    low_cut = options.low_cut or DEFAULT_LOW_CUT
     try:
-        drive = make_drive(acceleration, step, low_cut)
+        drive = make_drive(acceleration, step, options.low_cut)
     except ValueError as error:
         raise Refused(str(error)) from None
     fits = [fit(table, drive, mass, options.keep) for mass in options.masses]
@@ -83,7 +82,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
     r = result.results
     r |= {
         "fits": all(f.fits for f in fits),
-        "low_cut_Hz": low_cut,
+        "low_cut_Hz": options.low_cut,
         "peak_displacement_m": float(np.abs(drive.displacement).max()),
         "peak_velocity_m_s": float(np.abs(drive.velocity).max()),
         "peak_acceleration_g": float(np.abs(drive.acceleration).max()) / GRAVITY,

@@ -7,7 +7,9 @@ from scipy.special import log_ndtr, ndtr
 from scipy.stats import chi2, norm
 
 
-def wilson(hits: np.ndarray | float, count: np.ndarray | float, confidence: float = 0.95) -> tuple[np.ndarray, np.ndarray]:
+def wilson(
+    hits: np.ndarray | float, count: np.ndarray | float, confidence: float = 0.95
+) -> tuple[np.ndarray, np.ndarray]:
     """Score interval of a probability from `hits` in `count` (Wilson 1927, JASA 22:209-212)."""
     hits, count = np.asarray(hits, dtype=float), np.asarray(count, dtype=float)
     z = norm.ppf(0.5 + 0.5 * confidence)
@@ -89,7 +91,10 @@ def fit_lognormal(x: np.ndarray, hits: np.ndarray, count: np.ndarray) -> Lognorm
     if not c[1] > 1e-9:
         raise NoFit("the probability does not grow with the intensity")
     with np.errstate(divide="ignore", invalid="ignore"):
-        best = np.sum(np.where(hits > 0, hits * np.log(share), 0.0) + np.where(hits < count, (count - hits) * np.log1p(-share), 0.0))
+        best = np.sum(
+            np.where(hits > 0, hits * np.log(share), 0.0)
+            + np.where(hits < count, (count - hits) * np.log1p(-share), 0.0)
+        )
     deviance = max(0.0, 2.0 * (float(best) + now))
     freedom = len(x) - 2
     p_value = float(chi2.sf(deviance, freedom)) if freedom > 0 else np.nan

@@ -1,6 +1,6 @@
 """The rigid block on two toes."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -14,6 +14,7 @@ class Block(Structure):
     """Rigid block that rocks on its two toes: a rectangle, or a body given by mass, inertia, centre and toes."""
 
     kind: Literal["block"]
+    starter: ClassVar = {"width": "1.0", "height": "4.0"}
     width: Length | None = key(None, "full width B of a rectangle", gt=0)
     height: Length | None = key(None, "full height H of a rectangle", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)

@@ -38,9 +38,17 @@ def json_schema() -> dict[str, Any]:
     }
 
 
+#: Bounds of keys of several types stay in pydantic's words; JSON Schema has its own.
+_BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
+
+
 def _allow_units(schema: Any) -> None:
     """A key with a unit takes a number or text with a unit."""
     if isinstance(schema, dict):
+        bounds = {json_word: schema.pop(word) for word, json_word in _BOUNDS.items() if word in schema}
+        for branch in schema.get("anyOf", []) if bounds else []:
+            if branch.get("type") in ("number", "integer"):
+                branch.update(bounds)
         for value in schema.values():
             _allow_units(value)
         if "unit" in schema and schema.get("type") == "number":
@@ -75,6 +83,7 @@ def _facts(about: dict[str, Any]) -> str:
             ("minimum", ">="),
             ("exclusiveMaximum", "<"),
             ("maximum", "<="),
+            *((word, sign) for word, sign in (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))),
         ):
             if word in branch:
                 facts.append(f"{sign} {branch[word]:g}")
@@ -126,9 +135,8 @@ def starter(kind: str) -> str:
         analysis = SECTIONS["analysis"][kind]
         structures = analysis.structures
         structure = None if structures == () else (structures[0] if structures else next(iter(SECTIONS["structure"])))
-        motion = "step-pulse" if analysis.needs_motion else None
     elif kind in SECTIONS["structure"]:
-        structure, motion = kind, None
+        structure = kind
         analysis = next(a for a in SECTIONS["analysis"].values() if a.structures is None or kind in a.structures)
     else:
         close = difflib.get_close_matches(kind, [*SECTIONS["analysis"], *SECTIONS["structure"]], n=1, cutoff=0.4)
@@ -136,8 +144,8 @@ def starter(kind: str) -> str:
     lines = [f'title = "A first {kind} deck"', ""]
     if structure:
         lines += _section("structure", SECTIONS["structure"][structure], "[structure]")
-    if motion:
-        lines += _section("motion", SECTIONS["motion"][motion], "[motion]")
+    if analysis.needs_motion:
+        lines += _section("motion", SECTIONS["motion"][analysis.starter_motion], "[motion]")
     lines += _section("analysis", analysis, "[[analysis]]")
     return "\n".join(lines)
 

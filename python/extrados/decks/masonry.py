@@ -1,6 +1,6 @@
 """Columns of blocks and walls of units: assemblies for limit analysis and discrete elements."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -12,6 +12,7 @@ class Column(Structure):
     """Blocks or drums stacked on the ground, tapered where asked for; dry joints between them."""
 
     kind: Literal["column"]
+    starter: ClassVar = {"height": "4.0"}
     width: Length = key(about="width at the base", gt=0)
     height: Length | None = key(None, "total height, shared equally by the drums", gt=0)
     drums: int = key(1, "number of equal drums", ge=1, le=2000)

@@ -61,9 +61,7 @@ class ShakeTable(Analysis):
     )
     lowest: Frequency = key(0.1, "lowest frequency of the capacity curves", gt=0)
     highest: Frequency = key(20.0, "highest frequency of the capacity curves", le=200)
-    low_cut: Frequency | None = key(
-        None, "corner that takes drift out of the drive; default the lowest that fits", gt=0
-    )
+    low_cut: Frequency = key(0.1, "corner of the high-pass that takes drift out of the drive", gt=0)
     keep: Literal["amplitude", "time"] = key(
         "amplitude", "fit a too large motion by squeezing time (amplitude kept) or by scaling it down (time kept)",
         source="thesis 5.3.2",

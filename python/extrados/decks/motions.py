@@ -1,6 +1,6 @@
 """Motion kinds: positive ground acceleration points to +x."""
 
-from typing import Literal
+from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
@@ -37,11 +37,13 @@ class Harmonic(Motion):
 
     kind: Literal["harmonic"]
     amplitude: Acceleration = key(about="greatest amplitude")
-    frequency: Frequency = key(about="in Hz, not rad/s", gt=0)
+    frequency: Frequency = key(about="in Hz, not rad/s", gt=0, le=1000)
     duration: Time = key(10.0, "how long it acts", gt=0)
     phase: Literal["sine", "cosine"] = key("sine", "starts at zero (sine) or at the amplitude (cosine)")
     ramp: Time = key(0.0, "the amplitude grows linearly from zero over this time", ge=0)
-    carrier: Frequency | None = key(None, "frequency of a sinusoidal carrier that modulates the amplitude")
+    carrier: Frequency | None = key(
+        None, "frequency of a sinusoidal carrier that modulates the amplitude", gt=0, le=1000
+    )
 
     @model_validator(mode="after")
     def _one_envelope(self) -> "Harmonic":
@@ -138,6 +140,7 @@ class Generated(Motion):
     """Random earthquakes of an expected intensity: sine lines with random phases under an envelope."""
 
     kind: Literal["generated"]
+    starter: ClassVar = {"mmi": "7", "duration": "10.0"}
     mmi: float = key(about="modified Mercalli intensity", ge=1, le=12)
     duration: Time = key(about="t_d", gt=0, le=600, source="thesis Eq. 6.7")
     seed: int = key(1, "one seed gives one set; motion k of a set is always the same", ge=-(2**62), le=2**62)

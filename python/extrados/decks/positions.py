@@ -20,7 +20,7 @@ def key_lines(text: str) -> dict[Path, int]:
     here: Path = ()
     depth = 0
     quote = ""
-    for number, line in enumerate(text.splitlines(), start=1):
+    for number, line in enumerate(text.split("\n"), start=1):
         if not quote and depth == 0:
             if header := _HEADER.match(line):
                 name = _parts(header[2])

@@ -6,11 +6,12 @@ powers of powers. In decks `g` is gravity, not gram.
 
 import math
 import re
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Any
 
 import pint
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 FACTOR = r"[A-Za-z_%°]\w*(?:(?:\*\*|\^)-?\d)?"
@@ -57,6 +58,16 @@ def parse(text: str, si: str) -> float:
         raise ValueError(f"'{found[2]}' is not a unit ({type(error).__name__}): {wanted}") from None
 
 
+@dataclass(frozen=True)
+class Unit:
+    """Marks a field's JSON Schema with its unit; a plain schema extra would be lost where a key has its own."""
+
+    si: str
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
+        return {**handler(core_schema), "unit": self.si}
+
+
 def quantity(si: str, *, bare: bool = True) -> Any:
     """Field type for a number in `si`; with bare=False a number without a unit is refused."""
 
@@ -69,7 +80,7 @@ def quantity(si: str, *, bare: bool = True) -> Any:
             raise ValueError(f'a bare number is ambiguous here: write "{value} g" or "{value} m/s^2"')
         return float(value)
 
-    return Annotated[float, BeforeValidator(read), Field(json_schema_extra={"unit": si})]
+    return Annotated[float, BeforeValidator(read), Unit(si)]
 
 
 Length = quantity("m")

@@ -102,7 +102,10 @@ def _syntax(message: str, text: str) -> tuple[int, str]:
         line = int(where.split()[1].strip(",)"))
     else:
         line = text.count("\n") + 1
-    shown = text.splitlines()[line - 1].strip()[:60] if text else ""
+    rows = text.split("\n")
+    while line > 1 and (line > len(rows) or not rows[line - 1].strip()):
+        line -= 1  # an end of file is shown at the last line that holds something
+    shown = rows[line - 1].strip()[:60]
     hint = ""
     if "," in shown and "=" in shown and "[" not in shown:
         hint = "; the decimal sign is a point"
@@ -131,7 +134,7 @@ class _Checker:
         structure = self.section("structure", data.get("structure"), ("structure",))
         motion = self.section("motion", data.get("motion"), ("motion",))
         given = data.get("analysis")
-        if given is None:
+        if given is None or given == []:
             self.complain((), f"no [analysis]: expected one of {_words(SECTIONS['analysis'])}")
             given = []
         tables = given if isinstance(given, list) else [given]
@@ -173,34 +176,36 @@ class _Checker:
             if kind is None:
                 self.complain(path, f"kind is missing: expected one of {_words(kinds)}")
             else:
-                self.complain(
-                    (*path, "kind"),
-                    f"unknown kind {kind!r}{_nearest(str(kind), kinds)}; expected one of {_words(kinds)}",
-                )
+                self.complain((*path, "kind"), f"unknown kind {kind!r}{_nearest(str(kind), kinds)}")
             return None
         model = kinds[kind]
         try:
             return model.model_validate(table)
         except ValidationError as error:
+            groups: dict[tuple, list[dict[str, Any]]] = {}
             for problem in error.errors():
-                self.problem(model, path, problem)
+                groups.setdefault(_place(problem), []).append(problem)
+            for problems in groups.values():
+                self.problem(model, path, problems)
             return None
 
-    def problem(self, model: type[Table], path: tuple, problem: dict[str, Any]) -> None:
-        place = tuple(p for p in problem["loc"] if isinstance(p, int) or not _is_branch(p))
+    def problem(self, model: type[Table], path: tuple, problems: list[dict[str, Any]]) -> None:
+        """One complaint; a key that may be of several types fails each of them, which makes several problems."""
+        problem = problems[0]
+        place = _place(problem)
         at = (*path, *place)
-        sort, text, context = problem["type"], problem["msg"], problem.get("ctx", {})
+        sort = problem["type"]
         if sort == "extra_forbidden":
             self.complain(at, f"unknown key{_nearest(str(place[-1]), model.model_fields)}")
         elif sort == "missing":
             about = model.model_fields[place[0]].description if place and place[0] in model.model_fields else ""
             self.complain(path, f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
         elif sort == "value_error":
-            self.complain(at, str(context.get("error", text)))
+            self.complain(at, str(problem.get("ctx", {}).get("error", problem["msg"])))
         else:
             unit = _unit(model, place)
-            given = problem.get("input")
-            self.complain(at, f"{_shown(given)}: {text[0].lower()}{text[1:]}{f' {unit}' if unit else ''}")
+            texts = dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems)
+            self.complain(at, f"{_shown(problem.get('input'))}: {', or '.join(texts)}{f' {unit}' if unit else ''}")
 
     def fits(self, analysis: Analysis, data: dict[str, Any], path: tuple) -> None:
         wanted = analysis.structures
@@ -218,6 +223,14 @@ class _Checker:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(SECTIONS['motion'])}")
 
 
+def _place(problem: dict[str, Any]) -> tuple:
+    """The keys that lead to a problem: the first part is one, whatever it is called; so is one unknown or missing."""
+    first, rest = problem["loc"][:1], problem["loc"][1:]
+    last = rest[-1:] if problem["type"] in ("extra_forbidden", "missing") else ()
+    rest = rest[: len(rest) - len(last)]
+    return (*first, *(p for p in rest if isinstance(p, int) or not _is_branch(p)), *last)
+
+
 def _is_branch(part: str) -> bool:
     """True for pydantic's names of union branches, which are no keys of the deck."""
     return "[" in part or "-" in part or part in {"float", "int", "str", "bool", "none"}
@@ -225,7 +238,9 @@ def _is_branch(part: str) -> bool:
 
 def _unit(model: type[Table], place: tuple) -> str:
     schema = model.model_json_schema()["properties"].get(str(place[0]), {}) if place else {}
-    return schema.get("unit", "")
+    branches = [schema, *schema.get("anyOf", [])]
+    branches += [b["items"] for b in branches if "items" in b]
+    return next((b["unit"] for b in branches if "unit" in b), "")
 
 
 def _shown(value: Any) -> str:

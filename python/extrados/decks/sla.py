@@ -70,6 +70,11 @@ class Sla(Analysis):
 
     kind: Literal["sla"]
     structures: ClassVar = ("panel", "mesh")
+    starter: ClassVar = {
+        "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
+        "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
+        "target_displacement": '"2 mm"',
+    }
     constant: list[Load] = key([], "loads A, there from the start", max_length=100)
     reference: list[Load] = key(about="loads B that lambda multiplies", min_length=1, max_length=100)
     constant_damage: bool = key(

@@ -7,7 +7,7 @@ from pydantic import model_validator
 from extrados.decks.quantities import Acceleration, Force, Frequency, Length, Stress, Time
 from extrados.decks.table import Analysis, key
 
-ROCKING = ("block", "arch")
+ROCKING = ("block", "column", "arch")
 UNCERTAIN = {
     "block": ("width", "height", "centre_height", "toe_right", "toe_left", "restitution"),
     "arch": ("radius", "thickness", "restitution"),
@@ -20,6 +20,7 @@ class Fragility(Analysis):
     kind: Literal["fragility"]
     structures: ClassVar = ROCKING
     needs_motion: ClassVar = True
+    starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole suite", ge=1, le=10_000_000)
     seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
     durations: list[Time] | None = key(
@@ -35,7 +36,9 @@ class Fragility(Analysis):
     uncertain: dict[str, float] = key(
         {}, "coefficients of variation of width, height, thickness, restitution, ..., sampled by a Sobol sequence"
     )
-    initial_rotation_ratio: float | None = key(None, "rotation at the start over the critical one; default that of the structure")
+    initial_rotation_ratio: float | None = key(
+        None, "rotation at the start over the critical one; default that of the structure"
+    )
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "draws for the band of the fitted curve", ge=0, le=100_000)
     bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
@@ -60,7 +63,9 @@ class Fragility(Analysis):
             if name not in known:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(known)}")
             if not 0.0 < value <= 0.5:
-                raise ValueError(f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5")
+                raise ValueError(
+                    f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5"
+                )
         return self
 
 
@@ -69,7 +74,9 @@ class Resonance(Analysis):
 
     kind: Literal["resonance"]
     structures: ClassVar = ROCKING
-    cap: Acceleration | None = key(None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5")
+    cap: Acceleration | None = key(
+        None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5"
+    )
     initial_rotation_ratio: float = key(0.1, "rotation at the start over the critical one", gt=0, lt=1)
     half_cycles: int = key(40, "at most so many", ge=1, le=400)
     impulse_amplitude: Acceleration | None = key(
@@ -93,7 +100,7 @@ class RockingSpectrum(Analysis):
         if not all(0.0 < a < 45.0 for a in self.slenderness):
             raise ValueError("slenderness is alpha in degrees, expected above 0 and below 45")
         if not isinstance(self.restitution, str) and not 0.0 <= self.restitution <= 1.0:
-            raise ValueError(f"restitution is {self.restitution:g}, expected 0 to 1 or \"housner\"")
+            raise ValueError(f'restitution is {self.restitution:g}, expected 0 to 1 or "housner"')
         return self
 
 
@@ -102,7 +109,9 @@ class HarmonicMap(Analysis):
 
     kind: Literal["harmonic-map"]
     structures: ClassVar = ROCKING
-    frequencies: list[Frequency] | None = key(None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000)
+    frequencies: list[Frequency] | None = key(
+        None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000
+    )
     max_amplitude: Acceleration | None = key(None, "default 6 times uplift", gt=0)
     amplitudes: int = key(48, "number of amplitudes", ge=2, le=1000)
     cycles: int = key(30, "cycles of the motion", ge=2, le=1000, source="Spanos and Koh 1984")
@@ -112,7 +121,7 @@ class CodeChecks(Analysis):
     """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
-    structures: ClassVar = ("block",)
+    structures: ClassVar = ("block", "column")
     peak_acceleration: Acceleration | None = key(None, "demand; default that of the motion", gt=0)
     peak_velocity: float | None = key(None, "demand [m/s]; default that of the motion", gt=0)
     behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")

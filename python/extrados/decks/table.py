@@ -28,11 +28,13 @@ class Motion(Table):
 
 
 class Analysis(Table):
-    """Base of the analysis kinds. `structures` names the kinds it takes, None any, () needs none."""
+    """Base of the analysis kinds. `structures` names the kinds it takes, None any, () needs none;
+    `starter_motion` is the motion kind of the deck that `new` writes."""
 
     kind: str
     structures: ClassVar[tuple[str, ...] | None] = None
     needs_motion: ClassVar[bool] = False
+    starter_motion: ClassVar[str] = "step-pulse"
 
 
 def key(default: Any = ..., about: str = "", *, source: str = "", **limits: Any) -> Any:

@@ -1,6 +1,6 @@
 """Finite-element walls: `panel` (built-in mesher) and `mesh` (from a file), with materials, supports and ties."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -151,6 +151,16 @@ class Panel(Wall):
     """A rectangular wall or beam with rectangular openings and notches, meshed here; x from left, y from bottom."""
 
     kind: Literal["panel"]
+    starter: ClassVar = {
+        "thickness": '"30 cm"',
+        "material": '{ young = "6.9 GPa", poisson = 0.25, density = 1900, tensile_strength = "0.2 MPa", '
+        'fracture_energy = "50 N/m" }',
+        "supports": '[{ edge = "bottom" }]',
+        "width": "3.0",
+        "height": "3.0",
+        "size": '"15 cm"',
+        "openings": "[{ x = [1.05, 1.95], y = [0.9, 2.1] }]",
+    }
     width: Length | None = key(None, "length along x; needed unless an outline is given", gt=0)
     height: Length | None = key(None, "length along y; needed unless an outline is given", gt=0)
     element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element")
@@ -197,5 +207,13 @@ class Mesh(Wall):
     """A wall from a mesh file (gmsh, Abaqus and others; needs the extra `extrados[mesh]`)."""
 
     kind: Literal["mesh"]
+    starter: ClassVar = {
+        "thickness": '"30 cm"',
+        "material": '{ young = "6.9 GPa", poisson = 0.25, density = 1900, tensile_strength = "0.2 MPa", '
+        'fracture_energy = "50 N/m" }',
+        "supports": '[{ edge = "bottom" }]',
+        "file": '"wall.msh"',
+        "scale": "0.001",
+    }
     file: str = key(about="mesh file of triangles or quadrilaterals in the x, y plane", min_length=1, max_length=1000)
     scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)

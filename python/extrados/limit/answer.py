@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados.limit.graphic import force_polygon, funicular, pier_line
 from extrados.limit.loads import Loads
-from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoEquilibrium, State
 from extrados.limit.systems import Sparse
 from extrados.structures.assembly import GROUND, Assembly
 
@@ -110,12 +110,14 @@ def assess(
     limit = limit or LimitAnalysis(assembly, friction, strength=strength, associated=associated, loads=loads)
     try:
         ends = {name: limit.thrust(joints[0]) for name, joints in assembly.chains.items()}
-        if not ends and not limit.stands():
+        state, mechanism = limit.collapse(1)
+        back, back_mechanism = limit.collapse(-1)
+        if not back.gamma <= 0.0 <= state.gamma:
             raise NoEquilibrium
+    except Immovable:
+        raise
     except NoEquilibrium:
         raise CannotStand(why_not(limit)) from None
-    state, mechanism = limit.collapse(1)
-    back, back_mechanism = limit.collapse(-1)
     moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
     if isinstance(limit.system, Sparse):
         return Answer(

@@ -3,17 +3,20 @@
 import numpy as np
 
 from extrados.limit.equilibrium import spanning_tree
+from extrados.limit.interior import Interior, collapse_load
 from extrados.limit.loads import Loads, tilt_loads
-from extrados.limit.solver import BOUND, NoAnswer, NoEquilibrium, Programme, Solution
+from extrados.limit.solver import BOUND, Immovable, NoAnswer, NoEquilibrium, Programme, Solution
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
 from extrados.structures.assembly import Assembly
 
-__all__ = ["LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
+__all__ = ["Immovable", "LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
 
 # Of the total load: how far crushing and dry friction may be from their laws when iteration ends.
 LAW = 1e-9
 ROUNDS = 300
+# Joints that move less than this part of the fastest block are at rest to an interior-point method.
+INNER_REST = 1e-5
 
 
 class LimitAnalysis:
@@ -148,9 +151,13 @@ class LimitAnalysis:
 
         gamma is negative where the structure cannot stand upright and needs support from that side.
         """
+        if isinstance(self.system, Sparse) and self._cone is not None and self.associated and self._crush is None:
+            inner = collapse_load(self.system, self._mu, direction)
+            if inner is not None:
+                return self._interior_answer(inner)
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
         if abs(solution.value) > 0.99 * BOUND:
-            raise NoEquilibrium("no such load brings it down: the joints hold it from all sides")
+            raise Immovable("no such load brings it down: the joints hold it from all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
         if isinstance(self.system, Reduced):
             twist, defect = self.system.velocities(motion)
@@ -160,6 +167,15 @@ class LimitAnalysis:
             self.assembly, self.loads, rows, np.maximum(solution.rows, 0.0), motion, twist, defect
         )
         return self._state(solution, corners), mechanism
+
+    def _interior_answer(self, inner: Interior) -> tuple[State, Mechanism]:
+        """State and mechanism in the middle of all that are equally good: whatever can move does."""
+        nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
+        twist, defect = self.system.velocities(inner.motion, -inner.twist.ravel())
+        mechanism = read_mechanism(
+            self.assembly, self.loads, nothing, np.empty(0), inner.motion, twist, defect, at_rest=INNER_REST
+        )
+        return read_state(inner.gamma, inner.corners, self.loads.scale), mechanism
 
     def stands(self, gamma: float = 0.0) -> bool:
         """True where an admissible thrust line exists, upright or at a given gamma."""

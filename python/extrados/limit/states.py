@@ -79,6 +79,7 @@ def read_mechanism(
     motion: np.ndarray,
     twist: np.ndarray,
     defect: float,
+    at_rest: float = AT_REST,
 ) -> Mechanism:
     """Mechanism from the scaled twists about the origin and the duals of the constraints.
 
@@ -95,7 +96,7 @@ def read_mechanism(
     fastest = np.hypot(velocity[:, 0], velocity[:, 1]).max()
     opening_p, opening_q, slip = motion.T
     speed_p, speed_q = np.hypot(opening_p, slip), np.hypot(opening_q, slip)
-    moves = np.maximum(speed_p, speed_q) > AT_REST * fastest
+    moves = np.maximum(speed_p, speed_q) > at_rest * fastest
     # A negative opening is crushing: the joint turns about a place inside it.
     turns = (np.minimum(speed_p, speed_q) < HINGE * np.maximum(speed_p, speed_q)) | (opening_p * opening_q < 0.0)
     hinges = [

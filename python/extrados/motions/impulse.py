@@ -1,6 +1,7 @@
 """The primary impulse of a motion: the single sine that fits it best (thesis 5.3.2, 5.4.2)."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -36,7 +37,7 @@ def primary_impulses(
     """
     step = float(time[1] - time[0])
     low = max(min_period or 4.0 * step, 4.0 * step)
-    high = min(max_period, 0.98 * (time[-1] - time[0]))
+    high = min(max_period, float(time[-1] - time[0]))
     total = float(acceleration @ acceleration)
     if high <= low or total <= 0.0:
         return []
@@ -53,7 +54,8 @@ def primary_impulses(
         if gain <= 0.0:
             break
         here = acceleration[inside]
-        misfit = here - amplitude * np.sin(2.0 * np.pi * (np.flatnonzero(inside) * step - start) / period)
+        offset = np.arange(inside.start, inside.stop) * step - start
+        misfit = here - amplitude * np.sin(2.0 * np.pi * offset / period)
         found.append(
             Impulse(
                 amplitude,
@@ -63,36 +65,56 @@ def primary_impulses(
                 1.0 - float(misfit @ misfit) / float(here @ here),
             )
         )
-        free &= ~inside
+        free[inside] = False
         rest[inside] = 0.0
     return found
 
 
 def _best_on_grid(rest: np.ndarray, free: np.ndarray, step: float, periods: np.ndarray) -> tuple[float, float] | None:
+    """Period and start of the greatest gain over the grid; impulses lie wholly in the free samples."""
     n = len(rest)
     size = 1 << int(np.ceil(np.log2(2 * n)))
     spectrum = np.fft.rfft(rest, size)
     blocked = np.concatenate([[0], np.cumsum(~free)])
     best, answer = 0.0, None
-    for period in periods:
-        length = int(period / step) + 1
-        if length >= n:
-            continue
-        wave = np.sin(2.0 * np.pi * np.arange(length) * step / period)
-        product = np.fft.irfft(spectrum * np.conj(np.fft.rfft(wave, size)), size)[: n - length + 1]
-        gain = product**2 / float(wave @ wave)
-        gain[blocked[length : length + len(gain)] - blocked[: len(gain)] > 0] = 0.0
-        k = int(gain.argmax())
-        if gain[k] > best:
-            best, answer = float(gain[k]), (float(period), k * step)
+    block = max(1, _BLOCK // size)
+    for first in range(0, len(periods), block):
+        some = tuple(periods[first : first + block].tolist())
+        lengths, squares, waves = _waves(some, step, size) if size <= _CACHED else _waves.__wrapped__(some, step, size)
+        products = np.fft.irfft(spectrum * waves, size)
+        for period, length, square, product in zip(some, lengths, squares, products, strict=True):
+            if length > n:
+                continue
+            gain = product[: n - length + 1] ** 2 / square
+            gain[blocked[length : length + len(gain)] > blocked[: len(gain)]] = 0.0
+            k = int(gain.argmax())
+            if gain[k] > best:
+                best, answer = float(gain[k]), (period, k * step)
     return answer
 
 
-def _gain(rest: np.ndarray, step: float, period: float, start: float) -> tuple[float, float, np.ndarray]:
+#: Values of a block of correlations (8 MB), and the longest transforms whose waves are kept for the next motion.
+_BLOCK, _CACHED = 1_000_000, 16384
+
+
+@lru_cache(maxsize=8)
+def _waves(periods: tuple[float, ...], step: float, size: int) -> tuple[list[int], list[float], np.ndarray]:
+    """Samples, sum of squares and conjugate transform of one sine of each period."""
+    lengths, squares, transforms = [], [], np.empty((len(periods), size // 2 + 1), dtype=complex)
+    for k, period in enumerate(periods):
+        length = int(period / step) + 1
+        wave = np.sin(2.0 * np.pi * np.arange(length) * step / period)
+        lengths.append(length)
+        squares.append(float(wave @ wave))
+        transforms[k] = np.conj(np.fft.rfft(wave, size))
+    return lengths, squares, transforms
+
+
+def _gain(rest: np.ndarray, step: float, period: float, start: float) -> tuple[float, float, slice]:
     """Fall of the squared misfit, the amplitude that gives it, and the samples inside the impulse."""
-    t = np.arange(len(rest)) * step - start
-    inside = (t >= 0.0) & (t <= period)
-    wave = np.sin(2.0 * np.pi * t[inside] / period)
+    first = max(0, int(np.ceil(start / step - 1e-9)))
+    inside = slice(first, min(len(rest), int(np.floor((start + period) / step + 1e-9)) + 1))
+    wave = np.sin((2.0 * np.pi / period) * (np.arange(inside.start, inside.stop) * step - start))
     square = float(wave @ wave)
     if square <= 0.0:
         return 0.0, 0.0, inside
@@ -108,18 +130,17 @@ def _polish(
 
     def loss(x: np.ndarray) -> float:
         p, s = x
-        if not low <= p <= high or s < 0.0 or s + p > (len(rest) - 1) * step:
+        if not low <= p <= high or s < 0.0 or s + p > (len(rest) - 1 + 1e-9) * step:
             return 0.0
         gain, _, inside = _gain(rest, step, p, s)
         return 0.0 if not free[inside].all() else -gain
 
+    begin = loss(np.array([period, start]))
     simplex = np.array([[period, start], [1.03 * period, start], [period, start + step]])
     answer = minimize(
         loss,
         [period, start],
         method="Nelder-Mead",
-        options={"initial_simplex": simplex, "xatol": 1e-5, "fatol": 0.0},
+        options={"initial_simplex": simplex, "xatol": 1e-5, "fatol": -1e-9 * begin},
     )
-    return (
-        (float(answer.x[0]), float(answer.x[1])) if answer.fun <= loss(np.array([period, start])) else (period, start)
-    )
+    return (float(answer.x[0]), float(answer.x[1])) if answer.fun <= begin else (period, start)

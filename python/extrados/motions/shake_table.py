@@ -7,8 +7,6 @@ import numpy as np
 from extrados.core import motion as core
 from extrados.motions import processing
 
-DEFAULT_LOW_CUT = 0.1  # Hz
-
 
 @dataclass(frozen=True)
 class Table:
@@ -60,7 +58,7 @@ class Drive:
         )
 
 
-def make_drive(acceleration: np.ndarray, step: float, low_cut: float = DEFAULT_LOW_CUT) -> Drive:
+def make_drive(acceleration: np.ndarray, step: float, low_cut: float) -> Drive:
     """Drift-free drive of an acceleration (points) [m/s^2].
 
     A zero-phase high-pass takes out what no table of finite stroke can follow; the integration is then exact in the

@@ -130,26 +130,31 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
     d, a, codes = run.array(name, "duration"), run.array(name, "amplitude"), run.array(name, "outcome")
     with style.figure(7.0, 4.6) as (fig, (ax,)):
         ax.pcolormesh(
-            d,
+            d if len(d) > 1 else d[0] * np.array([0.9, 1.1]),
             a,
-            codes.T,
+            codes.T if len(d) > 1 else np.repeat(codes.T, 2, axis=1),
             cmap=ListedColormap(style.MODES),
             vmin=0,
             vmax=3,
             shading="nearest",
             rasterized=True,
         )
-        ax.plot(d, run.array(name, "mode_I"), "k-", label="Mode I (governs)")
-        ax.plot(d, run.array(name, "mode_II"), "k--", label="Mode II")
+        mark = "o" if len(d) == 1 else ""
+        ax.plot(d, run.array(name, "mode_I"), f"k-{mark}", label="Mode I (governs)")
+        ax.plot(d, run.array(name, "mode_II"), f"k--{mark}", label="Mode II")
         ax.axhline(r["uplift_acceleration_g"], color=style.EDGE, linewidth=0.8, linestyle=":")
         for code, text in enumerate(
             ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
         ):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
-        ax.set_xlabel({"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r["pulse"], "period T_p [s]"))
+        ax.set_xlabel(
+            {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(
+                r["pulse"], "period T_p [s]"
+            )
+        )
         ax.set_ylabel("amplitude [g]")
         ax.set_ylim(0.0, a[-1])
-        ax.set_xlim(d[0], d[-1])
+        ax.set_xlim(*((d[0], d[-1]) if len(d) > 1 else (0.5 * d[0], 1.5 * d[0])))
         ax.legend(loc="upper right", frameon=True)
         ax.grid(False)
         title = f"Failure domain of {r['pulse']} pulses"

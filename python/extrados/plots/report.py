@@ -1,14 +1,15 @@
 """Figures and one self-contained HTML report of a stored run."""
 
 import base64
-import html
 import importlib
+import shutil
+import tempfile
 from pathlib import Path
 from typing import Any
 
 import jinja2
 
-from extrados.results.store import Stored, StoreError, read, reason
+from extrados.results.store import REPORT, Stored, StoreError, read, reason
 
 #: Analysis kind -> "module:function" that draws its figures: (run, analysis name, folder) -> [(figure, caption)]
 DRAWERS = {
@@ -63,14 +64,23 @@ pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px}footer{margin-
 
 
 def draw(run: Stored, folder: Path) -> dict[str, list[tuple[str, str]]]:
-    """All figures of a run into folder/figures; analysis name -> (figure name, caption)."""
+    """All figures of a run into folder/figures; analysis name -> (figure name, caption).
+
+    StoreError where the stored results lack what a figure needs, or a figure cannot be written.
+    """
     drawn = {}
-    for analysis in run.analyses:
-        drawer = DRAWERS.get(analysis["kind"])
-        if not drawer or not run.arrays.get(analysis["name"]):
-            continue
-        module, function = drawer.split(":")
-        drawn[analysis["name"]] = getattr(importlib.import_module(module), function)(run, analysis["name"], folder)
+    try:
+        for analysis in run.analyses:
+            name = analysis["name"]
+            drawer = DRAWERS.get(analysis["kind"])
+            if not drawer or not run.arrays.get(name):
+                continue
+            module, function = drawer.split(":")
+            drawn[name] = getattr(importlib.import_module(module), function)(run, name, folder)
+    except OSError as error:
+        raise StoreError(f"{run.folder}: figures could not be written: {reason(error)}") from None
+    except KeyError as error:
+        raise StoreError(f"{run.folder}: the results are damaged: {name} lacks {error}") from None
     return drawn
 
 
@@ -95,36 +105,48 @@ def _cell(value: Any) -> str:
     return "none" if value is None else str(value)
 
 
-def write_report(folder: Path) -> Path:
-    """Draw the figures of a stored run and write report.html beside them; StoreError where it cannot be written."""
+def write_report(folder: Path) -> tuple[Path, dict[str, list[tuple[str, str]]]]:
+    """Draw a stored run and write report.html: the report, and the figures with captions by analysis.
+
+    Drawn aside and put in place when all is done; StoreError where that is not possible.
+    """
     run = read(folder)
     try:
-        drawn = draw(run, folder)
-        analyses = []
-        for a in run.analyses:
-            figures = [
-                {
-                    "caption": caption,
-                    "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode(),
-                }
-                for name, caption in drawn.get(a["name"], [])
-            ]
-            analyses.append({**a, "figures": figures, "rows": _rows(a["results"])})
-        deck = run.summary["deck"]
-        page = (
-            jinja2.Environment(autoescape=True)
-            .from_string(TEMPLATE)
-            .render(
-                title=deck.get("title") or html.escape(deck["path"]) or "extrados run",
-                note=deck.get("note", ""),
-                analyses=analyses,
-                deck=deck,
-                resolved=_rows({k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}),
-                made=run.summary["extrados"],
-            )
-        )
-        target = folder / "report.html"
-        target.write_text(page, encoding="utf-8")
+        with tempfile.TemporaryDirectory(prefix=".drawing-", dir=folder) as place:
+            scratch = Path(place)
+            drawn = draw(run, scratch)
+            (scratch / REPORT).write_text(_page(run, scratch, drawn), encoding="utf-8")
+            if (scratch / "figures").exists():
+                shutil.rmtree(folder / "figures", ignore_errors=True)
+                (scratch / "figures").replace(folder / "figures")
+            (scratch / REPORT).replace(folder / REPORT)
     except OSError as error:
         raise StoreError(f"{folder}: the report could not be written: {reason(error)}") from None
-    return target
+    return folder / REPORT, drawn
+
+
+def _page(run: Stored, folder: Path, drawn: dict[str, list[tuple[str, str]]]) -> str:
+    """The report as one HTML page; the figures lie in folder/figures."""
+    analyses = []
+    for a in run.analyses:
+        figures = [
+            {"caption": caption, "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode()}
+            for name, caption in drawn.get(a["name"], [])
+        ]
+        analyses.append({**a, "figures": figures, "rows": _rows(a["results"])})
+    deck = run.summary["deck"]
+    settings = {k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}
+    asked = deck["resolved"].get("analysis", [])
+    settings |= {a["name"]: keys for a, keys in zip(run.analyses, asked, strict=False)}
+    return (
+        jinja2.Environment(autoescape=True)
+        .from_string(TEMPLATE)
+        .render(
+            title=deck.get("title") or deck["path"] or "extrados run",
+            note=deck.get("note", ""),
+            analyses=analyses,
+            deck=deck,
+            resolved=_rows(settings),
+            made=run.summary["extrados"],
+        )
+    )

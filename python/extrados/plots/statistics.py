@@ -29,14 +29,31 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     n = max(r["count"], 1)
     with style.figure(6.0, 3.8) as (fig, (ax,)):
         width = edges[1] - edges[0]
-        ax.bar(edges[:-1], 100 * counts / n, width=width, align="edge", color=style.STONE, edgecolor=style.EDGE, linewidth=0.6)
-        ax.bar([1.0 + width], [100 * r["collapsed"] / n], width=1.6 * width, align="edge", color=style.THRUST, label="collapse")
+        ax.bar(
+            edges[:-1],
+            100 * counts / n,
+            width=width,
+            align="edge",
+            color=style.STONE,
+            edgecolor=style.EDGE,
+            linewidth=0.6,
+        )
+        ax.bar(
+            [1.0 + width],
+            [100 * r["collapsed"] / n],
+            width=1.6 * width,
+            align="edge",
+            color=style.THRUST,
+            label="collapse",
+        )
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
         ax.set_xlabel("greatest rotation over the critical rotation")
         ax.set_ylabel("share of the motions [%]")
         ax.set_title(f"{r['count']} runs, {100 * r['collapse_probability']:.1f} % collapse")
         ax.legend()
-        return style.save(fig, folder, f"{name}-histogram"), "Greatest rotation of all runs; the red bar holds those that collapse."
+        return style.save(
+            fig, folder, f"{name}-histogram"
+        ), "Greatest rotation of all runs; the red bar holds those that collapse."
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -51,15 +68,39 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ):
             value, low, high = (run.array(name, k) for k in (key, lower, upper))
             bars = np.maximum([value - low, high - value], 0.0)
-            ax.errorbar(level, value, yerr=bars, fmt="o", color=color, markersize=4, capsize=2, linewidth=0.9, label=f"{label}, counted")
+            ax.errorbar(
+                level,
+                value,
+                yerr=bars,
+                fmt="o",
+                color=color,
+                markersize=4,
+                capsize=2,
+                linewidth=0.9,
+                label=f"{label}, counted",
+            )
         if "curve" in arrays:
-            ax.plot(grid, run.array(name, "curve"), color=style.THRUST, label=f"lognormal, median {r['median']:.3g}, dispersion {r['dispersion']:.2f}")
+            ax.plot(
+                grid,
+                run.array(name, "curve"),
+                color=style.THRUST,
+                label=f"lognormal, median {r['median']:.3g}, dispersion {r['dispersion']:.2f}",
+            )
         if "curve_lower" in arrays:
-            ax.fill_between(grid, run.array(name, "curve_lower"), run.array(name, "curve_upper"), color=style.THRUST, alpha=0.15, linewidth=0)
+            ax.fill_between(
+                grid,
+                run.array(name, "curve_lower"),
+                run.array(name, "curve_upper"),
+                color=style.THRUST,
+                alpha=0.15,
+                linewidth=0,
+            )
         if "uplift_curve" in arrays:
             ax.plot(grid, run.array(name, "uplift_curve"), color=style.GROUND, linewidth=0.9)
         if "two_stage_curve" in arrays:
-            ax.plot(grid, run.array(name, "two_stage_curve"), "--", color=style.EDGE, label="P(uplift) P(collapse | uplift)")
+            ax.plot(
+                grid, run.array(name, "two_stage_curve"), "--", color=style.EDGE, label="P(uplift) P(collapse | uplift)"
+            )
         ax.set_xlim(0.0, 1.1 * level[-1])
         ax.set_ylim(-0.02, 1.02)
         ax.set_xlabel(f"{r['intensity']}{f' [{unit}]' if unit else ''}")
@@ -72,35 +113,57 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     r = run[name]
-    level, ratio, risen = run.array(name, "stripe_level"), run.array(name, "incremental_ratio"), run.array(name, "incremental_risen")
+    level, ratio, risen = (
+        run.array(name, "stripe_level"),
+        run.array(name, "incremental_ratio"),
+        run.array(name, "incremental_risen"),
+    )
     unit = run.arrays[name]["stripe_level"].unit
     with style.figure(6.5, 4.2) as (fig, (ax,)):
         for row in np.minimum(ratio, 1.05):
             ax.plot(row, level, color=style.EDGE, alpha=0.25, linewidth=0.6)
         i, j = np.nonzero(risen)
-        ax.plot(ratio[i, j], level[j], "o", color=style.HINGE, markersize=3, label="stands again above a level that overturned it")
+        ax.plot(
+            ratio[i, j],
+            level[j],
+            "o",
+            color=style.HINGE,
+            markersize=3,
+            label="stands again above a level that overturned it",
+        )
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
         ax.set_xlabel("greatest rotation over the critical rotation (collapse drawn at 1.05)")
         ax.set_ylabel(f"{r['intensity']}{f' [{unit}]' if unit else ''}")
         if len(i):
             ax.legend(loc="upper left")
-        return style.save(fig, folder, f"{name}-incremental"), f"Incremental curves of {len(ratio)} motions; {r['resurrections']} of {r['motions']} have resurrections."
+        return style.save(
+            fig, folder, f"{name}-incremental"
+        ), f"Incremental curves of {len(ratio)} motions; {r['resurrections']} of {r['motions']} have resurrections."
 
 
 def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    d, mean, deviation = (run.array(name, k) for k in ("duration", "mean_peak_rotation_ratio", "deviation_peak_rotation_ratio"))
+    d, mean, deviation = (
+        run.array(name, k) for k in ("duration", "mean_peak_rotation_ratio", "deviation_peak_rotation_ratio")
+    )
     p, low, high = (run.array(name, k) for k in ("collapse_probability", "lower", "upper"))
     with style.figure(7.5, 3.6, columns=2) as (fig, (left, right)):
         left.errorbar(d, mean, yerr=deviation, fmt="o-", color=style.HINGE, capsize=3, markersize=4)
         left.set_ylim(bottom=0.0)
         left.set_ylabel("greatest rotation over the critical one")
         left.set_title("mean and standard deviation")
-        right.errorbar(d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4)
+        right.errorbar(
+            d, p, yerr=np.maximum([p - low, high - p], 0.0), fmt="o-", color=style.THRUST, capsize=3, markersize=4
+        )
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
-        return [(style.save(fig, folder, f"{name}-durations"), "Greatest rotation (Fig. 6-8) and probability of collapse against the duration.")]
+        return [
+            (
+                style.save(fig, folder, f"{name}-durations"),
+                "Greatest rotation (Fig. 6-8) and probability of collapse against the duration.",
+            )
+        ]
 
 
 def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -114,11 +177,20 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         rotation.plot(t, run.array(name, "rotation"), color=style.THRUST)
         rotation.set_ylabel("rotation [rad]\n+ to +x")
         rotation.set_xlabel("time [s]")
-        found.append((style.save(fig, folder, f"{name}-motion"), f"The motion that feeds most energy under a cap of {r['cap_g']:.3f} g, and the response to it (Fig. 6-2)."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-motion"),
+                f"The motion that feeds most energy under a cap of {r['cap_g']:.3f} g, and the response to it (Fig. 6-2).",
+            )
+        )
     if "least_cap_ratio" not in arrays:
         return found
     with style.figure(6.0, 4.2) as (fig, (ax,)):
-        x, aspect, table = run.array(name, "initial_ratio"), run.array(name, "aspect"), run.array(name, "least_cap_ratio")
+        x, aspect, table = (
+            run.array(name, "initial_ratio"),
+            run.array(name, "aspect"),
+            run.array(name, "least_cap_ratio"),
+        )
         drawn = ax.contourf(x, aspect, table, levels=np.linspace(0.0, 0.5, 11), cmap="YlOrBr_r", extend="max")
         lines = ax.contour(x, aspect, table, levels=np.linspace(0.05, 0.5, 10), colors="k", linewidths=0.5)
         ax.clabel(lines, fontsize=7)
@@ -127,10 +199,17 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         ax.set_xlabel("initial rotation over the critical one")
         ax.set_ylabel("B/H")
         ax.grid(False)
-        found.append((style.save(fig, folder, f"{name}-least-cap"), "Least acceleration whose optimal motion overturns the block in the end (Fig. 6-3)."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-least-cap"),
+                "Least acceleration whose optimal motion overturns the block in the end (Fig. 6-3).",
+            )
+        )
     with style.figure(8.0, 3.6, columns=2, sharey=True) as (fig, (left, right)):
         s = run.array(name, "impulse_start")
-        for value, row in zip(run.array(name, "impulse_period_ratio"), run.array(name, "energy_by_period"), strict=True):
+        for value, row in zip(
+            run.array(name, "impulse_period_ratio"), run.array(name, "energy_by_period"), strict=True
+        ):
             left.plot(s, row, label=f"T_p = {value:g} T_n")
         for value, row in zip(run.array(name, "impulse_rotation"), run.array(name, "energy_by_rotation"), strict=True):
             right.plot(s, row, label=f"from {value:g} of the critical rotation")
@@ -139,7 +218,12 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
             ax.axhline(0.0, color=style.EDGE, linewidth=0.8)
             ax.set_xlabel("start of the impulse t_start/T_n")
             ax.legend(fontsize=7)
-        found.append((style.save(fig, folder, f"{name}-impulse"), f"Energy that one sine impulse of {r['impulse_amplitude_g']:.3f} g adds to free rocking (Fig. 6-4 a from a quarter of the critical rotation, b with T_p = T_n/2)."))
+        found.append(
+            (
+                style.save(fig, folder, f"{name}-impulse"),
+                f"Energy that one sine impulse of {r['impulse_amplitude_g']:.3f} g adds to free rocking (Fig. 6-4 a from a quarter of the critical rotation, b with T_p = T_n/2).",
+            )
+        )
     return found
 
 
@@ -181,7 +265,11 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
 
 def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Demand over capacity of each rule."""
-    rows = [(rule, c["demand"] / c["capacity"]) for rule, c in run[name]["checks"].items() if c["demand"] is not None and c["capacity"] > 0.0]
+    rows = [
+        (rule, c["demand"] / c["capacity"])
+        for rule, c in run[name]["checks"].items()
+        if c["demand"] is not None and c["capacity"] > 0.0
+    ]
     if not rows:
         return []
     with style.figure(6.5, 0.6 + 0.35 * len(rows)) as (fig, (ax,)):

@@ -78,7 +78,9 @@ class Checkpoint:
                 refuse_other_deck(out, deck)
             elif self.folder.exists():
                 if not (self.folder / HEAD).exists():
-                    raise StoreError(f"{self.folder}: is in the way and was not written by extrados; remove it or use --out")
+                    raise StoreError(
+                        f"{self.folder}: is in the way and was not written by extrados; remove it or use --out"
+                    )
                 shutil.rmtree(self.folder)
             self.folder.mkdir(parents=True, exist_ok=True)
             _write(self.folder / HEAD, json.dumps({"sha256": deck}).encode())

@@ -20,6 +20,9 @@ from extrados.results.model import Array, Result, TableData
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
+REPORT = "report.html"
+#: Further names that the report writes
+DRAWN = ("figures/", ".drawing-")
 
 
 class StoreError(Exception):
@@ -97,14 +100,23 @@ def reason(error: OSError) -> str:
 
 
 def _may_replace(out: Path) -> None:
-    """Only a folder that holds results of ours, or nothing, is ever replaced."""
+    """Only a folder that holds nothing, or results of ours and nothing else, is ever replaced."""
     if not os.path.lexists(out):
         return
     if out.is_symlink() or not out.is_dir():
         raise StoreError(f"{out}: is not a folder; name another with --out")
-    names = {p.name for p in out.iterdir()}
-    if names and SUMMARY not in names:
-        raise StoreError(f"{out}: holds files that are no results of extrados; name another folder with --out")
+    there = {str(p.relative_to(out)) for p in out.rglob("*") if not p.is_dir()}
+    if not there:
+        return
+    try:
+        summary = json.loads((out / SUMMARY).read_text(encoding="utf-8"))
+        ours = {SUMMARY, REPORT, *summary["files"]}
+        known = isinstance(summary["extrados"], dict)
+    except (OSError, ValueError, KeyError, TypeError):
+        known, ours = False, set()
+    strange = sorted(name for name in there - ours if not (known and name.startswith(DRAWN)))
+    if strange:
+        raise StoreError(f"{out}: holds '{strange[0]}', which is no result of extrados; name another folder with --out")
 
 
 def _sync(path: Path) -> None:
@@ -248,6 +260,14 @@ class Stored:
         )
 
 
+def _check_shape(summary: dict[str, Any]) -> None:
+    """KeyError or TypeError where summary.json lacks what readers rely on."""
+    deck = summary["deck"]
+    _ = summary["extrados"]["version"], deck["path"], deck["sha256"], deck["resolved"].items()
+    for analysis in summary["analyses"]:
+        _ = analysis["name"], analysis["kind"], analysis["status"], analysis["results"].items()
+
+
 def read(folder: str | Path) -> Stored:
     """Read a run's folder; StoreError where it is damaged."""
     import h5py
@@ -255,6 +275,7 @@ def read(folder: str | Path) -> Stored:
     folder = Path(folder)
     try:
         summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        _check_shape(summary)
         recorded = summary["files"].get(STORE)
         if hashlib.sha256((folder / STORE).read_bytes()).hexdigest() != recorded:
             raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")

@@ -1,6 +1,6 @@
 """The rigid block on two toes (thesis 6.2, Fig. 6-1)."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,26 @@ class Block(Assembly):
     def toe_inertia(self) -> np.ndarray:
         """Moment of inertia about the toe, rocking to +x and to -x [kg m^2]."""
         return self.inertia[0] + self.mass[0] * self.radius**2
+
+
+def monolith(assembly: Assembly) -> Block:
+    """A stack of blocks taken as one rigid body that rocks on the ends of its base."""
+    mass = float(assembly.mass.sum())
+    centre = assembly.mass @ assembly.centroid / mass
+    arm = assembly.centroid - centre
+    inertia = float(assembly.inertia.sum() + assembly.mass @ (arm**2).sum(axis=1))
+    vertices = np.concatenate(assembly.outlines)
+    ground, top = vertices[:, 1].min(), vertices[:, 1].max()
+    base, head = (
+        vertices[np.isclose(vertices[:, 1], y, atol=1e-9 * (top - ground)), 0] - centre[0] for y in (ground, top)
+    )
+    height = float(top - ground)
+    made = make_block(
+        depth=assembly.depth, mass=mass, inertia=inertia, centre_height=float(centre[1] - ground),
+        toe_right=float(base.max()), toe_left=float(-base.min()),
+    )  # fmt: skip
+    outline = np.array([[base.min(), 0.0], [base.max(), 0.0], [head.max(), height], [head.min(), height]])
+    return replace(made, outlines=[outline])
 
 
 def make_block(
