@@ -178,9 +178,7 @@ def test_series_and_runge_kutta_agree(linear: bool) -> None:
     lines = np.stack([a[:, :-1], np.diff(a) / 0.4], axis=2).transpose(1, 0, 2)
     # A sine of no amplitude keeps the general integrator in charge.
     pieces = Ground(breaks=breaks, linear=lines, harmonic=np.zeros((4, 2, 1, 4)))
-    one, two = (
-        rocking.history(m.body, g, 6.0, 0.01, tolerance=1e-11, start_rotation=0.05) for g in (sampled, pieces)
-    )
+    one, two = (rocking.history(m.body, g, 6.0, 0.01, tolerance=1e-11, start_rotation=0.05) for g in (sampled, pieces))
     assert one.impacts > 5
     assert one.rotation == pytest.approx(two.rotation, abs=1e-8)
 

@@ -90,7 +90,12 @@ class RockingSpectrum(Analysis):
     kind: Literal["rocking-spectrum"]
     structures: ClassVar = ()
     needs_motion: ClassVar = True
-    periods: list[Time] | None = key(None, "2 pi/p (for arches 2 pi times their natural time); default 60 values from 0.2 to 8 s", min_length=1, max_length=5000)
+    periods: list[Time] | None = key(
+        None,
+        "2 pi/p (for arches 2 pi times their natural time); default 60 values from 0.2 to 8 s",
+        min_length=1,
+        max_length=5000,
+    )
     slenderness: list[float] = key([10.0, 15.0, 20.0, 25.0], "alpha in degrees", min_length=1, max_length=50)
     restitution: Literal["housner"] | float = key("housner", "impact rule, or c_v")
     form: Literal["nonlinear", "linear"] = key("nonlinear", "equations of motion")
