@@ -15,7 +15,7 @@ from extrados.structures.blocks import Polygon, make_blocks, read_json
 from extrados.structures.builder import BadGeometry
 from extrados.structures.contacts import Overlap, find_contacts
 from extrados.structures.drawing import read_dxf
-from extrados.structures.polygons import crosses_itself, crossings, cut, inside, properties, signed_area
+from extrados.structures.polygons import below, crosses_itself, crossings, cut, inside, properties, signed_area
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 
@@ -51,6 +51,12 @@ def test_polygon_properties() -> None:
     assert signed_area(SQUARE[::-1]) == -1.0
     half = cut(SQUARE, np.array([0.0, 0.25]), np.array([0.0, 1.0]))
     assert properties(half)[0] == pytest.approx(0.75)
+    bent = np.array([[0.0, 0.0], [2.0, 0.5], [3.0, 3.0], [1.5, 1.0], [0.5, 2.0]])
+    levels = np.array([-1.0, 0.3, 0.5, 0.9, 1.7, 4.0])
+    for level, (area, first_x, first_y) in zip(levels, below(bent, levels), strict=True):
+        part = cut(bent, np.array([0.0, level]), np.array([0.0, -1.0]))
+        expected = properties(part)[:2] if len(part) else (0.0, np.zeros(2))
+        assert area == pytest.approx(expected[0]) and (first_x, first_y) == pytest.approx(tuple(area * expected[1]))
     assert crossings(SQUARE, 0.5) == pytest.approx([0.0, 1.0])
     assert inside(SQUARE, np.array([[0.5, 0.5], [1.5, 0.5]])).tolist() == [True, False]
     assert crosses_itself(SQUARE[[0, 2, 1, 3]]) and not crosses_itself(SQUARE)
@@ -92,6 +98,8 @@ def test_interior_point_method_on_a_wall(friction: float) -> None:
     assert inner is not None and inner.gamma == pytest.approx(exact.gamma, abs=2e-9)
     assert inner.corners[:, :2].min() > 0.0
     assert (np.abs(inner.corners[:, 2]) <= friction * inner.corners[:, :2].sum(axis=1)).all()
+    system = LimitAnalysis(section, friction, form="sparse").system
+    assert system.matrix @ np.append(inner.corners.ravel(), inner.gamma) == pytest.approx(system.right, abs=3e-8)
     # Openings dilate at least as much as they slide: the flow rule of the bound.
     assert (inner.motion[:, :2].min(axis=1) >= friction * np.abs(inner.motion[:, 2]) - 1e-9).all()
     for direction in (1, -1):

@@ -22,6 +22,8 @@ from extrados.structures.assembly import Assembly
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 
+MOST_NAMED = 12  # hinges and sliding joints told in words
+
 
 def degrees(gamma: float) -> float:
     """Tilt of the ground at which gravity has a sideways part of gamma (thesis Eq. 3.1)."""
@@ -141,16 +143,21 @@ def _fracture(assembly: Assembly, options: Tilt, answer: Answer, result: Result)
     )  # fmt: skip
 
 
+def _some(names: list[str]) -> str:
+    """The first of many names."""
+    return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
+
+
 def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Result) -> str:
     gamma, back = answer.gamma, -answer.back_state.gamma
     what = {"arch": "arch", "vault": "vault on its buttresses", "nave": "church section"}.get(
         next(iter(assembly.chains), ""), "structure"
     )
     if assembly.chains:
-        where = ", ".join(f"{h['side']} of {h['name']}" for h in hinges)
+        where = _some([f"{h['side']} of {h['name']}" for h in hinges])
     else:
-        where = ", ".join(f"joint {h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges)
-    slides = ", ".join(assembly.joint_names[j] for j in answer.mechanism.sliding)
+        where = _some([f"joint {h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges])
+    slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
     text = (
         f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
         f"tilted by {degrees(gamma):.2f} degrees. Pushed to +x it hinges at the {where or 'none of its joints'}"

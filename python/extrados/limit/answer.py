@@ -11,6 +11,7 @@ from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoEqui
 from extrados.limit.systems import Sparse
 from extrados.structures.assembly import GROUND, Assembly
 
+MOST_LINES = 12
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
 
 
@@ -78,6 +79,8 @@ class Answer:
         points = state.points(self.assembly)
         lines = {name: points[joints] for name, joints in self.assembly.chains.items()}
         standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
+        if not self.assembly.chains and len(standing) > MOST_LINES:
+            return lines  # the first course of a wall: a line down each stone says nothing
         for block in sorted(standing - {b for j in self.assembly.chains.values() for b in self._inner(j)}):
             line = pier_line(self.assembly, self.loads, state, block)
             if len(line):

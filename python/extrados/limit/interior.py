@@ -21,6 +21,7 @@ RESIDUAL = 1e-9  # of the total load
 LOOSE_GAP, LOOSE_RESIDUAL = 9e-10, 2e-8
 ROUNDS = 90
 SHIFT = 1e-13  # keeps the factor alive where a block hangs by an edge; far below the weights that matter
+SMALLEST = 1e-150  # beyond, quotients overflow: the iteration has lost its way
 TOWARDS_EDGE = 0.9995  # of the way to the nearest bound
 
 
@@ -72,6 +73,8 @@ def _mehrotra(
             return x, gamma, y
         if gap < LOOSE_GAP and residual < LOOSE_RESIDUAL:
             good = x, gamma, y
+        if x.min() < SMALLEST or z.min() < SMALLEST:
+            return good
         try:
             solver = factor(x / z)
         except RuntimeError:  # SuperLU met an exact zero

@@ -6,6 +6,7 @@ from extrados.limit.states import Mechanism
 from extrados.structures.assembly import GROUND, Assembly
 
 STEPS = 12
+MOST_PARTS = 60  # more moving parts, as in a wall, are carried along their velocities without correction
 SHOWN = 0.06  # of the size of the assembly: the greatest displacement of the drawn mechanism
 TURN = 0.2  # rad: and the greatest rotation
 
@@ -37,7 +38,7 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
 
     amount: greatest displacement of a centroid on the straight path [m]. The hinges stay closed: Newton's
     method on their coincidence, the rotation of the fastest part being prescribed. A mechanism that locks
-    before is carried as far as it goes.
+    before is carried as far as it goes; one of very many parts follows its velocities.
     """
     part = rigid_parts(assembly, mechanism)
     parts = int(part.max()) + 1
@@ -58,6 +59,8 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
     slides = [(a[j], b[j], assembly.middle[j]) for j in mechanism.sliding]
     driver = int(np.abs(velocity[:, 2]).argmax())
     turns = abs(velocity[driver, 2]) * assembly.size > 1e-9 * fastest
+    if parts > MOST_PARTS:
+        return np.column_stack([assembly.centroid + total * v[:, :2], total * v[:, 2]])
     pose = np.zeros((parts, 3))
     for step in range(1, STEPS + 1):
         start = pose

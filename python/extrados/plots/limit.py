@@ -111,6 +111,9 @@ def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] 
 def hinge_marks(ax: Axes, hinges: list[dict]) -> None:
     """Hinges as circles with letters."""
     points = np.array([[h["x_m"], h["y_m"]] for h in hinges]).reshape(-1, 2)
+    if len(points) > 26:
+        ax.plot(*points.T, ".", color=style.HINGE, markersize=2.0, zorder=5)
+        return
     style.draw_hinges(ax, points, [chr(65 + i) for i in range(min(len(points), 26))])
 
 
