@@ -46,13 +46,13 @@ module dem_contacts
 
    type :: contact_set
       integer :: pairs = 0
-      type(contact_pair), allocatable :: pair(:)    !! sorted by the lower, then the higher part
+      type(contact_pair), allocatable :: pair(:)    !! by colour, then by the lower and the higher part
       type(contact_pair), allocatable :: spare(:)
-      integer, allocatable :: row(:)                !! first pair of each lower part
-      integer, allocatable :: sequence(:)           !! pairs by colour
+      integer, allocatable :: row(:)                !! first entry of each lower part in the list of pairs
+      integer, allocatable :: sequence(:)           !! that list: where each pair is, sorted by its parts
       integer :: colours = 0
       integer :: alone = 0                          !! 1 where the last colour must run on one thread
-      integer, allocatable :: colour_first(:)       !! into sequence; (colours + 1)
+      integer, allocatable :: colour_first(:)       !! first pair of each colour; (colours + 1)
       integer, allocatable :: sweep(:)              !! parts by the left end of their boxes
       real(wp), allocatable :: box(:, :)            !! (4, parts): left, right, bottom, top
       integer(c_int64_t), allocatable :: used(:)    !! colours used at each body, as bits
@@ -431,6 +431,7 @@ contains
       call move_alloc(bigger, contacts%spare)
       allocate (longer(n), stat=failed)
       if (failed /= 0) return
+      longer(1:size(contacts%sequence)) = contacts%sequence
       call move_alloc(longer, contacts%sequence)
    end subroutine grow
 
@@ -449,7 +450,7 @@ contains
 
       if (.not. first_time) then
          do k = contacts%row(p), contacts%row(p + 1) - 1
-            if (maxval(contacts%pair(k)%parts) == q) it = contacts%pair(k)
+            if (maxval(contacts%pair(contacts%sequence(k))%parts) == q) it = contacts%pair(contacts%sequence(k))
          end do
       end if
       if (it%parts(1) == 0) then
@@ -555,7 +556,7 @@ contains
    subroutine colour(set, contacts)
       type(body_set), intent(in) :: set
       type(contact_set), intent(inout) :: contacts
-      integer :: k, c, i, b, n, count(most_colours + 1)
+      integer :: k, c, i, b, count(most_colours + 1)
       integer(c_int64_t) :: bits
 
       contacts%used = 0_c_int64_t
@@ -588,16 +589,15 @@ contains
          contacts%colours = contacts%colours - 1
       end do
       contacts%alone = merge(1, 0, contacts%colours > most_colours)
-      ! A counting sort in place needs a second array: the spare pairs carry it.
-      do k = 1, contacts%pairs
-         contacts%spare(k)%law = contacts%sequence(k)
-      end do
+      ! Pairs of one colour lie side by side: a sweep reads them in order.
       count = contacts%colour_first(1:most_colours + 1)
       do k = 1, contacts%pairs
-         n = contacts%spare(k)%law
-         contacts%sequence(count(n)) = k
-         count(n) = count(n) + 1
+         c = contacts%sequence(k)
+         contacts%sequence(k) = count(c)
+         contacts%spare(count(c)) = contacts%pair(k)
+         count(c) = count(c) + 1
       end do
+      contacts%pair(1:contacts%pairs) = contacts%spare(1:contacts%pairs)
    end subroutine colour
 
 end module dem_contacts

@@ -43,7 +43,8 @@ contains
          associate (point => it%point(i))
             if (now%gap(i) >= 0.0_wp .or. now%width <= 0.0_wp) then
                ! Mortar that is torn farther than its strength is gone for good.
-               point%bonded = point%bonded .and. law%normal_stiffness * now%gap(i) <= law%tension .and. now%width > 0.0_wp
+               point%bonded = point%bonded .and. now%width > 0.0_wp &
+                  .and. law%normal_stiffness * now%gap(i) <= law%tension
                if (.not. (point%closed .or. point%bonded)) cycle
             end if
             tx = now%tx(i)

@@ -55,7 +55,7 @@ contains
             call predict(it, it%set%item(k))
          end do
          do k = 1, it%contacts%pairs
-            call touch(it, it%contacts%pair(it%contacts%sequence(k)))
+            call touch(it, it%contacts%pair(k))
          end do
          do k = 1, size(it%set%item)
             call move(it, it%set%item(k), it%stale)
@@ -88,14 +88,14 @@ contains
          do c = 1, it%contacts%colours - it%contacts%alone
             !$omp do schedule(static)
             do k = it%contacts%colour_first(c), it%contacts%colour_first(c + 1) - 1
-               call touch(it, it%contacts%pair(it%contacts%sequence(k)))
+               call touch(it, it%contacts%pair(k))
             end do
             !$omp end do
          end do
          !$omp single
          do c = it%contacts%colours - it%contacts%alone + 1, it%contacts%colours
             do k = it%contacts%colour_first(c), it%contacts%colour_first(c + 1) - 1
-               call touch(it, it%contacts%pair(it%contacts%sequence(k)))
+               call touch(it, it%contacts%pair(k))
             end do
          end do
          !$omp end single

@@ -9,7 +9,7 @@ module sla_events
    use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
-   use sla_group, only : bound, point_group, scan_result, unbounded, most_entries, most_rank
+   use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
    use sla_model, only : model, model_factor, model_solve
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -144,11 +144,11 @@ contains
       do k = 1, size(part)
          associate (g => made%piece(1, k))
             found%bounded = found%bounded .or. part(k)%bounded
-            if (part(k)%hi%point /= 0 .and. part(k)%hi%value < found%hi%value) then
+            if (part(k)%hi%point /= 0 .and. below(part(k)%hi%value, found%hi%value)) then
                found%hi = part(k)%hi
                found%hi%group = g
             end if
-            if (part(k)%lo%point /= 0 .and. part(k)%lo%value > found%lo%value) then
+            if (part(k)%lo%point /= 0 .and. below(-part(k)%lo%value, -found%lo%value)) then
                found%lo = part(k)%lo
                found%lo%group = g
             end if

@@ -9,7 +9,8 @@ module sla_group
    implicit none
    private
    public :: element_group, point_group, group_holder, bound, scan_result, event_vectors, material_options
-   public :: unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, report_rows, state_rows
+   public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
+      report_rows, state_rows
    public :: code_tension, code_compression, code_close, code_open
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
@@ -197,6 +198,15 @@ contains
       end do
    end subroutine spread
 
+   !> True where a lies below b by more than rounding: limits that should be equal must not race
+   elemental function below(a, b) result(less)
+      real(wp), intent(in) :: a, b
+      logical :: less
+      real(wp), parameter :: tie = 1.0e-10_wp
+      less = a < b
+      if (less .and. abs(b) < unbounded .and. abs(a) < unbounded) less = b - a > tie * abs(b)
+   end function below
+
    !> A new upper limit; the first of equals stays
    pure subroutine offer_hi(found, value, point, code)
       type(scan_result), intent(inout) :: found
@@ -204,7 +214,7 @@ contains
       integer, intent(in) :: point
       integer, intent(in) :: code
       found%bounded = .true.
-      if (value < found%hi%value) found%hi = bound(value, 0, point, code)
+      if (below(value, found%hi%value)) found%hi = bound(value, 0, point, code)
    end subroutine offer_hi
 
    !> A new lower limit; the first of equals stays
@@ -214,7 +224,7 @@ contains
       integer, intent(in) :: point
       integer, intent(in) :: code
       found%bounded = .true.
-      if (value > found%lo%value) found%lo = bound(value, 0, point, code)
+      if (below(-value, -found%lo%value)) found%lo = bound(value, 0, point, code)
    end subroutine offer_lo
 
    !> A point that no multiplier relieves; the greatest overload counts, the first of equals

@@ -168,15 +168,16 @@ def test_rest_and_uplift() -> None:
     assert lifts[0] == pytest.approx(quiet + quiet / 1.02, abs=1e-9)
 
 
-def test_series_and_runge_kutta_agree() -> None:
+@pytest.mark.parametrize("linear", [False, True])
+def test_series_and_runge_kutta_agree(linear: bool) -> None:
     """Samples are solved by the block's Taylor series, sines by Dormand-Prince: the same motion given both ways."""
-    m = rectangle(0.5, 2.0)
-    a = np.array([0.0, 3.0, -4.0, 2.0, 0.0])
-    sampled = Ground(samples=a[None, :], step=0.4)
+    m = rectangle(0.5, 2.0, linear=linear)
+    a = np.array([[0.0, 2.0, -2.4, 2.0, 0.0], [0.0, -1.0, 3.0, 4.0, 0.0]])
+    sampled = Ground(samples=a, step=0.4)
     breaks = 0.4 * np.arange(5)
-    linear = np.stack([a[:-1], np.diff(a) / 0.4], axis=1).reshape(4, 1, 2)
+    lines = np.stack([a[:, :-1], np.diff(a) / 0.4], axis=2).transpose(1, 0, 2)
     # A sine of no amplitude keeps the general integrator in charge.
-    pieces = Ground(breaks=breaks, linear=linear, harmonic=np.zeros((4, 1, 1, 4)))
+    pieces = Ground(breaks=breaks, linear=lines, harmonic=np.zeros((4, 2, 1, 4)))
     one, two = (rocking.history(m.body, g, 6.0, 0.01, tolerance=1e-11, start_rotation=0.05) for g in (sampled, pieces))
     assert one.impacts > 5
     assert one.rotation == pytest.approx(two.rotation, abs=1e-8)

@@ -7,7 +7,7 @@ import pytest
 
 import extrados
 from extrados.analyses.block_model import BlockModel
-from extrados.analyses.code_checks import asce43, ishiyama, piers
+from extrados.analyses.code_rules import asce43, ishiyama, piers
 from extrados.analyses.resonance import cap_for_collapse_within, half_cycles_to_collapse, least_cap, optimal_motion
 from extrados.analyses.rocking_model import RockingModel
 from extrados.analyses.run import Context, run_analyses
@@ -187,6 +187,28 @@ def test_rocking_spectrum_of_one_block_is_its_response() -> None:
     assert one.outcome == "recovery" and found == pytest.approx(one.peak_ratio, rel=1e-9)
 
 
+def test_rocking_spectrum_of_arches() -> None:
+    """The arch of the deck itself is one point of its own spectrum."""
+    from extrados.analyses.rocking_model import rocking_model
+
+    arch = {
+        "kind": "arch",
+        "radius": 1.0,
+        "thickness": 0.15,
+        "embrace": 157.5,
+        "voussoirs": 21,
+        "restitution": "energy-safe",
+    }
+    motion = {"kind": "step-pulse", "amplitude": "0.6 g", "duration": 0.1}
+    context = Context(make_deck({"structure": arch, "motion": motion, "analysis": {"kind": "rocking"}}))
+    period = 2.0 * np.pi * rocking_model(context).time_unit
+    single = run_analyses(context)[0].results
+    found = run({"kind": "rocking-spectrum", "periods": [period, 2.0 * period]}, arch, motion)
+    assert found.results["size_m"] == pytest.approx([1.0, 4.0])
+    assert single["outcome"] == "recovery"
+    assert found.arrays["peak_ratio"].data[0, 0] == pytest.approx(single["peak_rotation_ratio"], rel=1e-6)
+
+
 def test_harmonic_map() -> None:
     result = run({"kind": "harmonic-map", "frequencies": [1.0, 3.0], "amplitudes": 12, "cycles": 10}, motion=None)
     outcome = result.arrays["outcome"].data
@@ -214,6 +236,22 @@ def test_code_checks_against_the_formulas() -> None:
     assert strong["Magenes-Calvi rocking"] == pytest.approx(2.0 * 200e3 / 6.0 * (1 - 200e3 / 0.6 / (0.85 * 3e6)))
     fixed = {x.rule: x.capacity for x in piers(2.0, 3.0, 0.3, 200e3, 3e6, 0.1e6, 0.4, True)}
     assert fixed["FEMA 356 rocking"] == pytest.approx(2 * strong["FEMA 356 rocking"])
+
+
+def test_panel_as_a_pier() -> None:
+    wall = {
+        "kind": "panel", "width": 1.0, "height": 2.0, "thickness": 0.25, "size": 0.25, "supports": [{"edge": "bottom"}],
+        "material": {"young": "2 GPa", "density": 1800.0},
+    }  # fmt: skip
+    pier = {"kind": "code-checks", "axial_load": "100 kN", "compressive_strength": "4 MPa", "cohesion": "0.2 MPa"}
+    result = run(pier, wall, motion=None)
+    load = 100e3 + 1800.0 * 0.5 * G
+    assert result.results["checks"]["FEMA 356 rocking"]["capacity"] == pytest.approx(0.9 * 0.5 * load * 1.0 / 2.0)
+    assert result.results["checks"]["FEMA 356 bed-joint sliding"]["capacity"] == pytest.approx(
+        0.25 * 0.75 * (0.75 * 0.2e6 + load / 0.25) / 1.5
+    )
+    holed = {**wall, "openings": [{"x": [0.25, 0.5], "y": [0.5, 1.0]}]}
+    assert "without openings" in run(pier, holed, motion=None).reason
 
 
 def test_code_checks_deck() -> None:

@@ -10,6 +10,7 @@ from extrados.analyses.run import Context, Refused, run_analyses
 from extrados.analyses.sla_curve import bilinear, envelope
 from extrados.analyses.sla_model import build
 from extrados.analyses.sla_run import damage_before, run_curves
+from extrados.core.errors import CoreError
 from extrados.core.sla import Behaviour, Model, Monitor, Stop
 from extrados.decks.reader import DeckError, make_deck
 
@@ -105,6 +106,62 @@ def test_threads_do_not_change_a_bit() -> None:
     for other in found[1:]:
         for name in ("load", "limit_c", "stored", "dissipated", "point"):
             assert getattr(found[0], name).tobytes() == getattr(other, name).tobytes()
+
+
+def test_a_turned_wall_cracks_alike() -> None:
+    """The whole problem turned by 31 degrees: the same events at the same loads."""
+    deck = make_deck(wall())
+    model = build(Context(deck).structure, deck.analyses[0])
+    found = []
+    for angle in (0.0, np.radians(31.0)):
+        turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+        with Model(model.wall.xy @ turn, model.freedoms, model.groups) as core:
+            core.loads(model.constant @ turn, model.reference @ turn)
+            found.append(core.run(200, [model.control]))
+    np.testing.assert_allclose(found[1].load, found[0].load, rtol=1e-9)
+    assert (found[1].point == found[0].point).all()
+
+
+def test_ties_go_to_the_first_point() -> None:
+    """Two equal bars in series reach their strength together: the first one cracks and softens to its end; what
+    it leaves (a millionth) then carries the second to its own."""
+    from extrados.core.sla import Bars, Freedoms, Softening
+
+    xy = np.array([[0.0, 0.0], [0.5, 0.0], [1.0, 0.0]])
+    bars = Bars(np.array([[0, 1], [1, 2]]), 0.02, 5.3e9, 0.25, Softening(1.7e6, 130.0))
+    force = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]])
+    with Model(xy, Freedoms.make(3, [(0, 0), (0, 1), (1, 1), (2, 1)]), [bars]) as core:
+        core.loads(np.zeros((3, 2)), force)
+        events = core.run(100, [Monitor.of(2, 0)])
+    half = len(events) // 2
+    assert half > 5
+    assert events.point.tolist() == [0] * half + [1] * half
+
+
+def test_a_point_that_no_multiplier_relieves_goes_first() -> None:
+    """Not in the thesis: A overloads a bar that B does not touch; it is damaged, without equilibrium, before B acts."""
+    from extrados.core.sla import Bars, Freedoms, Softening
+
+    xy = np.array([[0.0, 0.0], [0.5, 0.0], [0.5, 0.7]])
+    law, area, young = Softening(1.7e6, 130.0), 0.02, 5.3e9
+    bars = Bars(np.array([[0, 1], [1, 2]]), area, young, 0.25, law)
+    freedoms = Freedoms.make(3, [(0, 0), (0, 1), (2, 0), (2, 1)])
+    along, across = np.zeros((3, 2)), np.zeros((3, 2))
+    along[1, 0], across[1, 1] = 1.4 * 1.7e6 * area, -1.0
+    with Model(xy, freedoms, [bars]) as core:
+        core.loads(along, across)
+        events = core.run(100, [Monitor.of(1, 1)])
+        core.set_damage(np.zeros((11, 2)) + np.array([[0, 0, 0, 1, 0, 1, 0, 0, 0, 0, 0]]).T)
+        core.loads(along, across)
+        with pytest.raises(CoreError, match="constant loads alone exceed"):
+            core.run(100, [Monitor.of(1, 1)], Stop(refuse_overload=True))
+    teeth_of_one = int((events.point == 0).sum())
+    assert teeth_of_one > 5
+    assert (events.point[:teeth_of_one] == 0).all()
+    assert not events.equilibrium[:teeth_of_one].any()
+    assert events.equilibrium[teeth_of_one:].all()
+    assert events.load[teeth_of_one] == pytest.approx(events.load[teeth_of_one:].max())
+    assert events.load[teeth_of_one] / area > 1.7e6
 
 
 def test_batches_do_not_matter() -> None:
@@ -248,6 +305,7 @@ def test_refusals(path, value, says) -> None:
     ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
     ("analysis.0.reference", [], "at least 1 item"),
     ("structure.material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
+    ("structure.material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
     ("structure.supports", [{"fix": "x"}], "the place is missing"),
     ("structure.supports", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
     ("structure.supports", [{"x": [2, 1], "y": 0}], "the range runs backward"),

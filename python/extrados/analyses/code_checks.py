@@ -1,183 +1,69 @@
-"""code-checks: rules of codes and simple formulas for rocking bodies and piers, beside the dynamics.
-
-Clauses marked "verify clause" are quoted from memory of the standards: compare with the text before use.
-"""
-
-from dataclasses import dataclass
+"""code-checks: rules of codes for rocking bodies, and for walls as piers, beside the computed rocking."""
 
 import numpy as np
 
-from extrados.analyses.block_model import BlockModel, as_block, block_model, initial_ratio
+from extrados.analyses.block_model import as_block, block_model, initial_ratio
+from extrados.analyses.code_rules import Line, asce43, housner, ishiyama, ntc, piers, west
 from extrados.analyses.run import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
 from extrados.decks.statistics import CodeChecks
+from extrados.motions.impulse import primary_impulses
 from extrados.motions.motion import GRAVITY
 from extrados.results.model import Array, Result, TableData
-
-
-@dataclass(frozen=True)
-class Line:
-    """One rule: its capacity and demand in `unit`, and where it comes from; verdict "" where there is no demand."""
-
-    rule: str
-    quantity: str
-    capacity: float
-    demand: float | None
-    unit: str
-    source: str
-    note: str = ""
-
-    @property
-    def verdict(self) -> str:
-        if self.demand is None:
-            return ""
-        return "holds" if self.demand <= self.capacity else "fails"
-
-
-def west(tan_alpha: float, pga: float | None) -> Line:
-    """Uplift: a = g tan alpha."""
-    return Line("uplift", "PGA", tan_alpha, pga, "g", "West's formula, quoted by Milne 1882")
-
-
-def housner(p: float, alpha: float, pga: float | None, pulse: float | None) -> Line:
-    """Half sine of circular frequency w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
-    x = float(np.sqrt(1.0 + (pulse / p) ** 2)) if pulse else 1.0
-    note = (
-        "for the primary impulse of the motion taken as a half sine" if pulse else "static limit: no impulse was found"
-    )
-    return Line("Housner half sine", "PGA", x * np.tan(alpha), pga, "g", "Housner 1963, Eq. 15 (verify clause)", note)
-
-
-def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) -> tuple[Line, Line]:
-    """Overturning needs both PGA >= (B/H) g and PGV >= 10 B/sqrt(H) cm/s with B, H in cm."""
-    source = "Ishiyama 1982 (verify clause)"
-    speed = 10.0 * 100.0 * width / np.sqrt(100.0 * height) / 100.0
-    note = "overturns only where both limits are passed"
-    return (
-        Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note),
-        Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note),
-    )
-
-
-def ntc(model: BlockModel, pga: float | None, q: float, fc: float, sd) -> list[Line]:
-    """Linear and nonlinear kinematic checks of a local mechanism: one body, all its mass takes part (e* = 1)."""
-    b = model.block
-    alpha0 = float(np.tan(model.alpha.min()))
-    a0 = alpha0 / fc
-    # d* is the displacement of the centre of mass; it vanishes the multiplier at the rotation alpha.
-    d0 = b.centre_height * alpha0
-    lines = [
-        Line(
-            "NTC linear (ground level)",
-            "a_g S",
-            a0 * q,
-            pga,
-            "g",
-            "NTC 2018 C8.7.1.2.1: a0* >= a_g S/q (verify clause)",
-        ),
-    ]
-    d_u = 0.4 * d0
-    d_s = 0.4 * d_u
-    a_s = a0 * GRAVITY * (1.0 - d_s / d0)
-    t_s = 2.0 * np.pi * float(np.sqrt(d_s / a_s))
-    lines.append(
-        Line("NTC nonlinear", "displacement", d_u, None if sd is None else sd(t_s, 0.05), "m",
-             "Circ. 617/2009 C8A.4.2.2: d_u* = 0.4 d_0* >= S_De(T_s) (verify clause)", f"T_s = {t_s:.3f} s")
-    )  # fmt: skip
-    return lines
-
-
-def asce43(width: float, height: float, sa) -> Line:
-    """Rocking as an equivalent oscillator, capacity at the rotation alpha (Makris and Konstantinidis 2003 object)."""
-    # b/h is that of the half sizes, h the height of the centre of mass; theta is the rotation of the best estimate.
-    ratio, h = width / height, 0.5 * height
-    theta = float(np.arctan(ratio))
-    f1 = np.cos(theta) + ratio * np.sin(theta) - 1.0
-    c3 = 4.0 / 3.0 * (1.0 + ratio**2)
-    c_r = 1.0 - 2.0 * ratio**2 / c3
-    gamma = -2.0 * np.log(c_r)
-    damping = float(gamma / np.sqrt(4.0 * np.pi**2 + gamma**2))
-    frequency = float(np.sqrt(2.0 * f1 * GRAVITY / (c3 * theta**2 * h)) / (2.0 * np.pi))
-    capacity = float(2.0 * f1 / (c3 * theta))
-    demand = None if sa is None else sa(1.0 / frequency, damping)
-    return Line("ASCE 43 rocking", "SA", capacity, demand, "g", "ASCE/SEI 43-05, App. A (verify clause)",
-                f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha")  # fmt: skip
-
-
-def piers(
-    width: float,
-    height: float,
-    thickness: float,
-    load: float,
-    strength: float,
-    cohesion: float,
-    friction: float,
-    double: bool,
-) -> list[Line]:
-    """Lateral strength of a wall pier, `load` [N] in all at its base; lengths [m], stresses [Pa]."""
-    area = width * thickness
-    stress = load / area
-    effective = height / 2.0 if double else height
-    slenderness = effective / width
-    share = max(0.0, 1.0 - stress / (0.85 * strength))
-    fema = 0.9 * (1.0 if double else 0.5) * load * width / height
-    sliding_fema = 0.75 * cohesion * area + friction * load
-    rocking = width * load * share / (2.0 * effective)
-    # Magenes and Calvi 1997: bed-joint sliding of the cracked base, and diagonal cracking of the units left out
-    cracked = (
-        thickness
-        * width
-        * (1.5 * cohesion + friction * stress)
-        / (1.0 + 3.0 * cohesion * slenderness / max(stress, 1e-300))
-    )
-    shear = area * (cohesion + friction * stress) / (1.0 + slenderness)
-    crushing = load * width * share / (2.0 * effective)
-    return [
-        Line(
-            "FEMA 356 rocking", "lateral strength", fema, None, "N", "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)"
-        ),
-        Line(
-            "FEMA 356 bed-joint sliding",
-            "lateral strength",
-            sliding_fema,
-            None,
-            "N",
-            "FEMA 356 Eq. 7-3 with v_me = 0.75 c + mu P/A (verify clause)",
-        ),
-        Line("FEMA 356 toe crushing", "lateral strength", crushing, None, "N", "FEMA 356 Eq. 7-6 (verify clause)"),
-        Line(
-            "Magenes-Calvi rocking",
-            "lateral strength",
-            rocking,
-            None,
-            "N",
-            "Magenes and Calvi 1997, Eq. 1 (verify clause)",
-        ),
-        Line(
-            "Magenes-Calvi shear", "lateral strength", shear, None, "N", "Magenes and Calvi 1997, Eq. 6 (verify clause)"
-        ),
-        Line(
-            "Magenes-Calvi sliding",
-            "lateral strength",
-            cracked,
-            None,
-            "N",
-            "Magenes and Calvi 1997, Eq. 4 (verify clause)",
-        ),
-    ]
+from extrados.structures.block import Block
 
 
 def run(context: Context, options: CodeChecks) -> Result:
     """All rules that apply, with the computed rocking of the deck's motion beside them."""
     structure = context.deck.structure
-    block = as_block(structure, context.structure)
+    result = Result("code-checks")
+    if structure.kind == "panel":
+        lines = _panel(context, options)
+    else:
+        block = as_block(structure, context.structure)
+        lines = _block(context, options, block, result)
+        if options.axial_load is not None:
+            lines += _pier(options, block.toe_right + block.toe_left, 2.0 * block.centre_height,
+                           options.thickness or block.depth, float(block.mass[0]) * GRAVITY, options.compressive_strength)  # fmt: skip
+    result.results |= {
+        "checks": {line.rule: {"capacity": line.capacity, "demand": line.demand, "unit": line.unit, "verdict": line.verdict,
+                               "source": line.source, "note": line.note} for line in lines},
+    }  # fmt: skip
+    demand = np.array([np.nan if x.demand is None else x.demand for x in lines])
+    capacity = np.array([x.capacity for x in lines])
+    result.tables["code_checks"] = TableData({
+        "rule": [x.rule for x in lines], "quantity": [x.quantity for x in lines], "capacity": capacity, "demand": demand,
+        "unit": [x.unit for x in lines], "verdict": [x.verdict for x in lines], "source": [x.source for x in lines],
+        "note": [x.note for x in lines],
+    })  # fmt: skip
+    result.arrays = {
+        "capacity": Array(capacity, ("rule",), "", "each in its unit, see code_checks.csv"),
+        "demand": Array(demand, ("rule",)),
+    }
+    said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]
+    words = ["; ".join(said) + "."] if said else []
+    fate = result.results.get("dynamic_outcome")
+    if fate:
+        ratio = result.results["dynamic_peak_rotation_ratio"]
+        spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and stays up",
+                  "no-hinging": "does not rock"}[fate]  # fmt: skip
+        words.append(f"Computed under the motion itself, the block {spoken}.")
+    strengths = [x for x in lines if x.unit == "N"]
+    if strengths:
+        weakest = min(strengths, key=lambda x: x.capacity)
+        words.append(f"As a pier its least strength is {weakest.capacity / 1e3:.4g} kN ({weakest.rule}).")
+    result.answer = " ".join(words) or "Capacities without a demand, see the table."
+    return result
+
+
+def _block(context: Context, options: CodeChecks, block: Block, result: Result) -> list[Line]:
+    structure = context.deck.structure
     model = block_model(block, structure)
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
     pga = options.peak_acceleration / GRAVITY if options.peak_acceleration else None
     pgv, pulse, sd, sa = options.peak_velocity, None, None, None
-    dynamic = None
     if context.deck.motion is not None:
         motion = context.motion
         context.warnings += motion.notes
@@ -187,64 +73,52 @@ def run(context: Context, options: CodeChecks) -> Result:
         pga = float(measured.pga[0]) / GRAVITY if pga is None else pga
         pgv = float(measured.pgv[0]) if pgv is None else pgv
 
-        def spectrum(period: float, damping: float):
+        def spectra(period: float, damping: float) -> core_motion.Spectra:
             return core_motion.response_spectra(values, step, [period], [damping], threads=context.threads)
 
         def sd(period: float, damping: float) -> float:
-            return float(spectrum(period, damping).sd.ravel()[0])
+            return float(spectra(period, damping).sd.ravel()[0])
 
         def sa(period: float, damping: float) -> float:
-            return float(spectrum(period, damping).psa.ravel()[0]) / GRAVITY
-
-        from extrados.motions.impulse import primary_impulses
+            return float(spectra(period, damping).psa.ravel()[0]) / GRAVITY
 
         found = primary_impulses(time, values, 1)
         pulse = 2.0 * np.pi / found[0].period if found else None
+        ratio = initial_ratio(structure)
         dynamic = core_rocking.history(
             model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
-            start_rotation=abs(initial_ratio(structure)) * float(model.alpha[0]),
+            start_side=1 if ratio >= 0.0 else -1, start_rotation=abs(ratio) * float(model.alpha[0 if ratio >= 0.0 else 1]),
         )  # fmt: skip
+        result.results |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
+    result.results |= {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
     alpha = float(model.alpha.min())
-    lines = [
+    return [
         west(float(np.tan(alpha)), pga), housner(float(model.frequency[0]), alpha, pga, pulse),
         *ishiyama(width, height, pga, pgv), *ntc(model, pga, options.behaviour_factor, options.confidence_factor, sd),
         asce43(width, height, sa),
     ]  # fmt: skip
-    if options.axial_load is not None:
-        weight = float(block.mass[0]) * GRAVITY
-        thickness = options.thickness or block.depth
-        if options.axial_load + weight >= 0.85 * options.compressive_strength * width * thickness:
-            raise Refused("the vertical load alone crushes the pier (P >= 0.85 f_m A)")
-        lines += piers(width, height, thickness, options.axial_load + weight, options.compressive_strength,
-                       options.cohesion, options.friction, options.fixity == "double")  # fmt: skip
-    result = Result("code-checks")
-    result.results = {
-        "checks": {line.rule: {"capacity": line.capacity, "demand": line.demand, "unit": line.unit, "verdict": line.verdict,
-                               "source": line.source, "note": line.note} for line in lines},
-        "dynamic_outcome": dynamic.outcome if dynamic else None,
-        "dynamic_peak_rotation_ratio": dynamic.peak_ratio if dynamic else None,
-        "peak_ground_acceleration_g": pga,
-        "peak_ground_velocity_m_s": pgv,
-    }  # fmt: skip
-    result.tables["code_checks"] = TableData({
-        "rule": [x.rule for x in lines], "quantity": [x.quantity for x in lines],
-        "capacity": np.array([x.capacity for x in lines]), "demand": np.array([np.nan if x.demand is None else x.demand for x in lines]),
-        "unit": [x.unit for x in lines], "verdict": [x.verdict for x in lines], "source": [x.source for x in lines],
-        "note": [x.note for x in lines],
-    })  # fmt: skip
-    result.arrays = {
-        "capacity": Array(
-            np.array([x.capacity for x in lines]), ("rule",), "", "each in its unit, see code_checks.csv"
-        ),
-        "demand": Array(np.array([np.nan if x.demand is None else x.demand for x in lines]), ("rule",)),
-    }
-    said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]
-    result.answer = "; ".join(said) + ". " if said else "Capacities without a demand, see the table. "
-    if dynamic:
-        fate = {"collapse": "overturns", "recovery": f"rocks to {100 * dynamic.peak_ratio:.0f} % of its critical rotation and stays up",
-                "no-hinging": "does not rock"}[dynamic.outcome]  # fmt: skip
-        result.answer += f"Computed under the motion itself, the block {fate}."
-    if options.axial_load is not None:
-        weakest = min((x for x in lines if x.unit == "N"), key=lambda x: x.capacity)
-        result.answer += f" As a pier its least strength is {weakest.capacity / 1e3:.4g} kN ({weakest.rule})."
-    return result
+
+
+def _panel(context: Context, options: CodeChecks) -> list[Line]:
+    """The pier rules for a finite-element wall without openings, with its material's compressive strength."""
+    panel = context.deck.structure
+    if options.axial_load is None or options.cohesion is None:
+        raise Refused("a panel is checked as a pier: give axial_load, compressive_strength and cohesion")
+    if panel.width is None or panel.openings:
+        raise Refused(
+            "the pier rules are for a rectangle without openings: check each pier between openings as its own panel"
+        )
+    thickness = options.thickness or panel.thickness
+    weight = panel.material.density * panel.width * panel.height * thickness * GRAVITY
+    return _pier(options, panel.width, panel.height, thickness, weight, options.compressive_strength)
+
+
+def _pier(
+    options: CodeChecks, width: float, height: float, thickness: float, weight: float, strength: float
+) -> list[Line]:
+    load = options.axial_load + weight
+    if load >= 0.7 * strength * width * thickness:
+        raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)")
+    return piers(
+        width, height, thickness, load, strength, options.cohesion, options.friction, options.fixity == "double"
+    )

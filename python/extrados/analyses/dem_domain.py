@@ -1,7 +1,5 @@
 """dem-domain: the shortest pulses that bring a structure down, by discrete elements (thesis Figs 7-11, 7-13, 7-14)."""
 
-import hashlib
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -9,13 +7,13 @@ import numpy as np
 
 from extrados.analyses import dem_model
 from extrados.analyses.arch_model import ArchModel
-from extrados.analyses.checkpoint import Checkpoint
 from extrados.analyses.dem_model import JointValues, Model
 from extrados.analyses.failure_domain import settling_time, shortest_durations, unit_pulse
 from extrados.analyses.run import Context, Refused
 from extrados.core import dem
 from extrados.core.errors import CoreError
 from extrados.decks.dem import DemDomain
+from extrados.results.checkpoint import fingerprint
 from extrados.results.model import Array, Result, TableData
 from extrados.structures.arch import Arch
 
@@ -40,28 +38,37 @@ class Sweep:
         self.context = context
         self.settle = options.settle or dem_model.settle_time(model)
         self.limit = options.collapse_displacement or 0.2 * model.size
-        question = json.dumps([context.deck.resolved()["structure"], options.model_dump()], sort_keys=True, default=str)
-        path = context.out.parent / f".{context.out.name}.dem-domain.json" if context.out else None
-        self.memory = Checkpoint(path, hashlib.sha256(question.encode()).hexdigest(), context.resume)
+        self.answers: dict[str, bool] = {}
+        self.batches = 0
+        # The deck guards the checkpoint; two sweeps of one deck are told apart by what they ask.
+        self.name = "dem-domain-" + fingerprint(options.model_dump())[:16]
+        if context.checkpoint is not None:
+            for first, kept in context.checkpoint.load(self.name):
+                self.answers |= dict(zip(kept["pulse"].tolist(), kept["fails"].tolist(), strict=True))
+                self.batches = max(self.batches, first + 1)
         self.residual = 0.0
         self.steps = 0
 
     def fails(self, asked: list[tuple[int, float, float]], tick: Callable[[int], None]) -> list[bool]:
         """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down."""
         keys = [f"{k} {a!r} {t!r}" for k, a, t in asked]
-        todo = [(key, one) for key, one in zip(keys, asked, strict=True) if key not in self.memory.answers]
+        todo = [(key, one) for key, one in zip(keys, asked, strict=True) if key not in self.answers]
         batch = 8 * max(1, self.context.threads)
         for first in range(0, len(todo), batch):
             part = todo[first : first + batch]
             runs = dem_model.many([self._task(*one) for _, one in part], self.context.threads, lambda n: None)
             for (key, _), run in zip(part, runs, strict=True):
                 dem_model.checked(run, self.model)
-                self.memory.answers[key] = run.reason in FAILED
+                self.answers[key] = run.reason in FAILED
                 self.residual = max(self.residual, run.residual)
                 self.steps += run.steps
-            self.memory.save()
+            if self.context.checkpoint is not None:
+                done = [key for key, _ in part]
+                arrays = {"pulse": np.array(done), "fails": np.array([self.answers[key] for key in done])}
+                self.context.checkpoint.keep(self.name, self.batches, arrays)
+                self.batches += 1
             tick(len(part))
-        return [bool(self.memory.answers[key]) for key in keys]
+        return [bool(self.answers[key]) for key in keys]
 
     def _task(self, curve: int, amplitude: float, duration: float) -> Callable[[], dem.Run]:
         motion = unit_pulse(self.options.pulse, duration)
@@ -100,7 +107,6 @@ def run(context: Context, options: DemDomain) -> Result:
         context.progress(min(done, total), total, "failure domain by discrete elements")
 
     shortest = _shortest(sweep, len(curves), amplitudes, durations, options.accuracy, tick)
-    sweep.memory.done()
     found = [Curve(label, v, row) for label, v, row in zip(labels, curves, shortest, strict=True)]
     result = Result("dem-domain")
     result.results = {

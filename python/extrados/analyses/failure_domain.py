@@ -192,7 +192,7 @@ def run(context: Context, options: FailureDomain) -> Result:
     model = rocking_model(context)
     # The arch keeps sqrt(R/g); a block has 1/p, and its curves span omega/p from about 1 to 12.
     unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
-    durations = np.unique(options.durations) if options.durations else natural_durations(unit, options.pulse)
+    durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     mapper = Mapper(model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation)
     job = mapper.job(np.repeat(np.arange(len(durations)), len(amplitudes)), np.tile(amplitudes, len(durations)))
@@ -273,7 +273,7 @@ def _answer(model: RockingModel, options: FailureDomain, durations: np.ndarray, 
     if not np.isfinite(curves.mode_i).any():
         return f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g brings the {model.what} down."
     governing = np.nanmin(curves.mode_i) / GRAVITY
-    shortest = durations[np.flatnonzero(np.isfinite(curves.mode_i))[0]]
+    shortest = durations[np.isfinite(curves.mode_i)].min()
     start = "hinge" if model.what == "arch" else "rock"
     return (
         f"Under {shape} the {model.what} starts to {start} at {model.uplift:.3f} g. It comes down from {shortest:.3f} s on "

@@ -1,8 +1,12 @@
-"""rocking-spectrum: greatest rotation of blocks under a motion over 2 pi/p and alpha (Makris and Konstantinidis 2003)."""
+"""rocking-spectrum: greatest rotation under a motion over 2 pi/p and alpha (Makris and Konstantinidis 2003).
+
+Of rectangles, or, where the deck has an arch, of arches of its shape in other sizes.
+"""
 
 import numpy as np
 
 from extrados.analyses.batches import sweep
+from extrados.analyses.rocking_model import make_model, rocking_model
 from extrados.analyses.run import Context
 from extrados.analyses.runs import runs_job
 from extrados.core.rocking import Body, block_body
@@ -21,51 +25,68 @@ def block_of(period: float, alpha: float, restitution: str | float, linear: bool
 
 
 def run(context: Context, options: RockingSpectrum) -> Result:
-    """Rotation spectra; an overturned block has none, its place is marked."""
+    """Rotation spectra; what overturns has no rotation, its place is marked."""
     motion = context.motion
     context.warnings += motion.notes
     periods = np.array(options.periods) if options.periods else np.linspace(0.2, 8.0, 60)
-    alphas = np.radians(options.slenderness)
-    bodies = [block_of(t, a, options.restitution, options.form == "linear") for a in alphas for t in periods]
+    structure = context.deck.structure
+    if structure is not None and structure.kind == "arch":
+        family, sizes, bodies = _arches(context, periods)
+    else:
+        alphas = np.radians(options.slenderness)
+        bodies = [block_of(t, a, options.restitution, options.form == "linear") for a in alphas for t in periods]
+        family = [f"alpha {a:g} deg" for a in options.slenderness]
+        sizes = 0.75 * GRAVITY * (periods / (2.0 * np.pi)) ** 2
     n = len(bodies)
-    settle = np.tile(periods, len(alphas)) * 6.0
+    settle = np.tile(periods, len(family)) * 6.0
     job = runs_job(bodies, [motion.ground], np.arange(n), 0, 1.0, motion.end + settle)
     swept = sweep(context, "rocking-spectrum", job, n, "rocking spectrum")
     result = Result("rocking-spectrum")
     if not swept.complete:
         result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
         return result
-    shape = (len(alphas), len(periods))
+    shape = (len(family), len(periods))
     overturned = swept["outcome"].reshape(shape) == 2
     ratio = np.where(overturned, np.nan, swept["peak_ratio"].reshape(shape))
     rotation = np.where(overturned, np.nan, np.abs(swept["peak"].reshape(shape)))
     longest = [float(periods[row].max()) if row.any() else None for row in overturned]
     result.results = {
-        "slenderness_deg": list(options.slenderness),
+        "family": family,
         "overturned": overturned.sum(axis=1),
         "longest_overturning_period_s": longest,
+        "size_m": sizes,
         "peak_ground_acceleration_g": motion.peak / GRAVITY,
     }
     result.tables["rocking_spectrum"] = TableData(
         {
-            "slenderness": np.repeat(options.slenderness, len(periods)), "period": np.tile(periods, len(alphas)),
+            "family": np.repeat(family, len(periods)), "period": np.tile(periods, len(family)), "size": np.tile(sizes, len(family)),
             "peak_rotation": rotation.ravel(), "peak_ratio": ratio.ravel(), "overturned": overturned.ravel().astype(int),
         },
-        {"slenderness": "deg", "period": "s", "peak_rotation": "rad"},
+        {"period": "s", "size": "m", "peak_rotation": "rad"},
     )  # fmt: skip
     result.arrays = {
-        "slenderness": Array(np.array(options.slenderness), ("slenderness",), "deg", "alpha"),
-        "period": Array(periods, ("period",), "s", "2 pi/p"),
-        "peak_ratio": Array(ratio, ("slenderness", "period"), "", "greatest rotation over alpha; NaN where overturned"),
-        "overturned": Array(overturned.astype(np.int8), ("slenderness", "period")),
+        "period": Array(periods, ("period",), "s", "2 pi/p, or 2 pi times the natural time of an arch"),
+        "size": Array(sizes, ("period",), "m", "half-diagonal of the block, radius of the arch"),
+        "peak_ratio": Array(
+            ratio, ("family", "period"), "", "greatest rotation over the critical one; NaN where overturned"
+        ),
+        "overturned": Array(overturned.astype(np.int8), ("family", "period")),
     }
     words = []
-    for a, row, last in zip(options.slenderness, overturned, longest, strict=True):
-        size = (
-            ""
-            if last is None
-            else f", up to 2 pi/p = {last:.3g} s (half-diagonal {0.75 * GRAVITY * (last / 2 / np.pi) ** 2:.3g} m)"
-        )
-        words.append(f"alpha {a:g} deg: {int(row.sum())} of {len(periods)} overturn{size}")
+    for name, row, last in zip(family, overturned, longest, strict=True):
+        size = "" if last is None else f", up to {last:.3g} s ({sizes[periods == last][0]:.3g} m)"
+        words.append(f"{name}: {int(row.sum())} of {len(periods)} overturn{size}")
     result.answer = f"Peak ground acceleration {motion.peak / GRAVITY:.3f} g. " + "; ".join(words) + "."
     return result
+
+
+def _arches(context: Context, periods: np.ndarray) -> tuple[list[str], np.ndarray, list[Body]]:
+    """The deck's arch in the sizes whose natural time is period / 2 pi: it grows with the root of the size (Eq. 5.7)."""
+    structure = context.deck.structure
+    base = rocking_model(context)
+    factors = (periods / (2.0 * np.pi * base.time_unit)) ** 2
+    bodies = []
+    for factor in factors.tolist():
+        update = {"radius": structure.radius * factor, "thickness": structure.thickness * factor}
+        bodies.append(make_model(structure.model_copy(update=update), context.deck.folder).body)
+    return ["arches of this shape"], structure.radius * factors, bodies

@@ -9,6 +9,7 @@ from extrados.analyses.run import Context, Refused
 from extrados.analyses.sla_curve import bilinear, envelope
 from extrados.analyses.sla_model import SlaModel, build, strength_factors
 from extrados.analyses.sla_run import Curve, State, damage_before, run_curves
+from extrados.core.calls import interruptible
 from extrados.core.sla import EVENTS, Plane, teeth
 from extrados.decks.sla import Sla
 from extrados.decks.walls import Panel
@@ -23,6 +24,11 @@ UNBOUNDED = 1e300
 
 def run(context: Context, options: Sla) -> Result:
     """All curves: both senses of the load, and the repetitions with other seeds."""
+    with interruptible():  # Ctrl-C between two batches too only ends the events: what was found is kept
+        return _run(context, options)
+
+
+def _run(context: Context, options: Sla) -> Result:
     try:
         wall: WallMesh = context.structure
     except BadWall as error:

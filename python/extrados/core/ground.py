@@ -65,15 +65,14 @@ def motion_set(grounds: Sequence[Ground]) -> MotionSet:
     n_sample = n_break = 0
     for ground in grounds:
         if ground.samples is not None:
-            block = np.zeros((ground.samples.shape[1], channels))
-            block[:, : ground.channels] = real("samples", ground.samples, (None, None)).T
-            if len(block) < 2 or not ground.step > 0.0:
+            points = ground.samples.shape[1]
+            if points < 2 or not ground.step > 0.0:
                 raise ValueError("a sampled motion needs two samples and a step above zero")
-            samples.append(block)
+            samples.append(ground.samples)
             sampled.append(1)
             first.append(n_sample + 1)
-            segments.append(len(block) - 1)
-            n_sample += len(block)
+            segments.append(points - 1)
+            n_sample += points
         else:
             edges = real("breaks", ground.breaks, (None,))
             count = len(edges) - 1
@@ -94,6 +93,14 @@ def motion_set(grounds: Sequence[Ground]) -> MotionSet:
             segments.append(count)
             n_break += count + 1
 
+    # One array and one check for all: ensembles bring thousands of motions.
+    rows = np.zeros((max(n_sample, 1), channels))
+    start = 0
+    for block in samples:
+        rows[start : start + block.shape[1], : len(block)] = block.T
+        start += block.shape[1]
+    rows = real("samples", rows.T, (channels, None))
+
     def stack(parts: list, empty: tuple[int, ...]) -> np.ndarray:
         return np.concatenate(parts) if parts else np.zeros(empty)
 
@@ -103,7 +110,7 @@ def motion_set(grounds: Sequence[Ground]) -> MotionSet:
         integers("segments", segments),
         np.array([g.start for g in grounds], dtype=float),
         np.array([g.step for g in grounds], dtype=float),
-        stack(samples, (1, channels)).T,
+        rows,
         stack(breaks, (1,)),
         stack(linear, (1, channels, 2)).T,
         stack(harmonic, (1, channels, terms, 4)).T,

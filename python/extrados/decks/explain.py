@@ -68,6 +68,24 @@ def _properties(model: type[Table]) -> dict[str, dict[str, Any]]:
     return model.model_json_schema()["properties"]
 
 
+def _keys(
+    schema: dict[str, Any], definitions: dict[str, Any] | None = None, depth: int = 0
+) -> dict[str, dict[str, Any]]:
+    """All keys of a table and, dotted, of the tables within it; each says whether it is `required`."""
+    definitions = schema.get("$defs", {}) if definitions is None else definitions
+    found: dict[str, dict[str, Any]] = {}
+    for name, about in schema["properties"].items():
+        found[name] = {**about, "required": name in schema.get("required", [])}
+        places = [about, about.get("items", {}), about.get("additionalProperties", {}), *about.get("anyOf", [])]
+        for place in [*places, *(p.get("items", {}) for p in places if isinstance(p, dict))]:
+            if isinstance(place, dict) and "$ref" in place and depth < 3:
+                inner = definitions[place["$ref"].rsplit("/", 1)[1]]
+                if "properties" in inner:
+                    within = _keys(inner, definitions, depth + 1)
+                    found |= {f"{name}.{key}": value for key, value in within.items()}
+    return found
+
+
 def _facts(about: dict[str, Any]) -> str:
     """Type, unit, choices, bounds and default of one key in a few words."""
     facts = []
@@ -111,13 +129,14 @@ def explain(word: str) -> str:
             if word == kind:
                 rows = [
                     textwrap.indent(_entry(section, kind, name, about), "  ")
-                    for name, about in _properties(model).items()
+                    for name, about in _keys(model.model_json_schema()).items()
                     if name != "kind"
                 ]
                 found.append(f'[{section}] kind = "{kind}": {_summary(model)}\n' + "\n".join(rows))
-            for name, about in _properties(model).items():
-                known.add(name)
-                if word in (name, f"{section}.{name}") and name != "kind":
+            for name, about in _keys(model.model_json_schema()).items():
+                last = name.rsplit(".", 1)[-1]
+                known.update((name, last))
+                if word in (name, last, f"{section}.{name}") and name != "kind":
                     found.append(_entry(section, kind, name, about))
     if not found:
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
@@ -205,12 +224,12 @@ def manual() -> str:
                 "| key | meaning | type and default |",
                 "|---|---|---|",
             ]
-            for name, about in _properties(model).items():
+            for name, about in _keys(model.model_json_schema()).items():
                 if name == "kind":
                     continue
                 source = f" ({about['source']})" if about.get("source") else ""
                 text = f"{about.get('description', '')}{source}".replace("|", "\\|")
-                required = "" if "default" in about else ", required"
+                required = ", required" if about["required"] else ""
                 lines.append(f"| `{name}` | {text} | {_facts(about).replace('|', chr(92) + '|')}{required} |")
             lines.append("")
     return "\n".join(lines)

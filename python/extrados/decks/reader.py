@@ -5,7 +5,7 @@ import hashlib
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import ValidationError
 
@@ -196,10 +196,11 @@ class _Checker:
         at = (*path, *place)
         sort = problem["type"]
         if sort == "extra_forbidden":
-            self.complain(at, f"unknown key{_nearest(str(place[-1]), model.model_fields)}")
+            self.complain(at, f"unknown key{_nearest(str(place[-1]), _table_at(model, place[:-1]).model_fields)}")
         elif sort == "missing":
-            about = model.model_fields[place[0]].description if place and place[0] in model.model_fields else ""
-            self.complain(path, f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
+            known = _table_at(model, place[:-1]).model_fields
+            about = known[place[-1]].description if place and place[-1] in known else ""
+            self.complain(at[:-1], f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
         elif sort == "value_error":
             self.complain(at, str(problem.get("ctx", {}).get("error", problem["msg"])))
         else:
@@ -229,6 +230,20 @@ def _place(problem: dict[str, Any]) -> tuple:
     last = rest[-1:] if problem["type"] in ("extra_forbidden", "missing") else ()
     rest = rest[: len(rest) - len(last)]
     return (*first, *(p for p in rest if isinstance(p, int) or not _is_branch(p)), *last)
+
+
+def _table_at(model: type[Table], place: tuple) -> type[Table]:
+    """The table within a table that a place leads to."""
+    for part in place:
+        if part in model.model_fields:
+            model = _table_in(model.model_fields[part].annotation) or model
+    return model
+
+
+def _table_in(annotation: Any) -> type[Table] | None:
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        return annotation
+    return next((found for inner in get_args(annotation) if (found := _table_in(inner))), None)
 
 
 def _is_branch(part: str) -> bool:

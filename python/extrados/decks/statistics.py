@@ -85,12 +85,17 @@ class Resonance(Analysis):
 
 
 class RockingSpectrum(Analysis):
-    """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha."""
+    """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha, or of the deck's arch in all sizes."""
 
     kind: Literal["rocking-spectrum"]
     structures: ClassVar = ()
     needs_motion: ClassVar = True
-    periods: list[Time] | None = key(None, "2 pi/p; default 60 values from 0.2 to 8 s", min_length=1, max_length=5000)
+    periods: list[Time] | None = key(
+        None,
+        "2 pi/p (for arches 2 pi times their natural time); default 60 values from 0.2 to 8 s",
+        min_length=1,
+        max_length=5000,
+    )
     slenderness: list[float] = key([10.0, 15.0, 20.0, 25.0], "alpha in degrees", min_length=1, max_length=50)
     restitution: Literal["housner"] | float = key("housner", "impact rule, or c_v")
     form: Literal["nonlinear", "linear"] = key("nonlinear", "equations of motion")
@@ -121,7 +126,7 @@ class CodeChecks(Analysis):
     """Rules for rocking bodies, and for walls as piers, beside the dynamics; each with its source."""
 
     kind: Literal["code-checks"]
-    structures: ClassVar = ("block", "column")
+    structures: ClassVar = ("block", "column", "panel")
     peak_acceleration: Acceleration | None = key(None, "demand; default that of the motion", gt=0)
     peak_velocity: float | None = key(None, "demand [m/s]; default that of the motion", gt=0)
     behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")

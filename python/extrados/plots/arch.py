@@ -68,7 +68,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             )
         )
     moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
-    if moving.any():
+    if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))
     times = run.arrays[name].get("snapshot_time")
     if times is not None and len(times.data):
@@ -127,7 +127,8 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
     from matplotlib.colors import ListedColormap
 
     r = run[name]
-    d, a, codes = run.array(name, "duration"), run.array(name, "amplitude"), run.array(name, "outcome")
+    order = np.argsort(run.array(name, "duration"))  # a deck may list them in any order
+    d, a, codes = run.array(name, "duration")[order], run.array(name, "amplitude"), run.array(name, "outcome")[order]
     with style.figure(7.0, 4.6) as (fig, (ax,)):
         ax.pcolormesh(
             d if len(d) > 1 else d[0] * np.array([0.9, 1.1]),
@@ -140,8 +141,8 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
             rasterized=True,
         )
         mark = "o" if len(d) == 1 else ""
-        ax.plot(d, run.array(name, "mode_I"), f"k-{mark}", label="Mode I (governs)")
-        ax.plot(d, run.array(name, "mode_II"), f"k--{mark}", label="Mode II")
+        ax.plot(d, run.array(name, "mode_I")[order], f"k-{mark}", label="Mode I (governs)")
+        ax.plot(d, run.array(name, "mode_II")[order], f"k--{mark}", label="Mode II")
         ax.axhline(r["uplift_acceleration_g"], color=style.EDGE, linewidth=0.8, linestyle=":")
         for code, text in enumerate(
             ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")

@@ -231,8 +231,8 @@ def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[st
     """Peak rotation over 2 pi/p for each slenderness."""
     period, ratio, over = (run.array(name, k) for k in ("period", "peak_ratio", "overturned"))
     with style.figure(7.0, 4.0) as (fig, (ax,)):
-        for angle, row, fell in zip(run.array(name, "slenderness"), ratio, over, strict=True):
-            line = ax.plot(period, row, ".-", markersize=3, label=f"alpha {angle:g} deg")[0]
+        for member, row, fell in zip(run[name]["family"], ratio, over, strict=True):
+            line = ax.plot(period, row, ".-", markersize=3, label=member)[0]
             ax.plot(period[fell == 1], np.full(int(fell.sum()), 1.03), "x", color=line.get_color(), markersize=5)
         ax.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle=":")
         ax.set_ylim(0.0, 1.1)
