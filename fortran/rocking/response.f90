@@ -8,10 +8,13 @@ module rocking_response
    use common_kinds, only : wp, gravity
    use common_cancel, only : cancel_requested
    use common_dense_step, only : dense_step
-   use common_dopri5, only : oscillator, dopri5_attempt, dopri5_factor, step_memory
+   use common_dopri5, only : dopri5_factor, step_memory
    use common_signal, only : signal
    use common_status, only : status_ok, status_cancelled, status_too_many_steps, status_step_too_small
+   use rocking_crossings, only : impact_fraction, turning_fraction, crossing_fraction
+   use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
    use rocking_rocker, only : rocker, side_index
+   use rocking_uplift, only : find_uplift
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -63,40 +66,9 @@ module rocking_response
       real(wp) :: loss = 0.0_wp                    !! energy lost at impacts [J]
    end type response_history
 
-   !> Equation of motion on one side during one segment of the ground motion
-   type, extends(oscillator) :: rocking_problem
-      class(rocker), pointer :: body => null()
-      type(signal) :: ground
-      integer :: segment = 0
-      integer :: side = 1
-      logical :: series = .false.  !! the structure solves its own steps
-      real(wp) :: rest_dv(2) = 0.0_wp  !! V' at rest, both sides
-      real(wp) :: rest_dh(2) = 0.0_wp  !! H at rest, both sides
-   contains
-      procedure :: acceleration
-   end type rocking_problem
-
    integer, parameter :: poll_every = 2000
 
 contains
-
-   function acceleration(self, t, q, v) result(a)
-      class(rocking_problem), intent(in) :: self
-      real(wp), intent(in) :: t
-      real(wp), intent(in) :: q
-      real(wp), intent(in) :: v
-      real(wp) :: a
-      real(wp) :: m, half_dm, dv, dh, horizontal, vertical
-      logical :: closed
-
-      call self%body%coefficients(self%side, q, m, half_dm, dv, dh, closed)
-      if (.not. closed) then
-         a = huge(a)  ! the error test refuses the step
-         return
-      end if
-      call self%ground%value_at(self%segment, t, horizontal, vertical)
-      a = -(half_dm * v * v + dv * (1.0_wp + vertical / gravity) + real(self%side, wp) * horizontal * dh) / m
-   end function acceleration
 
    !> Rock a structure under a ground motion until collapse, the end time, or an error
    subroutine respond(body, ground, options, answer, status, history)
@@ -106,7 +78,7 @@ contains
       type(response), intent(out) :: answer
       integer(c_int), intent(out) :: status
       type(response_history), intent(inout), optional :: history
-      type(rocking_problem) :: problem
+      type(equation_of_motion) :: problem
       type(dense_step) :: step
       type(step_memory) :: memory
       real(wp) :: t, t_next, window, q, v, a, h, h_next, remaining, factor, s, v_before, energy
@@ -438,268 +410,8 @@ contains
 
    end subroutine respond
 
-   !> One step: by the structure's own series where it has one and the ground runs in straight lines
-   subroutine attempt(problem, t, h, q, v, a, atol_q, atol_v, rtol, step)
-      type(rocking_problem), intent(in) :: problem
-      real(wp), intent(in) :: t, h, q, v, a   !! start time, length, and state at the start
-      real(wp), intent(in) :: atol_q, atol_v  !! absolute tolerances
-      real(wp), intent(in) :: rtol
-      type(dense_step), intent(inout) :: step
-      real(wp) :: value(2), slope(2)
-
-      if (problem%series) then
-         call problem%ground%line_at(problem%segment, t, value, slope)
-         step%t = t
-         call problem%body%series_step(problem%side, h, q, v, value, slope, [atol_q, atol_v, rtol], step)
-      else
-         call dopri5_attempt(problem, t, h, q, v, a, atol_q, atol_v, rtol, step)
-      end if
-   end subroutine attempt
-
-   !> Factor for the next step length after a series: its error grows with the power of the last term
-   pure function series_factor(step) result(factor)
-      type(dense_step), intent(in) :: step
-      real(wp) :: factor
-      if (.not. step%error <= huge(1.0_wp)) then
-         factor = 0.1_wp
-      else if (step%error <= 1.0e-3_wp) then
-         factor = 2.0_wp  ! the series was cut short: a longer step is as cheap
-      else
-         factor = min(2.0_wp, max(0.1_wp, 0.9_wp * step%error**(-1.0_wp / real(step%degree - 2, wp))))
-      end if
-   end function series_factor
-
-   !> Fraction of the step at which q falls through zero, or 0 where it does not
-   pure function impact_fraction(step, q, v) result(s)
-      type(dense_step), intent(in) :: step
-      real(wp), intent(in) :: q  !! at the start
-      real(wp), intent(in) :: v  !! at the start
-      real(wp) :: s
-      real(wp) :: low, high
-      integer :: k
-
-      s = 0.0_wp
-      high = 1.0_wp
-      if (step%q > 0.0_wp) then
-         if (.not. (v < 0.0_wp .and. step%v > 0.0_wp)) return
-         high = turning_fraction(step)  ! a dip that came back within the step
-         if (step%coordinate(high) > 0.0_wp) return
-      end if
-      low = 0.0_wp
-      if (q <= 0.0_wp) then
-         ! q/s is positive just after the start; find its last sign change
-         low = 1.0_wp
-         do k = 1, 40
-            low = 0.5_wp * low
-            if (step%coordinate(low * high) > 0.0_wp) exit
-         end do
-         low = low * high
-         if (step%coordinate(low) <= 0.0_wp) then
-            s = 1.0_wp
-            return
-         end if
-      end if
-      s = root_between(step, .false., 0.0_wp, low, high)
-   end function impact_fraction
-
-   !> Fraction of the step at which the rate changes sign
-   pure function turning_fraction(step) result(s)
-      type(dense_step), intent(in) :: step
-      real(wp) :: s
-      s = root_between(step, .true., 0.0_wp, 0.0_wp, 1.0_wp)
-   end function turning_fraction
-
-   !> Fraction of the step at which q rises through a level
-   pure function crossing_fraction(step, level) result(s)
-      type(dense_step), intent(in) :: step
-      real(wp), intent(in) :: level
-      real(wp) :: s
-      s = root_between(step, .false., level, 0.0_wp, 1.0_wp)
-   end function crossing_fraction
-
    !> Where the coordinate, or the rate, passes a level between two fractions on either side of it.
    !>
    !> Regula falsi that halves the value of an end that stays (the Illinois rule): never leaves the
-   !> bracket and takes a fifth of the evaluations of bisection. Returns the end beyond the level.
-   pure function root_between(step, of_rate, level, start, finish) result(s)
-      type(dense_step), intent(in) :: step
-      logical, intent(in) :: of_rate     !! the rate, else the coordinate
-      real(wp), intent(in) :: level
-      real(wp), intent(in) :: start      !! value differs from the level in sign from that at finish
-      real(wp), intent(in) :: finish
-      real(wp) :: s
-      real(wp) :: low, high, f_low, f_high, f, middle
-      integer :: k, stayed
-
-      low = start
-      high = finish
-      f_low = value(low)
-      f_high = value(high)
-      stayed = 0
-      do k = 1, 100
-         if (f_high == 0.0_wp .or. abs(high - low) <= 2.0_wp * spacing(high)) exit
-         middle = high - f_high * (high - low) / (f_high - f_low)
-         if (.not. (middle > low .and. middle < high) .or. mod(k, 8) == 0) middle = 0.5_wp * (low + high)
-         if (middle <= low .or. middle >= high) exit
-         f = value(middle)
-         if ((f > 0.0_wp) .eqv. (f_low > 0.0_wp)) then
-            low = middle
-            f_low = f
-            if (stayed == 1) f_high = 0.5_wp * f_high
-            stayed = 1
-         else
-            high = middle
-            f_high = f
-            if (stayed == -1) f_low = 0.5_wp * f_low
-            stayed = -1
-         end if
-      end do
-      s = high
-
-   contains
-
-      pure function value(x) result(f)
-         real(wp), intent(in) :: x
-         real(wp) :: f
-         if (of_rate) then
-            f = step%rate(x) - level
-         else
-            f = step%coordinate(x) - level
-         end if
-      end function value
-
-   end function root_between
-
-   !> Repeat the step with its end on the impact: the time then has the order of the integrator
-   subroutine polish_impact(problem, q, v, a, atol_q, atol_v, rtol, fraction, step)
-      type(rocking_problem), intent(in) :: problem
-      real(wp), intent(in) :: q, v, a         !! state at the start of the step
-      real(wp), intent(in) :: atol_q, atol_v  !! absolute tolerances
-      real(wp), intent(in) :: rtol
-      real(wp), intent(in) :: fraction        !! first guess, of the step
-      type(dense_step), intent(inout) :: step
-      real(wp) :: h, full, change
-      integer :: k
-
-      if (problem%series) then
-         call step%cut(fraction)  ! the series is the solution itself
-         return
-      end if
-      full = step%h
-      h = fraction * full
-      do k = 1, 4
-         call dopri5_attempt(problem, step%t, h, q, v, a, atol_q, atol_v, rtol, step)
-         if (abs(step%v) <= tiny(1.0_wp)) exit
-         change = -step%q / step%v
-         if (abs(change) <= 4.0_wp * spacing(step%t + h)) exit
-         if (h + change <= 0.0_wp .or. h + change > 1.5_wp * full) exit
-         h = h + change
-      end do
-   end subroutine polish_impact
-
-   !> First time in [t, t_next] at which the ground lifts the resting structure, and the side it rocks to
-   subroutine find_uplift(problem, t, t_next, when, side)
-      type(rocking_problem), intent(in) :: problem
-      real(wp), intent(in) :: t
-      real(wp), intent(in) :: t_next
-      real(wp), intent(out) :: when
-      integer, intent(out) :: side              !! 0 where it stays at rest
-      real(wp) :: t0, t1, f0(2), f1(2), best, root, grid, top, at_top(2)
-      integer :: j
-
-      side = 0
-      when = t_next
-      ! Straight lines are tested at their ends; sines 32 times a cycle, and between where they come near.
-      grid = problem%ground%shortest_period(problem%segment) / 32.0_wp
-      t1 = t
-      f1 = drive(t1)
-      do while (t1 < t_next)
-         t0 = t1
-         f0 = f1
-         t1 = min(t_next, t0 + grid)
-         f1 = drive(t1)
-         best = huge(best)
-         do j = 1, 2
-            if (f0(j) > 0.0_wp) then
-               root = t0
-            else if (f1(j) > 0.0_wp) then
-               root = crossing(j, t0, t1)
-            else
-               if (grid >= huge(grid) / 64.0_wp .or. max(f0(j), f1(j)) < -0.02_wp * problem%rest_dv(j)) cycle
-               call crest(j, t0, t1, top)
-               at_top = drive(top)
-               if (at_top(j) <= 0.0_wp) cycle
-               root = crossing(j, t0, top)
-            end if
-            if (root < best) then
-               best = root
-               side = 3 - 2 * j
-            end if
-         end do
-         if (side /= 0) then
-            when = best
-            return
-         end if
-      end do
-
-   contains
-
-      !> Driving minus resisting moment of both sides at rest
-      function drive(time) result(f)
-         real(wp), intent(in) :: time
-         real(wp) :: f(2)
-         real(wp) :: horizontal, vertical
-         call problem%ground%value_at(problem%segment, time, horizontal, vertical)
-         f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity)
-      end function drive
-
-      !> Where the drive of side j is greatest between two times, by golden section
-      subroutine crest(j, first, last, top)
-         integer, intent(in) :: j
-         real(wp), intent(in) :: first
-         real(wp), intent(in) :: last
-         real(wp), intent(out) :: top
-         real(wp), parameter :: golden = 0.6180339887498949_wp
-         real(wp) :: low, high, x, y, fx(2), fy(2)
-         integer :: n
-         low = first
-         high = last
-         do n = 1, 30
-            x = high - golden * (high - low)
-            y = low + golden * (high - low)
-            fx = drive(x)
-            fy = drive(y)
-            if (fx(j) > fy(j)) then
-               high = y
-            else
-               low = x
-            end if
-         end do
-         top = 0.5_wp * (low + high)
-      end subroutine crest
-
-      !> The first time at which side j is driven up, between a quiet and a driven time
-      function crossing(j, quiet_time, driven_time) result(root)
-         integer, intent(in) :: j
-         real(wp), intent(in) :: quiet_time
-         real(wp), intent(in) :: driven_time
-         real(wp) :: root
-         real(wp) :: low, high, middle, f(2)
-         integer :: n
-         low = quiet_time
-         high = driven_time
-         do n = 1, 60
-            middle = 0.5_wp * (low + high)
-            f = drive(middle)
-            if (f(j) > 0.0_wp) then
-               high = middle
-            else
-               low = middle
-            end if
-         end do
-         root = high
-      end function crossing
-
-   end subroutine find_uplift
 
 end module rocking_response
