@@ -60,6 +60,10 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for k, d in enumerate(damping):
             psa.semilogx(period, run.array(name, "psa")[k] / GRAVITY, label=f"{100 * d:g} %")
             sd.loglog(period, 100 * run.array(name, "sd")[k], label=f"{100 * d:g} %")
+        for key, line in (("psa_rotd50", "k--"), ("psa_rotd100", "k:")):
+            if key in run.arrays[name]:
+                label = f"{key[4:].replace('rotd', 'RotD')}, {100 * r['rotd_damping']:g} %"
+                psa.semilogx(period, run.array(name, key) / GRAVITY, line, label=label)
         psa.set_ylabel("pseudo-acceleration [g]")
         sd.set_ylabel("displacement [cm]")
         psa.legend(title="damping", loc="upper right")
