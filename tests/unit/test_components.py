@@ -145,7 +145,8 @@ def test_fragility_feels_the_vertical_of_each_record(tmp_path: Path) -> None:
         assert rocking.OUTCOMES[result.arrays["outcome"].data[k]] == alone.results["outcome"]
         assert alone.results["peak_rotation_ratio"] == pytest.approx(ratio[k], rel=1e-6)
         assert np.any(alone.arrays["vertical"].data) == (k != 3)
-    assert 0.0 < ratio[0] < 1.0 and abs(ratio[0] / ratio[3] - 1.0) > 1e-2  # the same horizontal with and without its vertical
+    # The same horizontal with and without its vertical
+    assert 0.0 < ratio[0] < 1.0 and abs(ratio[0] / ratio[3] - 1.0) > 1e-2
 
 
 def test_a_missing_partner_stays_its_own(tmp_path: Path) -> None:
