@@ -116,7 +116,7 @@ contains
    !> Plane-stress elements of one kind; the tooth tables are those of the whole group
    subroutine add_plane(handle, kind, nx, ny, selective, per, elements, connect, thickness, young, nu, table, &
                         crush_table, lateral, axis, axis_angle, tables, rows, bad, bad_row, status)
-      use common_status, only : status_ok
+      use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : element_group
       use sla_handle, only : model_of, both_directions
       use sla_model, only : model, model_add
@@ -144,6 +144,7 @@ contains
       integer(c_int), intent(out) :: bad_row                  !! table row, 1-based
       integer(c_int), intent(out) :: status
       type(model), pointer :: made
+      integer :: info
       type(tooth_tables) :: teeth_of
       type(plane_group), allocatable :: plane
       class(element_group), allocatable :: group
@@ -153,18 +154,21 @@ contains
       made => model_of(handle)
       call tooth_tables_new(rows, teeth_of, bad_row, status)
       if (status /= status_ok) return
-      allocate (plane)
+      allocate (plane, stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (status /= status_ok) return
       call plane_group_new(kind, nx, ny, selective /= 0, made%xy, connect, thickness, young, nu, table, crush_table, &
          lateral, axis, axis_angle, teeth_of, made%options, plane, bad, status)
       if (status /= status_ok) return
       call move_alloc(plane, group)
-      call both_directions(connect, node, direction)
+      call both_directions(connect, node, direction, status)
+      if (status /= status_ok) return
       call model_add(made, group, node, direction, status)
    end subroutine add_plane
 
    !> Bars
    subroutine add_bars(handle, elements, connect, area, young, table, crush_table, tables, rows, bad, bad_row, status)
-      use common_status, only : status_ok
+      use common_status, only : status_ok, status_out_of_memory
       use sla_bar, only : bar_group, bar_group_new
       use sla_group, only : element_group
       use sla_handle, only : model_of, both_directions
@@ -183,6 +187,7 @@ contains
       integer(c_int), intent(out) :: bad_row
       integer(c_int), intent(out) :: status
       type(model), pointer :: made
+      integer :: info
       type(tooth_tables) :: teeth_of
       type(bar_group), allocatable :: bars
       class(element_group), allocatable :: group
@@ -192,17 +197,20 @@ contains
       made => model_of(handle)
       call tooth_tables_new(rows, teeth_of, bad_row, status)
       if (status /= status_ok) return
-      allocate (bars)
+      allocate (bars, stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (status /= status_ok) return
       call bar_group_new(made%xy, connect, area, young, table, crush_table, teeth_of, made%options, bars, bad, status)
       if (status /= status_ok) return
       call move_alloc(bars, group)
-      call both_directions(connect, node, direction)
+      call both_directions(connect, node, direction, status)
+      if (status /= status_ok) return
       call model_add(made, group, node, direction, status)
    end subroutine add_bars
 
    !> Linear springs between freedoms of two nodes, or of one and the ground (node 0)
    subroutine add_springs(handle, elements, node, direction, stiffness, status)
-      use common_status, only : status_ok
+      use common_status, only : status_ok, status_out_of_memory
       use sla_bar, only : spring_group, spring_group_new
       use sla_group, only : element_group
       use sla_handle, only : model_of
@@ -216,8 +224,11 @@ contains
       type(spring_group), allocatable :: springs
       class(element_group), allocatable :: group
       type(model), pointer :: made
+      integer :: info
       made => model_of(handle)
-      allocate (springs)
+      allocate (springs, stat=info)
+      status = status_out_of_memory
+      if (info /= 0) return
       call spring_group_new(stiffness, springs, status)
       if (status /= status_ok) return
       call move_alloc(springs, group)
@@ -288,6 +299,7 @@ contains
    subroutine run(handle, room, stop_lambda, stop_displacement, stop_fraction, stop_compliance, refuse_overload, &
                   monitors, entries, first, node, direction, share, count, reals, integers, monitored, guard, &
                   cracked, reason, status)
+      use common_status, only : status_out_of_memory
       use sla_events, only : run_events, stop_rules, event_log
       use sla_handle, only : model_of
       use sla_model, only : model
@@ -317,7 +329,7 @@ contains
       type(event_log) :: log
       integer(c_int), allocatable :: equation(:)
       real(c_double), allocatable :: weight(:)
-      integer :: k
+      integer :: k, info
       !f2py threadsafe
       reals = 0.0_c_double
       integers = 0
@@ -329,7 +341,13 @@ contains
       rules%compliance = stop_compliance
       rules%refuse_overload = refuse_overload /= 0
       allocate (equation(entries), weight(entries), log%reals(9, room), log%integers(4, room), &
-         log%monitors(monitors, room))
+         log%monitors(monitors, room), stat=info)
+      count = 0
+      reason = 0
+      guard = 0
+      cracked = 0.0_c_double
+      status = status_out_of_memory
+      if (info /= 0) return
       do k = 1, entries
          equation(k) = made%equation(direction(k), node(k))
          weight(k) = share(k) * made%factor(direction(k), node(k))

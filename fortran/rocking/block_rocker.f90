@@ -19,7 +19,7 @@ module rocking_block_rocker
    integer, parameter :: block_parameters = 8
    !> Terms of the series of the rate; the rotation has one more
    integer, parameter :: order = 8
-   !> Terms below this share of the tolerance end the series
+   !> Terms below this share of the tolerance end the series: chattering magnifies what is left out
    real(wp), parameter :: negligible = 1.0e-3_wp
    real(wp), parameter :: inverse(order + 1) = [1.0_wp, 1.0_wp / 2.0_wp, 1.0_wp / 3.0_wp, 1.0_wp / 4.0_wp, &
       1.0_wp / 5.0_wp, 1.0_wp / 6.0_wp, 1.0_wp / 7.0_wp, 1.0_wp / 8.0_wp, 1.0_wp / 9.0_wp]
@@ -145,20 +145,31 @@ contains
             s(k) = -x(k)
             c(k) = 0.0_wp
          else
-            rise = 0.0_wp
-            fall = 0.0_wp
-            !GCC$ novector
-            do j = 0, k - 1
-               rise = rise + s(j) * u(k - 1 - j)
-               fall = fall + c(j) * u(k - 1 - j)
-            end do
+            select case (k)  ! the first convolutions, which every step needs, without a loop
+            case (1)
+               rise = s(0) * u(0)
+               fall = c(0) * u(0)
+            case (2)
+               rise = s(0) * u(1) + s(1) * u(0)
+               fall = c(0) * u(1) + c(1) * u(0)
+            case (3)
+               rise = s(0) * u(2) + s(1) * u(1) + s(2) * u(0)
+               fall = c(0) * u(2) + c(1) * u(1) + c(2) * u(0)
+            case default
+               rise = 0.0_wp
+               fall = 0.0_wp
+               do j = 0, k - 1
+                  rise = rise + s(j) * u(k - 1 - j)
+                  fall = fall + c(j) * u(k - 1 - j)
+               end do
+            end select
             s(k) = -inverse(k) * fall
             c(k) = inverse(k) * rise
          end if
          u(k + 1) = -inverse(k + 1) * (pull * s(k) + pull_slope * s(k - 1) + push * c(k) + push_slope * c(k - 1))
          x(k + 2) = inverse(k + 2) * u(k + 1)
-         if (k < 3) cycle
-         ! The last two terms bound what is left out; a thousandth of the tolerance needs no more.
+         if (k < 2) cycle
+         ! The last two terms bound what is left out; what follows them is smaller by far.
          if (abs(u(k + 1)) + abs(u(k)) <= negligible * tolerance_u .and. &
              abs(x(k + 2)) + abs(x(k + 1)) <= negligible * tolerance_q) then
             last = k + 1
@@ -178,8 +189,11 @@ contains
       step%a = 0.0_wp
       step%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
       step%degree = last + 1
-      step%cq(0:last + 1) = x(0:last + 1)
-      step%cv(0:last) = u(0:last) * per_h
+      do k = 0, last
+         step%cq(k) = x(k)
+         step%cv(k) = u(k) * per_h
+      end do
+      step%cq(last + 1) = x(last + 1)
       step%cv(last + 1) = 0.0_wp
    end subroutine series_step
 

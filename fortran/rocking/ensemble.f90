@@ -63,14 +63,23 @@ contains
       integer(c_int), intent(out) :: status
       type(arch_rocker), allocatable :: arch
       type(block_rocker), allocatable :: stone
+      integer :: stat
 
       select case (kind)
       case (body_arch)
-         allocate (arch)
+         allocate (arch, stat=stat)
+         if (stat /= 0) then
+            status = status_out_of_memory
+            return
+         end if
          call arch_rocker_new(parameters, arch, status)
          call move_alloc(arch, body)
       case (body_block)
-         allocate (stone)
+         allocate (stone, stat=stat)
+         if (stat /= 0) then
+            status = status_out_of_memory
+            return
+         end if
          call block_rocker_new(parameters, stone, status)
          call move_alloc(stone, body)
       case default

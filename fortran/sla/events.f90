@@ -121,40 +121,38 @@ contains
 
    !> Limits over all points, the same for any number of threads: pieces are joined in their order
    subroutine scan_model(made, found)
-      type(model), intent(in) :: made
+      type(model), intent(inout) :: made
       type(scan_result), intent(out) :: found
-      type(scan_result), allocatable :: part(:)
       type(scan_result) :: guess
       integer :: k
 
-      allocate (part(size(made%piece, 2)))
       ! The limits of the point damaged last are near the new ones: loosened, they spare most points the roots.
       call guess_limits(made, guess)
-      !$omp parallel do schedule(static) default(none) shared(made, part, guess) private(k) &
+      !$omp parallel do schedule(static) default(none) shared(made, guess) private(k) &
       !$omp num_threads(made%threads) if(made%threads > 1)
       do k = 1, size(made%piece, 2)
-         part(k) = guess
+         made%part(k) = guess
          select type (group => made%holders(made%piece(1, k))%group)
          class is (point_group)
-            call group%scan(made%piece(2, k), made%piece(3, k), made%ua, made%ub, made%lambda, made%noise, part(k))
+            call group%scan(made%piece(2, k), made%piece(3, k), made%ua, made%ub, made%lambda, made%noise, made%part(k))
          end select
       end do
       !$omp end parallel do
       found = scan_result()
-      do k = 1, size(part)
+      do k = 1, size(made%part)
          associate (g => made%piece(1, k))
-            found%bounded = found%bounded .or. part(k)%bounded
-            if (part(k)%hi%point /= 0 .and. below(part(k)%hi%value, found%hi%value)) then
-               found%hi = part(k)%hi
+            found%bounded = found%bounded .or. made%part(k)%bounded
+            if (made%part(k)%hi%point /= 0 .and. below(made%part(k)%hi%value, found%hi%value)) then
+               found%hi = made%part(k)%hi
                found%hi%group = g
             end if
-            if (part(k)%lo%point /= 0 .and. below(-part(k)%lo%value, -found%lo%value)) then
-               found%lo = part(k)%lo
+            if (made%part(k)%lo%point /= 0 .and. below(-made%part(k)%lo%value, -found%lo%value)) then
+               found%lo = made%part(k)%lo
                found%lo%group = g
             end if
-            if (part(k)%empty%point /= 0 .and. &
-                (found%empty%point == 0 .or. part(k)%empty%value > found%empty%value)) then
-               found%empty = part(k)%empty
+            if (made%part(k)%empty%point /= 0 .and. &
+                (found%empty%point == 0 .or. made%part(k)%empty%value > found%empty%value)) then
+               found%empty = made%part(k)%empty
                found%empty%group = g
             end if
          end associate
@@ -320,23 +318,20 @@ contains
    !> Residual forces into z, the larger relative norm into made%residual
    subroutine residual(made)
       type(model), intent(inout) :: made
-      real(wp), allocatable :: f(:)
       real(wp) :: load
       integer :: k, g, n
       n = made%equations
-      allocate (f(0:n))
       made%residual = 0.0_wp
       do k = 1, 2
-         f = 0.0_wp
+         made%force = 0.0_wp
          do g = 1, size(made%holders)
-            if (k == 1) call made%holders(g)%group%force(made%ua, f)
-            if (k == 2) call made%holders(g)%group%force(made%ub, f)
+            if (k == 1) call made%holders(g)%group%force(made%ua, made%force)
+            if (k == 2) call made%holders(g)%group%force(made%ub, made%force)
          end do
-         if (k == 1) f = made%fa - f
-         if (k == 2) f = made%fb - f
-         made%z(:, k) = f(1:n)
-         load = norm2(merge(made%fa, made%fb, k == 1))
-         if (load > 0.0_wp) made%residual = max(made%residual, norm2(f(1:n)) / load)
+         if (k == 1) made%z(:, k) = made%fa(1:n) - made%force(1:n)
+         if (k == 2) made%z(:, k) = made%fb(1:n) - made%force(1:n)
+         load = merge(norm2(made%fa), norm2(made%fb), k == 1)
+         if (load > 0.0_wp) made%residual = max(made%residual, norm2(made%z(:, k)) / load)
       end do
    end subroutine residual
 

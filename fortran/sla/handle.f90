@@ -1,5 +1,6 @@
 !> Models behind integers, for callers that cannot hold a derived type.
 module sla_handle
+   use common_status, only : status_ok, status_out_of_memory
    use sla_model, only : model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_intptr_t, c_loc, c_ptr, c_f_pointer
    implicit none
@@ -25,12 +26,16 @@ contains
    end function model_of
 
    !> Node and direction of each freedom of elements whose nodes move in x and y
-   subroutine both_directions(connect, node, direction)
+   subroutine both_directions(connect, node, direction, status)
       integer(c_int), intent(in) :: connect(:, :)                    !! (nodes, elements)
       integer(c_int), allocatable, intent(out) :: node(:, :)         !! (2 nodes, elements)
       integer(c_int), allocatable, intent(out) :: direction(:, :)
-      integer :: i
-      allocate (node(2 * size(connect, 1), size(connect, 2)), direction(2 * size(connect, 1), size(connect, 2)))
+      integer(c_int), intent(out) :: status
+      integer :: i, info
+      allocate (node(2 * size(connect, 1), size(connect, 2)), direction(2 * size(connect, 1), size(connect, 2)), &
+         stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
       do i = 1, size(connect, 1)
          node(2 * i - 1, :) = connect(i, :)
          node(2 * i, :) = connect(i, :)

@@ -8,8 +8,8 @@ module sla_model
    use sla_assembly, only : build_pattern, assemble
    use sla_c_bindings, only : extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, &
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
-   use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, most_rank, &
-      report_rows
+   use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
+      most_rank, report_rows
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
    implicit none
@@ -38,6 +38,8 @@ module sla_model
       real(wp), allocatable :: fa(:), fb(:)              !! (0:n) constant and reference load [N]
       real(wp), allocatable :: ua(:), ub(:)              !! (0:n) their displacements [m]
       real(wp), allocatable :: z(:, :)                   !! (n, most_rank)
+      real(wp), allocatable :: force(:)                  !! (0:n) of the residual
+      type(scan_result), allocatable :: part(:)          !! limits of each piece
       ! How the loop runs
       logical :: refactor = .false.                      !! factorise at each event, to compare
       integer :: threads = 1
@@ -179,7 +181,7 @@ contains
          return
       end if
       allocate (made%value(made%start(n + 1)), made%fa(0:n), made%fb(0:n), made%ua(0:n), made%ub(0:n), &
-         made%z(n, most_rank), made%piece(3, pieces), stat=info)
+         made%z(n, most_rank), made%force(0:n), made%piece(3, pieces), made%part(pieces), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return

@@ -70,8 +70,8 @@ contains
          0.0_wp * each, teeth, options, plane, bad, status)
       if (status /= status_ok) error stop 'no elements'
       call move_alloc(plane, group)
-      call both_directions(connect, nodes, directions)
-      call model_add(made, group, nodes, directions, status)
+      call both_directions(connect, nodes, directions, status)
+      if (status == status_ok) call model_add(made, group, nodes, directions, status)
       if (status == status_ok) call model_prepare(made, 0_c_int, huge(1_c_int64_t), status)
       if (status == status_ok) call model_factor(made, node, direction, ratio, status)
       if (status == status_ok) call model_loads(made, 0.0_wp * load, load, .false., status)

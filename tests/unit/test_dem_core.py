@@ -85,6 +85,22 @@ def test_leapfrog_is_second_order() -> None:
     assert np.abs(order - 2.0).max() < 0.1, order
 
 
+@pytest.mark.parametrize("ratio", [0.05, 0.5, 3.0])
+def test_dashpots_damp_as_asked(ratio: float) -> None:
+    """A bonded block, let go with a velocity, against the damped oscillator: both its points share the damping."""
+    omega = np.sqrt(1e7 / 2000.0)
+    law = dem.Law(1e7, 1e7, 1.0, cohesion=1e9, tension=1e9, damping=2.0 * ratio / omega)
+    bodies = model([rectangle(-0.5, 0.5, 0.0, 1.0)], [rectangle(-5.0, 5.0, -1.0, 0.0)], law)
+    rate = np.array([[0.0, 0.01, 0.0], [0.0, 0.0, 0.0]])
+    options = dem.Options(0.3, 0.002, step=1e-5, gravity=(0.0, 0.0))
+    run = dem.run(bodies, options, shift=np.zeros((2, 3)), rate=rate)
+    root = np.sqrt(complex(ratio**2 - 1.0))
+    one, two = omega * (-ratio + root), omega * (-ratio - root)
+    exact = (0.01 * (np.exp(one * run.time) - np.exp(two * run.time)) / (one - two)).real
+    assert np.abs(run.place[:, 0, 1] - 0.5 - exact).max() < 5e-3 * np.abs(exact).max()
+    assert run.residual < 1e-3
+
+
 def test_momentum_is_conserved() -> None:
     """Two blocks collide in free space: linear and angular momentum stay to rounding."""
     bodies = model(

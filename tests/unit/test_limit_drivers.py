@@ -143,6 +143,18 @@ def test_survey(tmp_path: Path) -> None:
     assert "none.csv" in run(ARCH, tmp_path, kind="survey", file="none.csv").reason
 
 
+def test_cracked_buttress_that_cannot_stand(tmp_path: Path) -> None:
+    """A slender buttress stands whole, but not once it cracks."""
+    whole = run({**VAULT, "buttress_width": 3.6}, kind="tilt", fracture=True)
+    assert (
+        whole.status == "ok" and whole["fracture"] == {"stands": False} and "cannot stand upright" in whole.warnings[0]
+    )
+    (tmp_path / "s.csv").write_text("name,buttress_width\nslender,3.6\nstout,6.0\n")
+    table = run(VAULT, tmp_path, kind="survey", file="s.csv", fracture=True).tables["survey"].columns
+    assert np.isnan(table["fractured_collapse_acceleration"][0]) and "cracked" in table["reason"][0]
+    assert table["fractured_collapse_acceleration"][1] > 0.07 and table["reason"][1] == ""
+
+
 def test_survey_file_of_the_case() -> None:
     folder = Path(__file__).parents[2] / "cases" / "limit"
     with (folder / "survey.csv").open() as file:

@@ -93,7 +93,7 @@ def run(context: Context, options: Survey) -> Result:
     for k, name in enumerate(header):
         if name != "name":
             columns[name] = [row[k] for row in rows]
-    columns["reason"] = [o.reason for o in outcomes]
+    columns["reason"] = ["; ".join([o.reason] if o.reason else o.notes) for o in outcomes]
     stand = np.isfinite(gamma)
     result = Result("survey")
     result.results = {

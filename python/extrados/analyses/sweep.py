@@ -61,6 +61,12 @@ def _is_whole(model: Structure, path: str) -> bool:
     return "int" in text and "float" not in text
 
 
+def _unit(model: Structure, path: str) -> str:
+    """Unit of a key of the structure itself, none where it has none."""
+    about = type(model).model_json_schema()["properties"].get(path, {})
+    return next((b["unit"] for b in (about, *about.get("anyOf", [])) if "unit" in b), "")
+
+
 def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
     model = context.deck.structure
@@ -89,6 +95,7 @@ def run(context: Context, options: Sweep) -> Result:
     stable = [c for c in changes if not c["before"] or not c["after"]]
     result.results = {
         "vary": options.vary,
+        "unit": _unit(model, options.vary),
         "mechanisms": [{"number": n, "hinges": spoken(s)} for s, n in numbers.items()],
         "changes": [
             {
@@ -132,7 +139,12 @@ def run(context: Context, options: Sweep) -> Result:
     for name in names:
         columns[name] = [measures_of(o.assembly).get(name, np.nan) for o in outcomes]
     columns["reason"] = [o.reason for o in outcomes]
-    units = {"collapse_acceleration": "g", "fractured_collapse_acceleration": "g", "tilt_angle": "deg"}
+    units = {
+        options.vary: result.results["unit"],
+        "collapse_acceleration": "g",
+        "fractured_collapse_acceleration": "g",
+        "tilt_angle": "deg",
+    }
     result.tables = {"sweep": TableData(columns, units)}
     result.arrays.update(_examples(outcomes, numbers))
     result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]

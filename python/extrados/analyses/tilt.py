@@ -105,9 +105,11 @@ def _fracture(assembly: Assembly, options: Tilt, answer: Answer, result: Result)
     block = assembly.buttresses[-1] if assembly.buttresses else None
     try:
         found: Fracture | None = fracture_of(assembly, options)
+        if found is not None and found.gamma <= 0.0:
+            raise NoEquilibrium
     except NoEquilibrium:
         result.results["fracture"] = {"stands": False}
-        result.warnings.append("with its leeward buttress cracked the structure cannot stand at any tilt to +x")
+        result.warnings.append("with its leeward buttress cracked the structure cannot stand upright")
         return
     if found is None:
         result.results["fracture"] = {"cracks": False, "collapse_acceleration_g": answer.gamma, "ratio": 1.0}

@@ -104,8 +104,11 @@ def evaluate(
         try:
             found = fracture_of(assembly, options)
             cracked = state.gamma if found is None else found.gamma
+            if cracked <= 0.0:
+                raise NoEquilibrium("cannot stand upright")
         except (NoEquilibrium, Refused) as error:
-            notes.append(f"with the buttress cracked: {str(error) or 'cannot stand'}")
+            cracked = None
+            notes.append(f"with the buttress cracked: {error}")
     return Outcome(
         state.gamma, cracked, signature(assembly, mechanism), abs(state.gamma - mechanism.upper_bound), "",
         assembly, mechanism, notes,

@@ -303,7 +303,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for gap in r["gaps"]:
             ax.plot(gap["value"], 0.0, "x", color=style.THRUST, markersize=4)
         ax.set_ylim(bottom=0.0)
-        ax.set_xlabel(f"{r['vary']}")
+        ax.set_xlabel(f"{r['vary']} [{r['unit']}]" if r["unit"] else r["vary"])
         ax.set_ylabel("tilt at collapse [deg]")
         ax.legend(loc="best")
         found = [
