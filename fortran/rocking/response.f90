@@ -148,17 +148,8 @@ contains
          if (.not. quiet) t_next = min(t_next, ground%break_time(problem%segment + 1))
 
          if (resting) then
-            attempts = attempts + 1
-            if (attempts > options%max_steps) then
-               status = status_too_many_steps
-               exit
-            end if
-            if (mod(attempts, poll_every) == 0) then
-               if (cancel_requested()) then
-                  status = status_cancelled
-                  exit
-               end if
-            end if
+            call count_attempt()
+            if (status /= status_ok) exit
             if (quiet) then
                t = options%end_time
                call record_rest(t)
@@ -196,17 +187,8 @@ contains
          else if (h > 0.5_wp * remaining) then
             h = 0.5_wp * remaining
          end if
-         attempts = attempts + 1
-         if (attempts > options%max_steps) then
-            status = status_too_many_steps
-            exit
-         end if
-         if (mod(attempts, poll_every) == 0) then
-            if (cancel_requested()) then
-               status = status_cancelled
-               exit
-            end if
-         end if
+         call count_attempt()
+         if (status /= status_ok) exit
          call attempt(problem, t, h, q, v, a, atol_q, atol_v, options%tolerance, step)
          if (problem%series) then
             factor = series_factor(step)
@@ -309,6 +291,16 @@ contains
       end if
 
    contains
+
+      !> Every pass of the loop: the limit of attempts, and now and then the request to stop
+      subroutine count_attempt()
+         attempts = attempts + 1
+         if (attempts > options%max_steps) then
+            status = status_too_many_steps
+         else if (mod(attempts, poll_every) == 0) then
+            if (cancel_requested()) status = status_cancelled
+         end if
+      end subroutine count_attempt
 
       subroutine begin_half_cycle()
          answer%half_cycles = answer%half_cycles + 1

@@ -100,7 +100,8 @@ def test_core_never_stops_the_process() -> None:
         ["nm", "-D", "--undefined-only", _core.__file__], capture_output=True, text=True, check=True
     )
     bad = re.findall(
-        r"\b(_gfortran_(?:stop|error_stop|os_error|st_write|st_read|st_open|exit)\w*|exit|abort|printf|system)\b", symbols.stdout
+        r"\b(_gfortran_(?:stop|error_stop|os_error|st_write|st_read|st_open|exit)\w*|exit|abort|printf|system)\b",
+        symbols.stdout,
     )
     # numpy's own fortranobject.c refers to none of these either
     assert not bad

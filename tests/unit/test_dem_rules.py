@@ -5,8 +5,9 @@ import pytest
 
 from extrados.analyses import impact_rules as rules
 from extrados.structures.arch import make_arch
-from extrados.structures.convex import area, convex_parts, is_convex
+from extrados.structures.convex import convex_parts, is_convex
 from extrados.structures.masonry import make_column, make_wall
+from extrados.structures.polygons import signed_area as area
 from extrados.structures.rigid import BadShape, rigid_bodies
 
 

@@ -20,6 +20,7 @@ def sample() -> Result:
         "x": Array(np.random.default_rng(7).normal(size=(5, 3)), ("time", "joint"), "m", "about x"),
         "name": Array(np.array(["a", "b", "c"]), ("joint",)),
     }
+    result.files = {"fields/a.vtu": b"x", "tilt.pvd": b"y"}
     result.tables = {"tilt": TableData({"t": np.array([1e-308, 0.1 + 0.2]), "w": ["=1+1", "b"]}, {"t": "s"})}
     return result
 
@@ -38,6 +39,7 @@ def test_round_trip(tmp_path) -> None:
     rows = (out / "tilt.csv").read_text().splitlines()
     assert rows[0] == "t [s],w" and rows[1] == "1e-308,'=1+1" and float(rows[2].split(",")[0]) == 0.1 + 0.2
     assert (out / "tilt-2.csv").exists()
+    assert (out / "fields" / "a.vtu").exists() and (out / "tilt-2" / "fields" / "a.vtu").exists()
 
 
 def test_opens_in_xarray(tmp_path) -> None:

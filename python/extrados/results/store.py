@@ -154,7 +154,8 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
                 suffix = name.removeprefix(result.kind)
                 (folder / f"{title}{suffix}.csv").write_text(csv_text(table), encoding="utf-8")
             for title, content in result.files.items():
-                target = folder / title
+                # a second analysis of a kind keeps its files in a folder of its own, where they find each other
+                target = folder / title if name == result.kind else folder / name / title
                 target.parent.mkdir(parents=True, exist_ok=True)
                 target.write_bytes(content)
         summary = {

@@ -2,14 +2,10 @@
 
 import numpy as np
 
+from extrados.structures.polygons import signed_area as area
+
 #: A turn below this sine is straight.
 STRAIGHT = 1e-9
-
-
-def area(polygon: np.ndarray) -> float:
-    """Signed area of a polygon (n, 2), positive counter-clockwise."""
-    x, y = polygon.T
-    return 0.5 * float(x @ np.roll(y, -1) - y @ np.roll(x, -1))
 
 
 def turns(polygon: np.ndarray) -> np.ndarray:

@@ -3,6 +3,7 @@
 import numpy as np
 
 from extrados.structures.assembly import GROUND, Assembly
+from extrados.structures.polygons import properties
 
 
 def _assembly(
@@ -10,7 +11,7 @@ def _assembly(
     density: float, depth: float,
 ) -> Assembly:  # fmt: skip
     """Blocks of straight outlines and their joints (name, p, q, block above or right, block below or left)."""
-    mass, centroid, inertia = zip(*(_properties(o) for o in outlines), strict=True)
+    mass, centroid, inertia = zip(*(properties(o) for o in outlines), strict=True)
     weight = density * depth
     label, p, q, a, b = zip(*joints, strict=True)
     return Assembly(
@@ -18,18 +19,6 @@ def _assembly(
         p=np.array(p), q=np.array(q), a=np.array(a), b=np.array(b), depth=depth, block_names=names,
         joint_names=list(label),
     )  # fmt: skip
-
-
-def _properties(outline: np.ndarray) -> tuple[float, np.ndarray, float]:
-    """Area, centroid and polar moment of area about it of a polygon (counter-clockwise)."""
-    origin = outline.mean(axis=0)
-    a = outline - origin
-    b = np.roll(a, -1, axis=0)
-    cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
-    area = 0.5 * cross.sum()
-    centroid = ((a + b) * cross[:, None]).sum(axis=0) / (6.0 * area)
-    polar = float((cross * ((a * a).sum(axis=1) + (a * b).sum(axis=1) + (b * b).sum(axis=1))).sum()) / 12.0
-    return float(area), centroid + origin, polar - float(area * centroid @ centroid)
 
 
 def make_column(

@@ -7,7 +7,6 @@ import numpy as np
 
 from extrados.structures.assembly import GROUND, Assembly
 from extrados.structures.convex import (
-    area,
     clean,
     convex_parts,
     crossing_edges,
@@ -16,6 +15,7 @@ from extrados.structures.convex import (
     overlap_depth,
     rounded,
 )
+from extrados.structures.polygons import signed_area as area
 
 #: An outline is taken for its hull where that is bigger by no more than this, and no joint lies inside the hull:
 #: the concave arc of a voussoir's intrados touches nothing.
