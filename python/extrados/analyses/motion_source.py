@@ -1,5 +1,6 @@
 """The many motions of a deck, batch by batch; a broken one is its reason and the others go on."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
@@ -10,10 +11,12 @@ from extrados.analyses.run import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.core.rocking import Ground
 from extrados.decks import motions as models
-from extrados.motions.from_deck import generated_set, make_motion, suite_files
+from extrados.motions.from_deck import generated_set, make_motion, member_name, suite_members, suite_motion
 from extrados.motions.generated import GeneratedSet
 from extrados.motions.motion import Motion
 from extrados.motions.records import RecordError
+
+MOST_NOTES = 10  # of a suite, shown with the result
 
 
 class Source(Protocol):
@@ -53,16 +56,20 @@ class CompatibleSource:
 
     def grounds(self, first: int, count: int, threads: int) -> list[Ground | str]:
         return [
-            _try(self.model.model_copy(update={"member": k + 1}), Path(self.folder))
+            _try(lambda k=k: make_motion(self.model.model_copy(update={"member": k + 1}), Path(self.folder)))
             for k in range(first, first + count)
         ]
 
 
-def _try(model: models.Motion, folder: Path) -> Ground | str:
+def _try(make: Callable[[], Motion], notes: list[str] | None = None) -> Ground | str:
+    """The ground of a motion, or why there is none; what is to be known of the motion goes to `notes`."""
     try:
-        return make_motion(model, folder).ground
+        motion = make()
     except RecordError as error:
         return str(error)
+    if notes is not None:
+        notes += motion.notes
+    return motion.ground
 
 
 def source_of(context: Context, seed: int | None, duration: float | None = None) -> tuple[Source, int | None]:
@@ -80,12 +87,16 @@ def source_of(context: Context, seed: int | None, duration: float | None = None)
                 model = model.model_copy(update={"seed": seed})
             return CompatibleSource(model, str(folder)), None
         if isinstance(model, models.Suite):
-            paths = suite_files(model, folder)
-            members = [_try(model.model_copy(update={"member": k + 1}), folder) for k in range(len(paths))]
-            if all(isinstance(m, str) for m in members):
-                raise Refused(f"none of the {len(members)} records of the suite can be read; the first: {members[0]}")
-            return ListSource(members, [p.stem for p in paths]), len(members)
-        return ListSource([make_motion(model, folder).ground], ["motion"]), 1
+            notes: list[str] = []
+            members = suite_members(model, folder)
+            grounds = [_try(lambda m=m: suite_motion(model, m, folder), notes) for m in members]
+            if all(isinstance(g, str) for g in grounds):
+                raise Refused(f"none of the {len(grounds)} records of the suite can be read; the first: {grounds[0]}")
+            context.warnings += notes[:MOST_NOTES]
+            return ListSource(grounds, [member_name(m) for m in members]), len(grounds)
+        motion = make_motion(model, folder)
+        context.warnings += motion.notes
+        return ListSource([motion.ground], ["motion"]), 1
     except RecordError as error:
         raise Refused(str(error)) from None
 

@@ -8,7 +8,7 @@ from extrados.analyses.run import Context, Refused
 from extrados.core import motion as core
 from extrados.decks import motions as models
 from extrados.decks.motion_analyses import MotionStudy
-from extrados.motions import export
+from extrados.motions import directions, export
 from extrados.motions.formats.record import RecordError
 from extrados.motions.from_deck import compatible_set, generated_set, is_set, make_members
 from extrados.motions.impulse import Impulse, primary_impulses
@@ -115,6 +115,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
             motion.sample(motion.ground.start + time, 1), ("time",), "m/s^2", "vertical acceleration"
         )
         r["vertical_pga_g"] = float(np.abs(result["vertical"]).max()) / GRAVITY
+    rotd = _all_directions(context, options, periods, result) if motion.horizontal is not None else {}
     result.tables = {
         "motion": TableData(
             {"time": time, "acceleration": a, "velocity": velocity, "displacement": displacement},
@@ -125,8 +126,10 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
                 "period": periods,
                 **{f"{n}_{100 * d:g}": v[k] for k, d in enumerate(options.dampings)
                    for n, v in (("psa", spectra.psa), ("psv", spectra.psv), ("sd", spectra.sd))},
+                **rotd,
             },
-            {"period": "s", **{f"{n}_{100 * d:g}": u for d in options.dampings for n, u in (("psa", "m/s^2"), ("psv", "m/s"), ("sd", "m"))}},
+            {"period": "s", **{f"{n}_{100 * d:g}": u for d in options.dampings for n, u in (("psa", "m/s^2"), ("psv", "m/s"), ("sd", "m"))},
+             **dict.fromkeys(rotd, "m/s^2")},
         ),
     }  # fmt: skip
     writers = {"AT2": ("motion.AT2", export.at2), "columns": ("motion_columns.csv", export.columns)}
@@ -137,12 +140,41 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     return result
 
 
+def _damping(options: MotionStudy) -> float:
+    """Damping ratio where one spectrum must do."""
+    return options.dampings[min(1, len(options.dampings) - 1)]
+
+
+def _all_directions(
+    context: Context, options: MotionStudy, periods: np.ndarray, result: Result
+) -> dict[str, np.ndarray]:
+    """What both horizontal components give over all directions, into `result`; columns for the table of spectra."""
+    horizontal, step, damping = context.motion.horizontal, context.motion.ground.step, _damping(options)
+    psa = directions.spectra(horizontal, step, periods, damping, context.threads)
+    result.results |= {**_rotd_peaks(context.motion), "rotd_damping": damping}
+    found = {}
+    for name, values in zip(("rotd50", "rotd100"), psa, strict=True):
+        result.arrays[f"psa_{name}"] = Array(
+            values, ("period",), "m/s^2", f"{name.replace('rotd', 'RotD')}, {100 * damping:g} % damping"
+        )
+        found[f"psa_{name}_{100 * damping:g}"] = values
+    return found
+
+
+def _rotd_peaks(motion: Motion) -> dict[str, float]:
+    """PGA over all directions; NaN where only one component is known."""
+    peaks = np.full(2, np.nan) if motion.horizontal is None else directions.peaks(motion.horizontal) / GRAVITY
+    return {"rotd50_pga_g": float(peaks[0]), "rotd100_pga_g": float(peaks[1])}
+
+
 def describe(name: str, r: dict) -> str:
     """The numbers of one motion in words."""
     text = (
         f"{name}: peak {r['pga_g']:.4g} g at {r['pga_time_s']:.2f} s, {100 * r['pgv_m_s']:.3g} cm/s, {100 * r['pgd_m']:.3g} cm; "
         f"Arias intensity {r['arias_m_s']:.3g} m/s over {r['duration_5_95_s']:.3g} s (5 to 95 %). "
     )
+    if "rotd100_pga_g" in r:
+        text += f"Over all directions the peak is {r['rotd50_pga_g']:.4g} g (RotD50), {r['rotd100_pga_g']:.4g} g at most (RotD100). "
     if first := r["primary_impulse"]:
         text += (
             f"Primary impulse {abs(first['amplitude_g']):.3g} g over {first['period_s']:.3g} s from {first['start_s']:.2f} s "
@@ -187,12 +219,13 @@ def _readable(members: Iterator[Motion | RecordError], warnings: list[str]) -> I
 def _run_set(context: Context, options: MotionStudy) -> Result:
     model, folder = context.deck.motion, context.deck.folder
     suite = isinstance(model, models.Suite)
-    damping = options.dampings[min(1, len(options.dampings) - 1)]
+    damping = _damping(options)
     if isinstance(model, models.Compatible):
         damping = model.damping
     rows: dict[str, list] = {
         n: [] for n in ("name", "pga_g", "pgv_m_s", "pgd_m", "arias_m_s", "cav_m_s", "duration_5_95_s")
     }
+    components: list[dict[str, float]] = []
     psa, shown, impulses, squares, warnings = [], [], [], None, []
     periods = None
     try:
@@ -202,6 +235,8 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
             for name, value in (("name", motion.name), ("pga_g", m.pga[0] / GRAVITY), ("pgv_m_s", m.pgv[0]), ("pgd_m", m.pgd[0]),
                                 ("arias_m_s", m.arias[0]), ("cav_m_s", m.cav[0]), ("duration_5_95_s", m.duration[0])):  # fmt: skip
                 rows[name].append(value if name == "name" else float(value))
+            if suite:
+                components.append(_components(motion))
             if periods is None:
                 periods = _periods(options, step)
             if k < MOST_SPECTRA:
@@ -230,7 +265,8 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         "median_impulse_period_s": float(np.nanmedian(impulses[:, 1])),
         "time_step_s": shown[0][2],
     }
-    result.tables["ensemble"] = TableData(dict(rows))
+    have = {n: [c[n] for c in components] for n in (components[0] if components else ())}
+    result.tables["ensemble"] = TableData(rows | {n: v for n, v in have.items() if np.isfinite(v).any()})
     result.arrays = {
         "period": Array(periods, ("period",), "s"),
         "psa_percentile": Array(
@@ -266,6 +302,13 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         if "columns" in options.export:
             result.files[f"motion_{k + 1}.csv"] = export.columns(name, a, step)
     return result
+
+
+def _components(motion: Motion) -> dict[str, float]:
+    """Peaks of the components beside the horizontal one in the plane; NaN for those a record lacks."""
+    samples = motion.ground.samples
+    up = float(np.abs(samples[1]).max()) / GRAVITY if len(samples) > 1 else np.nan
+    return {"vertical_pga_g": up, **_rotd_peaks(motion)}
 
 
 def _compare_with_intensity(result: Result, model: models.Generated, context: Context) -> None:

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from extrados.decks.quantities import Acceleration, Angle, Frequency, Time, Velocity
-from extrados.decks.table import Motion, key
+from extrados.decks.table import Motion, Table, key
 
 
 class Constant(Motion):
@@ -88,10 +88,14 @@ class Treated(Motion):
         "none", "degree of the acceleration's trend that is taken off, fitted to the velocity"
     )
     resample: Time | None = key(None, "new sampling step", gt=0)
-    pga: Acceleration | None = key(None, "scale to this peak acceleration", gt=0)
-    pgv: Velocity | None = key(None, "scale to this peak velocity", gt=0)
-    arias: Velocity | None = key(None, "scale to this Arias intensity", gt=0)
-    sa: Acceleration | None = key(None, "scale to this pseudo-acceleration at sa_period", gt=0)
+    pga: Acceleration | None = key(
+        None, "scale to this peak of the horizontal acceleration in the plane; one factor for all components", gt=0
+    )
+    pgv: Velocity | None = key(None, "scale to this peak velocity, measured and applied like pga", gt=0)
+    arias: Velocity | None = key(None, "scale to this Arias intensity, measured and applied like pga", gt=0)
+    sa: Acceleration | None = key(
+        None, "scale to this pseudo-acceleration at sa_period, measured and applied like pga", gt=0
+    )
     sa_period: Time | None = key(None, "period for sa", gt=0)
     sa_damping: float = key(0.05, "damping ratio for sa", ge=0, le=0.5)
 
@@ -106,33 +110,57 @@ class Treated(Motion):
         return self
 
 
-class Record(Treated):
-    """A recorded ground motion; the format is recognised by content. `extrados:el-centro-1940` is shipped."""
+class Components(Table):
+    """Where the components of one record lie: one horizontal, perhaps the other, perhaps the vertical."""
 
-    kind: Literal["record"]
     file: str = key(
         about="path inside the deck's folder, or `extrados:NAME` for a shipped record", min_length=1, max_length=1024
     )
     channel: int | str | None = key(
         None, "which channel of a file with several: its number from 1, or a part of its name"
     )
+    second: str | None = key(
+        None, "file of the other horizontal component, at right angles to the first", min_length=1, max_length=1024
+    )
+    second_channel: int | str | None = key(None, "channel of the other horizontal, in `second` or in `file`")
+    angle: Angle | None = key(
+        None, "from the first component to the plane of the structure: it sees first cos(angle) + second sin(angle)"
+    )
     vertical: str | None = key(None, "file of the vertical component", min_length=1, max_length=1024)
     vertical_channel: int | str | None = key(None, "channel of the vertical component, in `vertical` or in `file`")
 
+    @model_validator(mode="after")
+    def _plane(self) -> "Components":
+        if (self.angle is not None) != (self.second is not None or self.second_channel is not None):
+            raise ValueError("angle goes together with second or second_channel, the other horizontal component")
+        return self
+
+
+class Record(Components, Treated):
+    """A recorded ground motion; the format is recognised by content. `extrados:el-centro-1940` is shipped."""
+
+    kind: Literal["record"]
+
 
 class Suite(Treated):
-    """Several records: a list, a pattern or a folder inside the deck's folder. Single runs take one of them."""
+    """Several records: a list, a pattern or a folder inside the deck's folder, or a table for each with its components.
+
+    Single runs take one of them.
+    """
 
     kind: Literal["suite"]
     files: list[str] | None = key(None, "the records", min_length=1, max_length=2000)
     pattern: str | None = key(None, "such as `records/*.AT2`", min_length=1, max_length=1024)
     folder: str | None = key(None, "a folder whose record files are taken", min_length=1, max_length=1024)
+    records: list[Components] | None = key(
+        None, "[[motion.records]], records of several components or channels", min_length=1, max_length=2000
+    )
     member: int = key(1, "which record a single run takes, from 1", ge=1)
 
     @model_validator(mode="after")
     def _one_source(self) -> "Suite":
-        if sum(v is not None for v in (self.files, self.pattern, self.folder)) != 1:
-            raise ValueError("give one of files, pattern and folder")
+        if sum(v is not None for v in (self.files, self.pattern, self.folder, self.records)) != 1:
+            raise ValueError("give one of files, pattern, folder and records")
         return self
 
 

@@ -36,12 +36,12 @@ def make_motion(model: Model, folder: Path) -> Motion:
         case models.VelocityPulse():
             return pulses.velocity_pulse(model.velocity, model.period, model.cycles, model.phase)
         case models.Record():
-            return _record(model, folder)
+            return _record(model, _treatment(model), folder)
         case models.Suite():
-            paths = suite_files(model, folder)
-            if model.member > len(paths):
-                raise RecordError(f"member is {model.member}, but the suite holds {len(paths)} records")
-            return _suite_member(model, paths[model.member - 1])
+            members = suite_members(model, folder)
+            if model.member > len(members):
+                raise RecordError(f"member is {model.member}, but the suite holds {len(members)} records")
+            return suite_motion(model, members[model.member - 1], folder)
         case models.Generated():
             return _numbered("generated", generated_set(model, folder).ground(model.member - 1), model.member)
         case models.Compatible():
@@ -61,9 +61,9 @@ def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion | Re
     """
     match model:
         case models.Suite():
-            for path in suite_files(model, folder):
+            for member in suite_members(model, folder):
                 try:
-                    yield _suite_member(model, path)
+                    yield suite_motion(model, member, folder)
                 except RecordError as error:
                     yield error
         case models.Generated():
@@ -78,9 +78,24 @@ def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion | Re
             yield make_motion(model, folder)
 
 
-def suite_files(model: models.Suite, folder: Path) -> list[Path]:
-    """The files of a suite."""
-    return records.list_suite(model.files, model.pattern, model.folder, folder)
+def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
+    """The records of a suite, not yet read."""
+    if model.records is not None:
+        return model.records
+    found = records.list_suite(model.files, model.pattern, model.folder, folder)
+    # model_construct: the length of a path that was found is no matter
+    return [models.Components.model_construct(file=str(path)) for path in found]
+
+
+def member_name(member: models.Components) -> str:
+    """What a record of a suite is called in tables and messages."""
+    stem = Path(member.file).stem
+    return stem if member.channel is None else f"{stem} {member.channel}"
+
+
+def suite_motion(model: models.Suite, member: models.Components, folder: Path) -> Motion:
+    """One record of a suite as a motion; RecordError where it, or a component of it, cannot be read."""
+    return replace(_record(member, _treatment(model), folder), name=member_name(member))
 
 
 def generated_set(model: models.Generated, folder: Path, seed: int | None = None) -> GeneratedSet:
@@ -144,16 +159,24 @@ def _treatment(model: models.Treated) -> records.Treatment:
     return records.Treatment(**{k: getattr(model, k) for k in records.Treatment.__dataclass_fields__})
 
 
-def _record(model: models.Record, folder: Path) -> Motion:
+def _record(model: models.Components, treatment: records.Treatment, folder: Path) -> Motion:
     path = records.locate(model.file, folder)
-    record = records.read_record(path, model.channel)
-    vertical = None
-    if model.vertical is not None or model.vertical_channel is not None:
-        other = records.locate(model.vertical, folder) if model.vertical is not None else path
-        vertical = records.read_record(other, model.vertical_channel)
-    return records.record_motion(record, _treatment(model), vertical=vertical, source=model.file)
+    seen = {(path, model.channel)}
 
+    def component(file: str | None, channel: int | str | None) -> records.Record | None:
+        if file is None and channel is None:
+            return None
+        place = (path if file is None else records.locate(file, folder), channel)
+        if place in seen:
+            raise RecordError(f"{place[0]}: is named for two components of one record")
+        seen.add(place)
+        return records.read_record(*place)
 
-def _suite_member(model: models.Suite, path: Path) -> Motion:
-    motion = records.record_motion(records.read_record(path), _treatment(model), source=str(path))
-    return replace(motion, name=path.stem)
+    return records.record_motion(
+        records.read_record(path, model.channel),
+        treatment,
+        second=component(model.second, model.second_channel),
+        angle=model.angle or 0.0,
+        vertical=component(model.vertical, model.vertical_channel),
+        source=model.file,
+    )

@@ -14,11 +14,15 @@ MOST_SAMPLES = 1_000_000
 
 @dataclass(frozen=True)
 class Motion:
-    """A ground motion with its name and origin; `ground` is what the core integrates [m/s^2]."""
+    """A ground motion with its name and origin; `ground` is what the core integrates [m/s^2].
+
+    horizontal: both horizontal components (2, points) as recorded [m/s^2], of a record that has them.
+    """
 
     name: str
     ground: Ground
     notes: list[str] = field(default_factory=list)
+    horizontal: np.ndarray | None = None
 
     @property
     def end(self) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from extrados.core.rocking import Ground
 from extrados.motions import processing
+from extrados.motions.directions import rotated
 from extrados.motions.formats.recognise import read_record as read_record
 from extrados.motions.formats.record import ACCELERATION, QUANTITIES, Record, RecordError
 from extrados.motions.motion import GRAVITY, Motion
@@ -119,39 +120,62 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
 
 
 def record_motion(
-    record: Record, treatment: Treatment | None = None, *, vertical: Record | None = None, source: str = ""
+    record: Record,
+    treatment: Treatment | None = None,
+    *,
+    second: Record | None = None,
+    angle: float = 0.0,
+    vertical: Record | None = None,
+    source: str = "",
 ) -> Motion:
-    """A record, and its vertical component where given, as a motion; RecordError where units or steps are unknown.
+    """A record and its other components as a motion; RecordError where units or steps are unknown or differ.
 
-    Measures for scaling are those of the horizontal component; both components get one factor.
+    The horizontal acceleration is `rotated` to `angle` [deg] where there is a second component. Measures for scaling
+    are those of that acceleration; all components get one factor.
     """
     do = treatment or Treatment()
     name = source or record.name
-    values, step, notes = acceleration_of(record, do, source)
-    rows = values[None, :]
-    if vertical is not None:
-        # a unit in the deck stands in for both files, a unit in either file for that one
-        up, up_step, more = acceleration_of(
-            vertical, replace(do, unit=None if vertical.unit else do.unit), vertical.name
-        )
-        if abs(up_step - step) > 1e-9 * step:
-            raise RecordError(f"{name}: the components have steps of {step:g} and {up_step:g} s; expected the same")
-        points = min(rows.shape[1], len(up))
-        if max(rows.shape[1], len(up)) != points:
-            notes.append(f"{name}: components of {rows.shape[1]} and {len(up)} samples, cut to the shorter")
-        rows = np.stack([rows[0, :points], up[:points]])
-        notes += more
+    rows, step, notes = _together(record, [r for r in (second, vertical) if r is not None], do, name)
     try:
         step *= do.time_scale
         rows = processing.band_pass(rows, step, do.low_cut, do.high_cut)
         rows = processing.baseline(rows, step, do.baseline)
         if do.resample is not None:
             rows, step = processing.resample(rows, step, do.resample), do.resample
+        horizontal = None if second is None else rows[:2]
+        if horizontal is not None:
+            rows = np.concatenate([rotated(*horizontal, angle)[None, :], rows[2:]])
+        factor = do.scale
         measures = {"pga": do.pga, "pgv": do.pgv, "arias": do.arias, "sa": do.sa}
         if any(v is not None for v in measures.values()):
-            rows = rows * processing.factor_to(rows[0], step, **measures, period=do.sa_period, damping=do.sa_damping)
+            factor *= processing.factor_to(rows[0], step, **measures, period=do.sa_period, damping=do.sa_damping)
     except ValueError as error:
         raise RecordError(f"{name}: {error}") from None
     if rows.shape[1] < 3:
         raise RecordError(f"{name}: only {rows.shape[1]} samples are left after resampling")
-    return Motion(record.name, Ground(samples=rows * do.scale, step=step), notes)
+    return Motion(
+        record.name,
+        Ground(samples=rows * factor, step=step),
+        notes,
+        None if horizontal is None else horizontal * factor,
+    )
+
+
+def _together(record: Record, others: list[Record], do: Treatment, name: str) -> tuple[np.ndarray, float, list[str]]:
+    """Components (components, points) [m/s^2] of one step [s], cut to the shortest, and notes."""
+    values, step, notes = acceleration_of(record, do, name)
+    found = [values]
+    for other in others:
+        # a unit in the deck stands in for all files, a unit in a file for that one
+        values, its_step, more = acceleration_of(other, replace(do, unit=None if other.unit else do.unit), other.name)
+        if abs(its_step - step) > 1e-9 * step:
+            raise RecordError(
+                f"{name}: the components have steps of {step:g} and {its_step:g} s ({other.name}); expected the same"
+            )
+        found.append(values)
+        notes += more
+    lengths = [len(row) for row in found]
+    if min(lengths) < max(lengths):
+        shown = ", ".join(map(str, lengths))
+        notes.append(f"{name}: components of {shown} samples, cut to the shortest")
+    return np.stack([row[: min(lengths)] for row in found]), step, notes

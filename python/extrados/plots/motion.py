@@ -60,16 +60,20 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for k, d in enumerate(damping):
             psa.semilogx(period, run.array(name, "psa")[k] / GRAVITY, label=f"{100 * d:g} %")
             sd.loglog(period, 100 * run.array(name, "sd")[k], label=f"{100 * d:g} %")
+        caption = "Response spectra and Fourier amplitude of the acceleration"
+        if "psa_rotd50" in run.arrays[name]:
+            for key, label, line in (("psa_rotd50", "RotD50", "k--"), ("psa_rotd100", "RotD100", "k:")):
+                psa.semilogx(period, run.array(name, key) / GRAVITY, line, linewidth=1.1, label=label)
+            psa.set_ylim(top=1.35 * psa.get_ylim()[1])  # room for the longer legend
+            caption += f"; black: median and greatest over all directions ({100 * r['rotd_damping']:g} % damping)"
         psa.set_ylabel("pseudo-acceleration [g]")
         sd.set_ylabel("displacement [cm]")
-        psa.legend(title="damping", loc="upper right")
+        psa.legend(title="damping", loc="upper right", ncols=2 if "psa_rotd50" in run.arrays[name] else 1)
         for ax in (psa, sd):
             ax.set_xlabel("period [s]")
             ax.set_xlim(period[0], period[-1])
         _fourier_axes(fourier, run.array(name, "frequency"), run.array(name, "fourier"))
-        found.append(
-            (style.save(fig, folder, f"{name}-spectra"), "Response spectra and Fourier amplitude of the acceleration.")
-        )
+        found.append((style.save(fig, folder, f"{name}-spectra"), f"{caption}."))
     return found
 
 
