@@ -143,14 +143,17 @@ def test_results_fields_and_figures(tmp_path) -> None:
 def test_interrupt_keeps_the_events_so_far() -> None:
     """Ctrl-C in a long run: the partial curve comes back, the handler too."""
     before = signal.getsignal(signal.SIGINT)
+    timers: list[threading.Timer] = []  # one only: a second Ctrl-C would reach the next test
 
     def progress(done: float, total: float, text: str) -> None:
-        if text.startswith("event"):
-            threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+        if text.startswith("event") and not timers:
+            timers.append(threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)))
+            timers[0].start()
 
     begin = time.monotonic()
     data = wall(0.03, events=1_000_000, mechanism_ratio=1e12)
     result = run_analyses(Context(make_deck(data), progress=progress))[0]
+    timers[0].join()
     assert result.status == "interrupted"
     assert 0 < result.results["events"] < 1_000_000
     assert len(result["event_load"]) == result.results["events"]
@@ -165,6 +168,7 @@ def test_cracks_of_path_4b_curve() -> None:
 
     deck = Path(__file__).resolve().parents[2] / "cases" / "sla" / "nooru-mohamed.toml"
     result = run_deck(tomllib.loads(deck.read_text(encoding="utf-8")))
+    assert result.status == "ok", result.reason
     width, at = result["state_width_n"][-1], result["point_xy"]
     wide = width > 0.3 * width.max()
     left, right = (wide & (at[:, 0] > 0.06) & (at[:, 0] < 0.1)), (wide & (at[:, 0] > 0.1) & (at[:, 0] < 0.14))
