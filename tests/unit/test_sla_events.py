@@ -203,6 +203,13 @@ def test_both_senses_of_a_symmetric_wall_agree() -> None:
     assert minus.events.load.max() == pytest.approx(plus.events.load.max(), rel=0.01)
 
 
+def test_the_order_of_the_senses_does_not_matter() -> None:
+    found = [run_deck(wall(directions=order, events=25)).results for order in (["+", "-"], ["-", "+"])]
+    assert found[1]["sense"] == "+"
+    assert found[1]["minus"]["sense"] == "-"
+    assert found[0]["first_event_load_N"] == found[1]["first_event_load_N"]
+
+
 def test_constant_loads_with_damage() -> None:
     """A lintel too heavy for the strength: A cracks it on the way from 0 to 1, B starts from there."""
     data = wall(events=900)
@@ -309,6 +316,7 @@ def test_refusals(path, value, says) -> None:
     ("structure.supports", [{"fix": "x"}], "the place is missing"),
     ("structure.supports", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
     ("structure.supports", [{"x": [2, 1], "y": 0}], "the range runs backward"),
+    ("analysis.0.directions", ["+", "+"], "each sense may stand once"),
 ])  # fmt: skip
 def test_deck_complaints(path, value, says) -> None:
     with pytest.raises(DeckError) as error:

@@ -140,6 +140,16 @@ def test_results_fields_and_figures(tmp_path) -> None:
     np.testing.assert_allclose(field.point_data["displacement"][:, :2], result["state_displacement"][0], rtol=1e-12)
 
 
+def test_a_run_to_minus_alone_is_read_back(tmp_path) -> None:
+    """The only curve has the plain names, whatever its sense, and can be gone on from."""
+    out, (result,) = run_to_folder(Context(make_deck(wall(events=30, directions=["-"]))), tmp_path / "run")
+    assert (result.results["sense"], "minus" in result.results) == ("-", False)
+    assert len((out / "load_displacement.csv").read_text().splitlines()) == 31
+    assert (out / "figures" / "sla-curve.png").exists() or (out / "figures" / "sla-curve.svg").exists()
+    rest = run_deck(wall(events=5, directions=["-"], resume_from=str(out), resume_event=26))
+    np.testing.assert_allclose(rest["event_load"], result["event_load"][25:30], rtol=1e-9)
+
+
 def test_interrupt_keeps_the_events_so_far() -> None:
     """Ctrl-C in a long run: the partial curve comes back, the handler too."""
     before = signal.getsignal(signal.SIGINT)

@@ -20,6 +20,7 @@ from extrados.structures.from_deck import make_structure
 from extrados.structures.wall import BadWall, WallMesh
 
 UNBOUNDED = 1e300
+PREFIXES = ("", "minus_")  # of the arrays of the first curve, whatever its sense, and of the second, to -
 
 
 def run(context: Context, options: Sla) -> Result:
@@ -75,6 +76,7 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     lost = np.flatnonzero(~events.equilibrium)
     tension = np.isin(events.code, (1, 2))
     numbers: dict[str, Any] = {
+        "sense": curve.sense,
         "peak_load_N": float(events.load[peak] * unit) if peak >= 0 else None,
         "peak_displacement_m": float(events.monitors[peak, 0]) if peak >= 0 else None,
         "peak_event": peak + 1 if peak >= 0 else None,
@@ -146,15 +148,15 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         result.results["minus"] = _numbers(model, options, curve)
     for curve in curves:
         result.warnings += curve.warnings
-        events, sense = curve.events, "" if curve.sign > 0 else " (load to -)"
+        events, sense = curve.events, f" (load to {curve.sense})"
         if len(events) and events.load[0] < 0.0:
             result.warnings.append(
                 f"the first event{sense} has a negative load, {events.load[0] * model.unit:.4g} N: the constant loads "
                 "alone are beyond the strength somewhere"
             )
     result.arrays = _mesh_arrays(model)
-    for curve in curves:
-        _curve_arrays(result, model, curve, "" if curve.sign > 0 else "minus_")
+    for curve, prefix in zip(curves, PREFIXES, strict=False):
+        _curve_arrays(result, model, curve, prefix)
     _sections(result, model, options, first)
     _fields(result, model, curves)
     result.answer = _answer(result.results, len(curves) > 1)
@@ -312,8 +314,7 @@ def _fields(result: Result, model: SlaModel, curves: list[Curve]) -> None:
     """The states as VTU, their series as PVD."""
     cells = [(b.kind, b.connect) for b in model.wall.blocks]
     band = result.arrays["point_band"].data
-    for curve in curves:
-        name = "fields" if curve.sign > 0 else "fields_minus"
+    for curve, name in zip(curves, ("fields", "fields_minus"), strict=False):
         series = []
         for state in curve.states:
             fields = point_fields(model, state, band)

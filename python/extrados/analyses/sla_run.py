@@ -43,6 +43,10 @@ class Curve:
     points: int = 0
 
     @property
+    def sense(self) -> str:
+        return "+" if self.sign > 0 else "-"
+
+    @property
     def peak(self) -> int:
         """The event of the greatest load in equilibrium; -1 where there is none."""
         load = np.where(self.events.equilibrium, self.events.load, -np.inf)

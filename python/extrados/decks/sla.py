@@ -2,7 +2,7 @@
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from extrados.decks.quantities import Acceleration, Force, Length, LineForce, Stress
 from extrados.decks.table import Analysis, Table, key
@@ -111,6 +111,13 @@ class Sla(Analysis):
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
     resume_from: str | None = key(None, "results folder of an earlier run of the same wall to go on from")
     resume_event: int | None = key(None, "go on before this event of that run; default its last", ge=1)
+
+    @field_validator("directions")
+    @classmethod
+    def _each_once(cls, directions: list[str]) -> list[str]:
+        if len(set(directions)) < len(directions):
+            raise ValueError(f"each sense may stand once, not {directions}")
+        return sorted(directions)  # "+" first: the second curve, where there is one, is to -
 
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":

@@ -58,8 +58,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             grid, rows = get("scatter_displacement") * 1e3, get("scatter_load") / 1e3
             ax.fill_between(grid, rows.min(axis=0), rows.max(axis=0), color="#dfe7ef", label=f"{len(rows)} repetitions")
             ax.plot(grid, rows.mean(axis=0), color="#7b93ab", linestyle=":", label="their mean")
-        for prefix, label in (("", "load to +"), ("minus_", "load to -")):
-            if f"{prefix}event_load" not in run.arrays[name]:
+        for prefix, numbers in (("", r), ("minus_", r.get("minus"))):
+            if numbers is None:
                 continue
             d, p = get(f"{prefix}event_displacement") * 1e3, get(f"{prefix}event_load") / 1e3
             fine = get(f"{prefix}event_equilibrium") > 0
@@ -68,8 +68,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             if (~fine).any():
                 ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
-                    linewidth=1.4, label=f"envelope, {label}")  # fmt: skip
-            idea = (r if not prefix else r["minus"]).get("bilinear")
+                    linewidth=1.4, label=f"envelope, load to {numbers['sense']}")  # fmt: skip
+            idea = numbers.get("bilinear")
             if idea:
                 ax.plot(
                     np.array([0, idea["yield_displacement_m"], idea["ultimate_displacement_m"]]) * 1e3,
