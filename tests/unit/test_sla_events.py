@@ -260,6 +260,41 @@ def test_prescribed_displacement_with_ratios() -> None:
     assert result["event_external"][0] == pytest.approx(0.5 * result["event_load"][0] * u_first(result), rel=1e-9)
 
 
+def test_displacement_with_a_part_held_back() -> None:
+    """A part with ratio 0 stays where it is, wherever it stands in the list."""
+    held = {"edge": "left", "y": [1.5, 1.5], "ratio": 0}
+    found = []
+    for parts in ([held, {"edge": "top"}], [{"edge": "top"}, held]):
+        reference = [{"kind": "displacement", "direction": "x", "parts": parts}]
+        result = run_deck(wall(events=5, constant=[], reference=reference))
+        found.append(result.results["peak_load_N"])
+        xy, u = result["node"], result["state_displacement"][-1]
+        assert (u[(np.abs(xy[:, 1] - 1.5) < 1e-9) & (xy[:, 0] < 1e-9), 0] == 0.0).all()
+    assert found[0] == pytest.approx(found[1], rel=1e-9)
+    reference[0]["parts"] = [held]
+    assert "every ratio is 0" in run_deck(wall(constant=[], reference=reference)).reason
+
+
+@pytest.mark.parametrize("element", ["T3", "Q4", "T6", "Q8"])
+def test_loads_between_mesh_lines(element) -> None:
+    """A pressure and a line load over a part of the top that no mesh line bounds: their force and its moment."""
+    from extrados.analyses.sla_model import nodal_forces
+
+    place = {"edge": "top", "x": [0.37, 1.21]}
+    data = wall(0.3, constant=[{"kind": "pressure", "value": 5e4, **place}, {"kind": "line", "px": 700.0, **place}])
+    data["structure"]["element"] = element
+    deck = make_deck(data)
+    mesh = Context(deck).structure
+    force = nodal_forces(mesh, deck.analyses[0].constant, "constant")
+    down, along = -5e4 * 0.2 * 0.84, 700.0 * 0.84
+    np.testing.assert_allclose(force.sum(axis=0), [along, down], rtol=1e-12)
+    moment = (mesh.xy[:, 0] * force[:, 1]).sum()
+    assert moment == pytest.approx(down * 0.79, rel=1e-12)
+    deck = make_deck(wall(0.3, constant=[{"kind": "spread", "fx": 1e3, **place}]))
+    spread = nodal_forces(Context(deck).structure, deck.analyses[0].constant, "constant")
+    assert spread[:, 0].sum() == pytest.approx(1e3, rel=1e-12)
+
+
 def u_first(result) -> float:
     """Control displacement at the first event."""
     return float(result["event_displacement"][0])
@@ -293,6 +328,8 @@ def bad(path: str, value) -> dict:
     ("analysis.0.reference", [{"kind": "point", "edge": "bottom", "fx": "1 kN"}], "acts on held nodes only"),
     ("analysis.0.reference", [{"kind": "point", "edge": "top", "fx": 0.0}], "reference load is zero"),
     ("structure.material.density", 0.0, "give the material a density"),
+    ("analysis.0.constant", [{"kind": "pressure", "edge": "top", "x": [2, 4], "value": 1e5}], "reaches out of the wall"),
+    ("analysis.0.section_x", [3.2], r"section_x\[0\] is 3.2 m, the wall reaches from 0 to 3 m"),
 ])  # fmt: skip
 def test_refusals(path, value, says) -> None:
     import re
@@ -317,6 +354,9 @@ def test_refusals(path, value, says) -> None:
     ("structure.supports", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
     ("structure.supports", [{"x": [2, 1], "y": 0}], "the range runs backward"),
     ("analysis.0.directions", ["+", "+"], "each sense may stand once"),
+    ("analysis.0.control", [{"edge": "top", "weight": 0}], "a weight of 0 follows nothing"),
+    ("analysis.0.seeds", [3, 3], "a seed stands twice"),
+    ("analysis.0.states", [0], "greater than or equal to 1"),
 ])  # fmt: skip
 def test_deck_complaints(path, value, says) -> None:
     with pytest.raises(DeckError) as error:

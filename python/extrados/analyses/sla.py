@@ -37,7 +37,7 @@ def _run(context: Context, options: Sla) -> Result:
     result = Result("sla")
     context.warnings += wall.warnings
     model = build(wall, options, strength_factors(wall, options, options.strength_seed))
-    damage = _resume(context, options)
+    damage = _resume(context, options, model)
 
     def progress(done: float, total: float, text: str) -> None:
         context.progress(done, total, text)
@@ -51,7 +51,7 @@ def _run(context: Context, options: Sla) -> Result:
     return result
 
 
-def _resume(context: Context, options: Sla) -> np.ndarray | None:
+def _resume(context: Context, options: Sla, model: SlaModel) -> np.ndarray | None:
     """The damage stored by an earlier run, before the event asked for."""
     if options.resume_from is None:
         return None
@@ -60,6 +60,14 @@ def _resume(context: Context, options: Sla) -> np.ndarray | None:
     try:
         stored = read(folder)
         get = {name: array.data for name, array in stored.arrays["sla"].items()}
+        there, here = get["point_xy"], model.point_xy
+        if len(there) != len(here):
+            raise Refused(
+                f"resume_from: that wall has {len(there)} points, this one {len(here)}; the mesh must be the same"
+            )
+        apart = float(np.abs(there - here).max())
+        if apart > 1e-6 * model.wall.size:
+            raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one")
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
             raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events")
@@ -163,6 +171,8 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
 
 
 def _answer(r: dict[str, Any], both: bool) -> str:
+    if r["events"] == 0 and r["stop"] == "no point limits the load":
+        return "The load is not limited: nothing in the wall cracks or crushes under it, however large it grows."
     if r["peak_load_N"] is None:
         return f"No state of equilibrium was found in {r['events']} events; the run ended by: {r['stop']}."
     text = (
@@ -293,6 +303,8 @@ def _split(model: SlaModel, n: int) -> list[np.ndarray]:
 
 def _sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> None:
     """Admitted ranges of the load over vertical sections at the kept states (thesis Figs 4-5, 4-6)."""
+    if not curve.states:
+        return
     for i, x in enumerate(options.section_x):
         away = np.abs(model.point_xy[:, 0] - x)
         near = np.flatnonzero(away <= away.min() + 1e-6 * model.wall.size)

@@ -76,6 +76,8 @@ def _build(wall: WallMesh, options: Sla, strength: np.ndarray | None) -> SlaMode
         tie = []
         for part in moved.parts:
             tie += [(int(n), AXES[moved.direction], part.ratio) for n in wall.nodes_at(part, "displacement")]
+        if all(share == 0.0 for _, _, share in tie):
+            raise BadWall("displacement: every ratio is 0, nothing would move")
         if len({n for n, _, _ in tie}) < len(tie):
             raise BadWall("the parts of the displacement share nodes")
         ties.append(tie)
@@ -113,11 +115,14 @@ def _build(wall: WallMesh, options: Sla, strength: np.ndarray | None) -> SlaMode
                 np.column_stack([node, ground]), np.column_stack([direction, direction]), stiffness.astype(float)
             )
         )
+    for i, x in enumerate(options.section_x):
+        if not wall.low[0] <= x <= wall.high[0]:
+            raise BadWall(f"section_x[{i}] is {x:g} m, the wall reaches from {wall.low[0]:g} to {wall.high[0]:g} m")
     constant = nodal_forces(wall, options.constant, "constant")
     reference = nodal_forces(wall, options.reference, "reference")
     if moved is not None:
-        node, direction, _ = ties[-1][0]
-        reference[node, direction] = 1.0 / ties[-1][0][2]  # unit force on the common displacement
+        node, direction, share = max(ties[-1], key=lambda term: abs(term[2]))
+        reference[node, direction] = 1.0 / share  # unit force on the common displacement
         unit = 1.0
     else:
         total = float(np.hypot(*reference.sum(axis=0)))
@@ -236,29 +241,74 @@ def nodal_forces(wall: WallMesh, loads: Sequence[Load], word: str) -> np.ndarray
 
 
 def _edge_load(wall: WallMesh, load: Load, what: str) -> np.ndarray:
-    nodes = wall.nodes_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
-    chosen = np.zeros(len(wall.xy), dtype=bool)
-    chosen[nodes] = True
+    """Consistent nodal forces of a load along boundary edges; of an edge that reaches out of the place, its part
+    inside is loaded."""
     edges, thickness = wall.boundary()
-    mine = chosen[edges[:, 0]] & chosen[edges[:, 1]]
-    edges, thickness = edges[mine], thickness[mine]
-    if not len(edges):
-        raise BadWall(f"{what}: no boundary edge lies there")
+    begin, end = _covered(wall, load, edges)
+    if load.edge is not None and load.kind != "spread":
+        letter, axis = ("y", 1) if load.edge in ("left", "right") else ("x", 0)
+        asked, slack = getattr(load, letter), 1e-6 * float(np.max(wall.high - wall.low))
+        if asked is not None and (asked[0] < wall.low[axis] - slack or asked[1] > wall.high[axis] + slack):
+            raise BadWall(
+                f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m reaches out of the wall, "
+                f"{wall.low[axis]:g} to {wall.high[axis]:g} m: a part of the load would be lost"
+            )
+    mine = end > begin
+    if not mine.any():
+        raise BadWall(
+            f"{what}: no boundary edge lies on edge {load.edge}, x {load.x}, y {load.y}; a mesh line is missing"
+        )
+    edges, thickness, begin, end = edges[mine], thickness[mine], begin[mine], end[mine]
     along = wall.xy[edges[:, 1]] - wall.xy[edges[:, 0]]
     length = np.hypot(*along.T)
     if load.kind == "pressure":
         normal = np.column_stack([along[:, 1], -along[:, 0]])  # outward, times the length
         total = -load.value * thickness[:, None] * normal
     else:
-        per = np.array([load.px, load.py]) if load.kind == "line" else np.array([load.fx, load.fy]) / length.sum()
+        covered = float(((end - begin) * length).sum())
+        per = np.array([load.px, load.py]) if load.kind == "line" else np.array([load.fx, load.fy]) / covered
         total = length[:, None] * per
+    # Integrals of 1, t and t^2 over the part, t from 0 to 1 along the edge, give those of the shape functions
+    one, t, tt = (end - begin), (end**2 - begin**2) / 2, (end**3 - begin**3) / 3
+    quadratic, whole = edges[:, 2] >= 0, (begin == 0.0) & (end == 1.0)
+    first = np.where(quadratic, one - 3 * t + 2 * tt, one - t)
+    second = np.where(quadratic, 2 * tt - t, t)
+    first, second = (np.where(whole, np.where(quadratic, 1 / 6, 0.5), share) for share in (first, second))
+    middle = np.where(whole, 4 / 6, 4 * (t - tt))
     force = np.zeros_like(wall.xy)
-    quadratic = edges[:, 2] >= 0
-    for column, share in ((0, np.where(quadratic, 1 / 6, 0.5)), (1, np.where(quadratic, 1 / 6, 0.5))):
+    for column, share in ((0, first), (1, second)):
         np.add.at(force, edges[:, column], share[:, None] * total)
     if quadratic.any():
-        np.add.at(force, edges[quadratic, 2], (4 / 6) * total[quadratic])
+        np.add.at(force, edges[quadratic, 2], middle[quadratic, None] * total[quadratic])
     return force
+
+
+def _covered(wall: WallMesh, load: Load, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The part of each straight edge within a place, as fractions from its first node; begin >= end where none is."""
+    tolerance = 1e-6 * float(np.max(wall.high - wall.low))
+    ranges = [load.x, load.y]
+    if load.edge is not None:
+        axis = 0 if load.edge in ("left", "right") else 1
+        at = float((wall.low if load.edge in ("left", "bottom") else wall.high)[axis])
+        low, high = ranges[axis] or (at, at)
+        if low > at + tolerance or high < at - tolerance:
+            return np.ones(len(edges)), np.zeros(len(edges))
+        ranges[axis] = (at, at)
+    begin, end = np.zeros(len(edges)), np.ones(len(edges))
+    for axis, ends in enumerate(ranges):
+        if ends is None:
+            continue
+        a, b = wall.xy[edges[:, 0], axis], wall.xy[edges[:, 1], axis]
+        level = np.abs(b - a) <= tolerance
+        step = np.where(level, 1.0, b - a)
+        cuts = np.sort(np.stack([(ends[0] - a) / step, (ends[1] - a) / step]), axis=0)
+        outside = level & ((np.minimum(a, b) < ends[0] - tolerance) | (np.maximum(a, b) > ends[1] + tolerance))
+        # A place that ends at a node, but for rounding, ends there
+        slack = np.where(level, 0.0, tolerance / np.abs(step))
+        cuts = np.where(np.abs(cuts) <= slack, 0.0, np.where(np.abs(cuts - 1.0) <= slack, 1.0, cuts))
+        begin = np.where(level, begin, np.maximum(begin, cuts[0]))
+        end = np.where(level, np.where(outside, -1.0, end), np.minimum(end, cuts[1]))
+    return begin, end
 
 
 def _control(wall: WallMesh, options: Sla, reference: np.ndarray, unit: float) -> core.Monitor:

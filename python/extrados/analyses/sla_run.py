@@ -65,6 +65,10 @@ def run_curves(
     with model.open(options, threads) as core_model:
         stage_a, warnings = None, []
         if damage is not None:
+            if damage.shape[1] != core_model.points:
+                raise Refused(
+                    f"resume_from: that wall has {damage.shape[1]} points with its bars, this one {core_model.points}"
+                )
             core_model.set_damage(damage)
         elif options.constant_damage and np.any(model.constant):
             stage_a = _constant_stage(core_model, model, options, progress)

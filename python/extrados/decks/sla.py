@@ -62,7 +62,14 @@ class Watch(Placed):
     """A displacement that is followed: the mean of the place's nodes times `weight`."""
 
     direction: Literal["x", "y"] = key("x", "direction of the displacement")
-    weight: float = key(1.0, "share in the sum")
+    weight: float = key(1.0, "share in the sum, not 0")
+
+    @field_validator("weight")
+    @classmethod
+    def _counts(cls, weight: float) -> float:
+        if weight == 0.0:
+            raise ValueError("a weight of 0 follows nothing: leave the term out")
+        return weight
 
 
 class Sla(Analysis):
@@ -102,7 +109,9 @@ class Sla(Analysis):
     )
     crack_closure: bool = key(False, "cracks that close regain their stiffness")
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
-    states: list[int] = key([], "events whose state is kept (the peak and the last are anyway)", max_length=200)
+    states: list[Annotated[int, Field(ge=1)]] = key(
+        [], "events whose state is kept (the peak and the last are anyway)", max_length=200
+    )
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
     section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections", max_length=10)
     seeds: list[int] = key([], "repeat with these seeds of random mesh and strength: a scatter band", max_length=200)
@@ -125,6 +134,8 @@ class Sla(Analysis):
             raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
             raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
+        if len(set(self.seeds)) < len(self.seeds):
+            raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         return self
