@@ -6,7 +6,7 @@ module api_sla
    implicit none
    private
    public :: teeth, band, intervals, body_force
-   public :: create, add_plane, add_bars, add_springs, prepare, factorise, loads, run, displacement, report, damage
+   public :: create, add_plane, add_bars, add_springs, prepare, factorise, loads, run, displacement, measure, report, damage
    public :: free
 
 contains
@@ -379,6 +379,21 @@ contains
          end do
       end do
    end subroutine displacement
+
+   !> Residual forces of the present displacements over the loads
+   subroutine measure(handle, ratio)
+      use sla_events, only : residual
+      use sla_handle, only : model_of
+      use sla_model, only : model
+      integer(c_int64_t), intent(in) :: handle
+      real(c_double), intent(out) :: ratio
+      type(model), pointer :: made
+      !f2py threadsafe
+      ratio = 0.0_c_double
+      made => model_of(handle)
+      call residual(made)
+      ratio = made%residual
+   end subroutine measure
 
    !> State of all points at the multiplier lambda; rows as in sla_plane
    subroutine report(handle, lambda, points, values)

@@ -14,7 +14,7 @@ module sla_events
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: run_events, scan_model, stop_rules, event_log, log_reals, log_integers
+   public :: run_events, residual, scan_model, stop_rules, event_log, log_reals, log_integers
    public :: stop_none, stop_mechanism, stop_unbounded, stop_all_empty, stop_displacement, stop_load, stop_fraction
 
    !> Why a run of events ended

@@ -270,6 +270,7 @@ contains
       made%peak = 0.0_wp
       made%event%rank = 0
       made%hot = 0
+      made%residual = 0.0_wp
       made%recorded = .false.
       made%carried = carried
       made%first_compliance = dot_product(made%fb, made%ub)

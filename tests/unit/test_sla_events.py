@@ -183,6 +183,13 @@ def test_many_events_keep_the_residual_small() -> None:
     assert 0.0 < curve.events.residual[-1] < 1e-9
 
 
+def test_the_residual_is_measured_in_short_runs_too() -> None:
+    """60 events are fewer than the guard waits for."""
+    r = run_deck(wall(events=60)).results
+    assert r["guard_checks"] == 0
+    assert 0.0 < r["residual_ratio"] < 1e-9
+
+
 def test_going_on_from_a_stored_event() -> None:
     _, (whole,) = curves(wall(events=260))
     event = 140

@@ -104,7 +104,7 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "stored_energy_J": float(events.stored[-1]) if len(events) else None,
         "dissipated_energy_J": float(events.dissipated[-1]) if len(events) else None,
         "crack_energy_J": events.crack_total,
-        "residual_ratio": float(events.residual.max()) if len(events) else None,
+        "residual_ratio": _residual(curve),
         "guard_checks": events.guard[0],
         "guard_resolutions": events.guard[1],
         "guard_new_factors": events.guard[2],
@@ -125,6 +125,14 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
             "ductility": idea.ductility,
         }  # fmt: skip
     return numbers
+
+
+def _residual(curve: Curve) -> float | None:
+    """The greatest residual that was measured, by the guard or at the end; None where none was."""
+    measured = [curve.residual] if curve.residual is not None else []
+    if curve.events.guard[0]:
+        measured.append(float(curve.events.residual.max()))
+    return max(measured, default=None)
 
 
 def _tooth_counts(model: SlaModel) -> list[int]:

@@ -41,6 +41,7 @@ class Curve:
     warnings: list[str] = field(default_factory=list)
     equations: int = 0
     points: int = 0
+    residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
 
     @property
     def sense(self) -> str:
@@ -181,6 +182,9 @@ def _reference_stage(
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
     if len(events):
+        # A mechanism found while its event is applied leaves the displacements of the event before
+        if events.reason != "mechanism" or events.compliance[-1] > options.mechanism_ratio * events.compliance[0]:
+            curve.residual = core_model.residual()
         if not (done - 1 in wanted and states):
             states.append(_state(core_model, len(events) - 1, float(events.load[-1])))
         peak = curve.peak

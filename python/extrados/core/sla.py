@@ -457,6 +457,10 @@ class Model:
         ua, ub = _core.api_sla.displacement(self._handle, self.nodes)
         return (ua + load * ub).T.copy()
 
+    def residual(self) -> float:
+        """Greater norm of the residual forces of the two displacements over that of their load, measured now."""
+        return float(long_call(_core.api_sla.measure, self._handle))
+
     def report(self, load: float) -> dict[str, np.ndarray]:
         """State of all points at a multiplier, columns as in REPORT."""
         values = _core.api_sla.report(self._handle, float(load), self.points)
