@@ -385,6 +385,20 @@ def test_envelope_and_bilinear() -> None:
     assert idea.ductility == pytest.approx(4.0)
 
 
+def test_the_envelope_begins_at_the_constant_loads() -> None:
+    """A constant push of 12 kN moves the top; the curve of the further push, straight up to its first event, starts there."""
+    push = [{"kind": "spread", "edge": "top", "fx": "12 kN"}]
+    found = [run_deck(wall(events=1, constant=constant)) for constant in ([], push)]
+    plain, pushed = (f.results for f in found)
+    assert plain["displacement_of_constant_loads_m"] == 0.0
+    start = pushed["displacement_of_constant_loads_m"]
+    assert start == pytest.approx(12e3 / plain["initial_stiffness_N_m"], rel=1e-9)
+    assert found[1]["envelope_displacement"][0] == pytest.approx(start, rel=1e-12)
+    assert found[1]["envelope_load"][0] == 0.0
+    assert pushed["bilinear"]["stiffness_N_m"] == pytest.approx(plain["initial_stiffness_N_m"], rel=1e-6)
+    assert pushed["peak_displacement_m"] == pytest.approx(plain["peak_displacement_m"], rel=1e-6)
+
+
 def test_monitor_and_behaviour_defaults() -> None:
     assert Behaviour().floor == 1e-6
     assert Stop().fraction < 0

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.run import Context, Refused
-from extrados.analyses.sla_curve import bilinear, envelope
+from extrados.analyses.sla_curve import bilinear
 from extrados.analyses.sla_model import SlaModel, build, strength_factors
 from extrados.analyses.sla_run import Curve, State, damage_before, run_curves
 from extrados.core.calls import interruptible
@@ -87,6 +87,7 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "sense": curve.sense,
         "peak_load_N": float(events.load[peak] * unit) if peak >= 0 else None,
         "peak_displacement_m": float(events.monitors[peak, 0]) if peak >= 0 else None,
+        "displacement_of_constant_loads_m": curve.before,
         "peak_event": peak + 1 if peak >= 0 else None,
         "first_event_load_N": float(events.load[0] * unit) if len(events) else None,
         "events": len(events),
@@ -111,13 +112,13 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "seconds_per_event": curve.seconds / max(len(events), 1),
         "events_of_constant_loads": len(curve.stage_a) - 1 if curve.stage_a is not None and len(curve.stage_a) else 0,
     }
-    d, p = envelope(events.monitors[events.equilibrium, 0], events.load[events.equilibrium] * unit)
+    d, p = curve.envelope(unit)
     if options.probes:
         reached = [float(np.interp(x, d, p)) if x <= d[-1] else None for x in options.probes]
         numbers["probe_loads_N"] = reached
     if len(events):
         numbers["initial_stiffness_N_m"] = float(unit**2 / events.compliance[0])
-    idea = bilinear(d, p)
+    idea = bilinear(d - d[0], p)  # from the state under the constant loads
     if idea is not None:
         numbers["bilinear"] = {
             "stiffness_N_m": idea.stiffness, "yield_load_N": idea.yield_load,
@@ -234,7 +235,7 @@ def _curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) ->
             result.arrays[name] = Array(
                 getattr(curve, name).T, ("all_points", "damage_row"), "", "damage, to go on from"
             )
-    d, p = envelope(e.monitors[e.equilibrium, 0], e.load[e.equilibrium] * unit)
+    d, p = curve.envelope(unit)
     result.arrays[f"{prefix}envelope_displacement"] = Array(d, (f"{prefix}envelope",), "m", "monotone envelope")
     result.arrays[f"{prefix}envelope_load"] = Array(p, (f"{prefix}envelope",), "N", "monotone envelope")
     name = "load_displacement" + ("_minus" if prefix else "")
@@ -376,7 +377,7 @@ def _scatter(context: Context, options: Sla, result: Result) -> None:
             break
         e = curve.events
         peaks.append((float(e.load[curve.peak] * model.unit), float(e.monitors[curve.peak, 0])))
-        curves.append(envelope(e.monitors[e.equilibrium, 0], e.load[e.equilibrium] * model.unit))
+        curves.append(curve.envelope(model.unit))
     if not peaks:
         return
     done = options.seeds[: len(peaks)]

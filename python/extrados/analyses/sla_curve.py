@@ -20,16 +20,20 @@ class Bilinear:
         return self.ultimate_displacement / self.yield_displacement
 
 
-def envelope(displacement: np.ndarray, load: np.ndarray, bins: int = 400) -> tuple[np.ndarray, np.ndarray]:
-    """Monotone envelope of the polyline through the origin and the equilibrium points: at each of `bins`
-    displacements the greatest load on it. Displacements count positive in the sense they have at the peak.
+def envelope(
+    displacement: np.ndarray, load: np.ndarray, start: float = 0.0, bins: int = 400
+) -> tuple[np.ndarray, np.ndarray]:
+    """Monotone envelope of the polyline through (start, 0) and the equilibrium points: at each of `bins`
+    displacements the greatest load on it. Displacements count positive in the sense they have, from the start, at
+    the peak; `start` is the displacement of the constant loads alone.
     """
     if not len(load):
-        return np.zeros(1), np.zeros(1)
-    d = np.append(0.0, np.copysign(1.0, displacement[load.argmax()]) * displacement)
+        return np.full(1, start), np.zeros(1)
+    turn = float(np.copysign(1.0, displacement[load.argmax()] - start))
+    d = np.append(0.0, turn * (displacement - start))
     p = np.append(0.0, load)
     if not d.max() > 0.0:
-        return np.zeros(1), np.zeros(1)
+        return np.full(1, turn * start), np.zeros(1)
     # The peak and the end must be on the envelope, whatever the bins
     grid = np.union1d(np.linspace(0.0, d.max(), bins + 1), np.maximum(d[p.argmax()], 0.0))
     best = np.full(len(grid), -np.inf)
@@ -42,7 +46,7 @@ def envelope(displacement: np.ndarray, load: np.ndarray, bins: int = 400) -> tup
     share = np.where(span != 0.0, (grid[at] - d[segment]) / np.where(span != 0.0, span, 1.0), 0.0)
     np.maximum.at(best, at, p[segment] + share * (p[segment + 1] - p[segment]))
     kept = np.isfinite(best)
-    return grid[kept], best[kept]
+    return grid[kept] + turn * start, best[kept]
 
 
 def bilinear(d: np.ndarray, p: np.ndarray) -> Bilinear | None:

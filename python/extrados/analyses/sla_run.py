@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extrados.analyses.run import Refused
+from extrados.analyses.sla_curve import envelope
 from extrados.analyses.sla_model import SlaModel
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
@@ -41,11 +42,17 @@ class Curve:
     warnings: list[str] = field(default_factory=list)
     equations: int = 0
     points: int = 0
+    before: float = 0.0  # control displacement of the constant loads alone, in the sense of the load [m]
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
 
     @property
     def sense(self) -> str:
         return "+" if self.sign > 0 else "-"
+
+    def envelope(self, unit: float) -> tuple[np.ndarray, np.ndarray]:
+        """Displacements [m] and loads [N] of the envelope; it begins at the constant loads' displacement."""
+        fine = self.events.equilibrium
+        return envelope(self.events.monitors[fine, 0], self.events.load[fine] * unit, self.before)
 
     @property
     def peak(self) -> int:
@@ -83,11 +90,13 @@ def run_curves(
             core_model.loads(
                 model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger
             )
+            watch = model.control
+            before = sign * float(watch.share @ core_model.displacement(0.0)[watch.node, watch.direction])
             curve = _reference_stage(
                 core_model, model, options, sign, progress, bool(stage_a is None and damage is None)
             )
             curve.seconds = time.perf_counter() - begin
-            curve.stage_a = stage_a
+            curve.stage_a, curve.before = stage_a, before
             curve.damage_start = start
             curve.warnings += warnings if not number else []
             curves.append(curve)

@@ -64,15 +64,17 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             d, p = get(f"{prefix}event_displacement") * 1e3, get(f"{prefix}event_load") / 1e3
             fine = get(f"{prefix}event_equilibrium") > 0
             color = style.THRUST if not prefix else style.SAFE
-            ax.plot(np.append(0, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.35, alpha=0.55)
+            begin = 1e3 * numbers["displacement_of_constant_loads_m"]
+            ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.35, alpha=0.55)
             if (~fine).any():
                 ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
                     linewidth=1.4, label=f"envelope, load to {numbers['sense']}")  # fmt: skip
             idea = numbers.get("bilinear")
             if idea:
+                shift = get(f"{prefix}envelope_displacement")[0]
                 ax.plot(
-                    np.array([0, idea["yield_displacement_m"], idea["ultimate_displacement_m"]]) * 1e3,
+                    (shift + np.array([0, idea["yield_displacement_m"], idea["ultimate_displacement_m"]])) * 1e3,
                     np.array([0, idea["yield_load_N"], idea["yield_load_N"]]) / 1e3,
                     color=ENVELOPE, linestyle="--", linewidth=0.9, label="bilinear of equal area" if not prefix else None,
                 )  # fmt: skip
@@ -80,7 +82,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         there = [p for p in ("", "minus_") if f"{p}envelope_load" in run.arrays[name]]
         far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
         loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
-        ax.set_xlim(0.0, 1.05e3 * max(far.max(), 1e-12))
+        ax.set_xlim(1.05e3 * min(far.min(), 0.0), 1.05e3 * max(far.max(), 1e-12))
         if len(loads):
             low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
             ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
