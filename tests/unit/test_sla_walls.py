@@ -137,6 +137,10 @@ def test_results_fields_and_figures(tmp_path) -> None:
     again = wall(events=20, resume_from=str(out), resume_event=71)
     found = run_deck(again)
     np.testing.assert_allclose(found["event_load"], result["event_load"][70:90], rtol=1e-9)
+    for name in ("external", "stored", "dissipated", "crack"):  # the ledger goes on
+        np.testing.assert_allclose(found[f"event_{name}"], result[f"event_{name}"][70:90], rtol=1e-7)
+    assert found.results["events_before_resume"] == 70
+    assert found.results["energy_residual_ratio"] < 1e-9
     meshio = pytest.importorskip("meshio")
     field = meshio.read(out / series[0].get("file"))
     np.testing.assert_allclose(field.point_data["displacement"][:, :2], result["state_displacement"][0], rtol=1e-12)

@@ -1,5 +1,6 @@
 """sla: sequentially linear analysis of a wall (thesis 4.2, 4.3)."""
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,21 @@ UNBOUNDED = 1e300
 PREFIXES = ("", "minus_")  # of the arrays of the first curve, whatever its sense, and of the second, to -
 
 
+LEDGER = ("external", "dissipated", "crack")
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """The event of an earlier run at which a resumed one begins: its sense, the events before it, its load [N] and
+    point, and the ledger [J] at it."""
+
+    sense: str
+    events: int
+    load: float
+    point: int
+    totals: list[float]
+
+
 def run(context: Context, options: Sla) -> Result:
     """All curves: both senses of the load, and the repetitions with other seeds."""
     with interruptible():  # Ctrl-C between two batches too only ends the events: what was found is kept
@@ -37,12 +53,14 @@ def _run(context: Context, options: Sla) -> Result:
     result = Result("sla")
     context.warnings += wall.warnings
     model = build(wall, options, strength_factors(wall, options, options.strength_seed))
-    damage = _resume(context, options, model)
+    damage, earlier = _resume(context, options, model)
 
     def progress(done: float, total: float, text: str) -> None:
         context.progress(done, total, text)
 
     curves = run_curves(model, options, context.threads, progress, damage)
+    for curve in curves:
+        _carry(curve, earlier, model.unit)
     _describe(result, model, options, curves)
     if options.seeds and not curves[-1].events.interrupted:
         _scatter(context, options, result)
@@ -51,10 +69,10 @@ def _run(context: Context, options: Sla) -> Result:
     return result
 
 
-def _resume(context: Context, options: Sla, model: SlaModel) -> np.ndarray | None:
-    """The damage stored by an earlier run, before the event asked for."""
+def _resume(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarray | None, Earlier | None]:
+    """The damage stored by an earlier run before the event asked for, and what had been counted at that event."""
     if options.resume_from is None:
-        return None
+        return None, None
     folder = Path(options.resume_from)
     folder = folder if folder.is_absolute() else context.deck.folder / folder
     try:
@@ -71,11 +89,40 @@ def _resume(context: Context, options: Sla, model: SlaModel) -> np.ndarray | Non
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
             raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events")
-        return damage_before(
+        earlier = None
+        if event >= 1:
+            totals = [float(get[f"event_{name}"][event - 1]) for name in LEDGER]
+            numbers = stored["sla"]
+            before = numbers.get("events_before_resume", 0) + event - 1
+            earlier = Earlier(
+                numbers["sense"],
+                before,
+                float(get["event_load"][event - 1]),
+                int(get["event_point"][event - 1]),
+                totals,
+            )
+        damage = damage_before(
             get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
         )
+        return damage, earlier
     except (StoreError, KeyError) as error:
         raise Refused(f"resume_from: {error}") from None
+
+
+def _carry(curve: Curve, earlier: Earlier | None, unit: float) -> None:
+    """Let the counts of a resumed curve go on, where its first event is the stored one: other loads or another sense
+    begin anew."""
+    events = curve.events
+    if earlier is None or not len(events) or curve.sense != earlier.sense or events.point[0] != earlier.point:
+        return
+    if abs(events.load[0] * unit - earlier.load) > 1e-6 * abs(earlier.load):
+        return
+    curve.events_before = earlier.events
+    for name, total in zip(LEDGER, earlier.totals, strict=True):
+        shift = total - float(getattr(events, name)[0])
+        getattr(events, name)[:] += shift
+        if name == "crack":
+            events.crack_total += shift
 
 
 def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
@@ -91,6 +138,7 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "peak_event": peak + 1 if peak >= 0 else None,
         "first_event_load_N": float(events.load[0] * unit) if len(events) else None,
         "events": len(events),
+        "events_before_resume": curve.events_before,
         "events_without_equilibrium": len(lost),
         "first_event_without_equilibrium": int(lost[0]) + 1 if len(lost) else None,
         "stop": events.reason or ("interrupted" if events.interrupted else "number of events"),

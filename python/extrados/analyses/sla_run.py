@@ -42,6 +42,7 @@ class Curve:
     warnings: list[str] = field(default_factory=list)
     equations: int = 0
     points: int = 0
+    events_before: int = 0  # of the runs that this one goes on from
     before: float = 0.0  # control displacement of the constant loads alone, in the sense of the load [m]
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
 
