@@ -206,8 +206,9 @@ class _Checker:
             text = str(problem.get("ctx", {}).get("error", problem["msg"]))
             if not place:  # a rule over several keys: shown at the first one that it names
                 given = problem.get("input") if isinstance(problem.get("input"), dict) else {}
-                named = [key for key in given if re.search(rf"\b{re.escape(key)}\b", text)]
-                at = (*path, named[0]) if named else at
+                found = ((re.search(rf"\b{re.escape(key)}\b", text), key) for key in given)
+                named = min(((match.start(), key) for match, key in found if match), default=None)
+                at = (*path, named[1]) if named else at
             self.complain(at, text)
         else:
             unit = _unit(model, place)
