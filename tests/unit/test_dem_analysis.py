@@ -131,6 +131,50 @@ def test_failure_curve_resumes(tmp_path: Path) -> None:
     assert found.status == "ok" and 0.2 < found["shortest_durations_s"][0] <= 0.8
 
 
+def interrupt_from(monkeypatch: pytest.MonkeyPatch, first: int, **change) -> list[int]:
+    """From run `first` on the core answers as after Ctrl-C (or with `change`); the list grows with each run."""
+    from dataclasses import replace
+
+    from extrados.core import dem
+
+    real, count = dem.run, []
+
+    def run(*args, **keys):
+        count.append(len(count) + 1)
+        found = real(*args, **keys)
+        return found if len(count) < first else replace(found, **(change or {"interrupted": True}))
+
+    monkeypatch.setattr(dem, "run", run)
+    return count
+
+
+SLIDING = {
+    "structure": {"kind": "block", "width": 1.0, "height": 1.0},
+    "motion": {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.5},
+    "analysis": [{"kind": "dem", "end_time": 0.6, "joint_stiffness": 1e9, "find_friction": True}],
+}
+
+
+def test_friction_search_does_not_survive_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interrupted run is no answer: the base run is kept, no threshold is claimed."""
+    (whole,) = answers(SLIDING)
+    assert whole["friction_threshold"] == pytest.approx(0.5, abs=0.06)
+    with monkeypatch.context() as patch:
+        interrupt_from(patch, 4)
+        (found,) = answers(SLIDING)
+    assert found.status == "interrupted" and "friction_threshold" not in found.results
+    assert found["stop_time_s"] == whole["stop_time_s"]
+    with monkeypatch.context() as patch:
+        count = interrupt_from(patch, 1)
+        (found,) = answers(SLIDING)
+    assert found.status == "interrupted" and len(count) == 1
+    with monkeypatch.context() as patch:
+        interrupt_from(patch, 4, reason="blow-up")
+        (found,) = answers(SLIDING)
+    assert found["friction_threshold"] is None
+    assert any("ledger does not close" in w for w in found.warnings)
+
+
 def test_vtk_collection(tmp_path: Path) -> None:
     deck = {
         "structure": {"kind": "wall", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 2},

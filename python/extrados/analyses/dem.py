@@ -10,6 +10,7 @@ from extrados.analyses.dem_model import JointValues, Model
 from extrados.analyses.limit_common import geometry_arrays
 from extrados.analyses.run import Context, Refused
 from extrados.core import dem
+from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground
 from extrados.decks.dem import Dem
 from extrados.results.model import Array, Result, TableData
@@ -306,12 +307,25 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         )
     if result.results["still_moving"]:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
-    _vary(context, options, trial, result)
-    if options.find_friction:
-        result.results["friction_threshold"] = friction_threshold(trial, model, options.slip)
+    if not found.interrupted:
+        _further(context, options, trial, result)
     result.files |= dem_files.files(model, found, options)
     result.answer = _answer(context, result.results, model)
     return result
+
+
+def _further(context: Context, options: Dem, trial: Trial, result: Result) -> None:
+    """Variations and the search for the friction; what stops them leaves the run itself as it is."""
+    try:
+        _vary(context, options, trial, result)
+        if options.find_friction:
+            result.results["friction_threshold"] = friction_threshold(trial, trial.model, options.slip)
+    except (Cancelled, KeyboardInterrupt):
+        result.status = "interrupted"
+        result.reason = "interrupted in the variations or the friction search; the run before them is complete"
+    except Refused as error:
+        result.results["friction_threshold"] = None
+        result.warnings.append(f"the least friction was not found: {error}")
 
 
 def _block_places(model: Model, place: np.ndarray) -> np.ndarray:
@@ -424,15 +438,21 @@ def _vary(context: Context, options: Dem, trial: Trial, result: Result) -> None:
 
 
 def friction_threshold(trial: Trial, model: Model, slip: float, accuracy: float = 0.005) -> float | None:
-    """Least coefficient of friction at which no joint slides by more than `slip` [m] (thesis 7.2.2); None above 2."""
+    """Least coefficient of friction at which no joint slides by more than `slip` [m] (thesis 7.2.2); None above 2.
+
+    Raises Cancelled after Ctrl-C, and Refused where a run of the search is not to be trusted.
+    """
 
     def slides(friction: float) -> bool:
         run = dem.run(
             model.bodies(model.values.scaled(friction=friction)), trial.options, trial.ground, shift=trial.shift,
             moves=trial.moves,
         )  # fmt: skip
+        if run.interrupted:
+            raise Cancelled(status_code("cancelled"), "friction search interrupted")
         if run.reason == "unsettled":
             return True
+        dem_model.checked(run, model)
         gap_p, gap_q, moved = openings(model, run)
         return peak_slip(hinges(model, gap_p, gap_q, moved), moved) > slip
 
