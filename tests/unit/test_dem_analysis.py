@@ -175,6 +175,38 @@ def test_friction_search_does_not_survive_ctrl_c(monkeypatch: pytest.MonkeyPatch
     assert any("ledger does not close" in w for w in found.warnings)
 
 
+TILT = {
+    "kind": "dem",
+    "test": "tilt",
+    "friction": 2.0,
+    "joint_stiffness": 1e10,
+    "tilt_limit": "1 g",
+    "tilt_accuracy": 4e-3,
+}
+
+
+def test_tilt_in_both_senses() -> None:
+    """A block whose weight lies nearer to its right toe falls sooner to +x than to -x, as limit analysis says."""
+    outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.6, 2.0]]
+    leaning = {"kind": "blocks", "block": [{"name": "block", "points": outline}]}
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.5}
+    deck = {"structure": leaning, "motion": motion, "analysis": [{"kind": "tilt"}, TILT | {"vary_friction": [0.5]}]}
+    exact, found = answers(deck)
+    for key in ("collapse_acceleration_g", "collapse_acceleration_opposite_g"):
+        assert found[key] == pytest.approx(exact[key], abs=6e-3), key
+    assert found["collapse_acceleration_g"] < 0.8 * found["collapse_acceleration_opposite_g"]
+    assert found["outcome"] == "collapse" and found["peak_rotation_rad"]["block"] > 0.0
+    assert "+x" in found.answer and "-x" in found.answer
+    assert any("vary_friction" in w and "[motion]" in w for w in found.warnings)
+
+
+def test_tilt_stops_at_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interrupted run does not count as one that stands."""
+    count = interrupt_from(monkeypatch, 3)
+    (found,) = answers({"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "analysis": [TILT]})
+    assert found.status == "interrupted" and len(count) == 3
+
+
 def test_vtk_collection(tmp_path: Path) -> None:
     deck = {
         "structure": {"kind": "wall", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 2},

@@ -465,53 +465,93 @@ def friction_threshold(trial: Trial, model: Model, slip: float, accuracy: float 
     return high
 
 
+#: Keys of the deck that a tilt test does not look at.
+NOT_IN_TILT = (
+    "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "vtk", "support_movements",
+    "vary_damping", "vary_stiffness", "vary_friction", "find_friction", "slip",
+)  # fmt: skip
+
+
 def _tilt(context: Context, options: Dem, model: Model) -> Result:
-    """The constant acceleration that brings the structure down: brought in slowly, held, bisected."""
+    """The constant acceleration that brings the structure down: brought in slowly, held, bisected, in both senses."""
+    unused = [key for key in NOT_IN_TILT if key in options.model_fields_set]
+    if context.deck.motion:
+        unused.append("the [motion]")
+    if unused:
+        context.warnings.append(f"plays no part in a tilt test: {', '.join(unused)}")
     ramp, hold = 2.0, dem_model.settle_time(model)
     base = replace(
         core_options(context, options, model), end_time=ramp + hold, stop_at_rest=False, output_step=0.05,
         collapse=options.collapse_displacement or 0.05 * model.size,
     )  # fmt: skip
+    wanted = options.tilt_accuracy * GRAVITY
+    total, done = 2.0 * float(np.log2(options.tilt_limit / wanted)), 0
 
-    def falls(a: float) -> dem.Run:
+    def falls(a: float) -> dem.Run | None:
+        """The run where the acceleration of the ground to -x [m/s^2] brings it down, else None."""
         ground = Ground(
             breaks=np.array([0.0, ramp, ramp + hold + 1.0]),
             linear=np.array([[[0.0, -a / ramp]], [[-a, 0.0]]]), harmonic=np.zeros((2, 1, 0, 4)),
         )  # fmt: skip
-        return dem_model.checked(dem.run(model.bodies(), base, ground), model)
+        found = dem_model.checked(dem.run(model.bodies(), base, ground), model)
+        if found.interrupted:
+            raise Cancelled(status_code("cancelled"), "tilt test interrupted")
+        return found if found.reason in ("collapse", "left") else None
 
-    low, high = 0.0, options.tilt_limit
-    last = falls(high)
-    if last.reason not in ("collapse", "left"):
-        raise Refused(f"stands at {high / GRAVITY:g} g: raise tilt_limit")
-    total = float(np.log2((high - low) / (options.tilt_accuracy * GRAVITY)))
-    done = 0
-    while high - low > options.tilt_accuracy * GRAVITY:
-        middle = 0.5 * (low + high)
-        found = falls(middle)
-        if found.reason in ("collapse", "left"):
-            high, last = middle, found
-        else:
-            low = middle
-        done += 1
-        context.progress(done, total, "tilt test")
-    collapse = 0.5 * (low + high) / GRAVITY
-    gap_p, gap_q, slip = openings(model, last)
-    state = hinges(model, gap_p, gap_q, slip)
-    begun = np.searchsorted(displacements(model, last).max(axis=1), 0.005 * model.size)
-    at = min(int(begun), len(last.time) - 1)
-    found_hinges = [
-        {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] < 0 else "extrados"}
-        for j in np.flatnonzero(np.abs(state[at]) == 1)
-    ]
+    def capacity(sense: float) -> tuple[float, dem.Run]:
+        """Acceleration [g] and the last run that fell, pushed to +x (sense 1) or -x (-1)."""
+        nonlocal done
+        low, high = 0.0, options.tilt_limit
+        last = falls(sense * high)
+        if last is None:
+            raise Refused(f"stands at {high / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit")
+        while high - low > wanted:
+            middle = 0.5 * (low + high)
+            if middle in (low, high):  # as fine as numbers are
+                break
+            found = falls(sense * middle)
+            if found is None:
+                low = middle
+            else:
+                high, last = middle, found
+            done += 1
+            context.progress(min(done, total), total, "tilt test")
+        return 0.5 * (low + high) / GRAVITY, last
+
+    def hinged(run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, list[dict]]:
+        """States and slips of the joints, the output where it begins to go, and the hinges there."""
+        gap_p, gap_q, slip = openings(model, run)
+        state = hinges(model, gap_p, gap_q, slip)
+        begun = np.searchsorted(displacements(model, run).max(axis=1), 0.005 * model.size)
+        at = min(int(begun), len(run.time) - 1)
+        rows = [
+            {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] < 0 else "extrados"}
+            for j in np.flatnonzero(np.abs(state[at]) == 1)
+        ]  # fmt: skip
+        return state, slip, at, rows
+
+    collapse, last = capacity(1.0)
+    back, back_run = capacity(-1.0)
+    state, slip, at, found_hinges = hinged(last)
+    body = model.rigid.body_of_block
+    rotation = -(last.place[:, body, 2] - last.settled[body, 2])
+    peak = np.abs(rotation).argmax(axis=0)
     result = Result("dem")
     result.results = {
         "test": "tilt",
+        "outcome": "collapse",
         "collapse_acceleration_g": collapse,
+        "collapse_acceleration_opposite_g": back,
         "tilt_angle_deg": float(np.degrees(np.arctan(collapse))),
+        "tilt_angle_opposite_deg": float(np.degrees(np.arctan(back))),
+        "load_direction": "+x",
         "hinges": found_hinges,
+        "hinges_opposite": hinged(back_run)[3],
+        "peak_rotation_rad": {
+            model.assembly.block_names[i]: float(rotation[peak[i], i]) for i in _tracked(model, options, last)
+        },
         "peak_slip_m": float(np.nanmax(np.abs(slip[at]), initial=0.0)),
-        "energy_residual_ratio": last.residual,
+        "energy_residual_ratio": max(last.residual, back_run.residual),
         "time_step_s": last.step,
         "steps": last.steps,
         "beta_s": model.values.beta,
@@ -526,9 +566,11 @@ def _tilt(context: Context, options: Dem, model: Model) -> Result:
         **_support_arrays(model),
     }
     where = ", ".join(f"{h['name']} ({h['side']})" for h in found_hinges[:6]) or "none"
+    least, sense = min((collapse, "+x"), (back, "-x"))
     result.answer = (
-        f"A constant horizontal acceleration of {collapse:.4f} g (a tilt of {result.results['tilt_angle_deg']:.2f} deg) brings it "
-        f"down; hinges as it goes: {where}."
+        f"A constant horizontal acceleration brings it down at {collapse:.4f} g pushed to +x (a tilt of "
+        f"{result.results['tilt_angle_deg']:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
+        f"Hinges as it goes to +x: {where}."
     )
     return result
 
