@@ -175,6 +175,19 @@ def test_friction_search_does_not_survive_ctrl_c(monkeypatch: pytest.MonkeyPatch
     assert any("ledger does not close" in w for w in found.warnings)
 
 
+def test_restitution_is_that_of_free_rocking() -> None:
+    """Housner's 1 - 1.5 sin^2 alpha = 0.9118 where a block rocks freely; nothing where it does not rock."""
+    block = {"kind": "block", "width": 1.0, "height": 4.0, "initial_rotation_ratio": 0.4}
+    dem = {"kind": "dem", "end_time": 4.0, "friction": 2.0, "joint_stiffness": 1e12}
+    (free,) = answers({"structure": block, "analysis": [dem]})
+    assert free["restitution_measured"] == pytest.approx(0.9118, abs=0.012)
+    # The rotation is that of the block, not the one since it was let go.
+    assert free["rotation"][0, 0] == pytest.approx(0.4 * np.arctan(0.25), rel=1e-6)
+    motion = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 0.5}
+    (still,) = answers({"structure": block | {"initial_rotation_ratio": 0.0}, "motion": motion, "analysis": [dem]})
+    assert still["outcome"] == "no-hinging" and still["restitution_measured"] is None
+
+
 TILT = {
     "kind": "dem",
     "test": "tilt",

@@ -103,12 +103,18 @@ class Trial:
         self.moves = _moves(model, options)
         self.shift = _start(context, model)
 
+    def any_run(self, values: JointValues | None = None, **change: object) -> dem.Run:
+        """One run however it ends; `change` replaces options of the core."""
+        bodies = self.model.bodies(values)
+        found = dem.run(bodies, replace(self.options, **change), self.ground, shift=self.shift, moves=self.moves)
+        if self.shift is None:
+            return found
+        # A block that starts rotated does not settle: its place of rest is the one it was drawn in.
+        return replace(found, settled=np.column_stack([bodies.centroid, np.zeros(len(bodies.mass))]))
+
     def run(self, values: JointValues | None = None, **change: object) -> dem.Run:
-        """One run; `change` replaces options of the core."""
-        found = dem.run(
-            self.model.bodies(values), replace(self.options, **change), self.ground, shift=self.shift, moves=self.moves
-        )
-        return dem_model.checked(found, self.model)
+        """One run; Refused where it is not to be trusted."""
+        return dem_model.checked(self.any_run(values, **change), self.model)
 
 
 def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -186,15 +192,28 @@ def _moving(run: dem.Run) -> bool:
     return bool(len(kinetic) and kinetic[-1] > 1e-3 * kinetic.max())
 
 
-def restitution(run: dem.Run) -> float | None:
-    """Median ratio of the rates after and before the impacts of a single block; None without a clear impact."""
+def restitution(run: dem.Run, state: np.ndarray, ground: np.ndarray) -> float | None:
+    """Median ratio of the rates after and before the impacts of a single block that rocks freely.
+
+    state: of the joints (time, joint); ground: its acceleration (time) [m/s^2]. An impact counts where the block
+    stood on one end of a joint before and on the other after, so that noise about rest and a changing
+    lean do not, and where the ground is still meanwhile: it would change the rates as well. None without one.
+    """
     angle, rate = run.place[:, 0, 2], run.rate[:, 0, 2]
     cross = np.flatnonzero(angle[:-1] * angle[1:] < 0.0)
-    cross = cross[(cross > 3) & (cross < len(rate) - 6)]
-    strong = cross[np.abs(rate[cross - 1]) > 0.2 * np.abs(rate).max(initial=0.0)]
-    if not len(strong):
-        return None
-    return float(np.median(np.abs(rate[strong + 4] / rate[strong - 2])))
+    limits = [0, *(cross + 1).tolist(), len(angle)]
+    ratios = []
+    for k, c in enumerate(cross):
+        if not 3 < c < len(rate) - 6 or (ground[c - 2 : c + 5] != 0.0).any():
+            continue
+        before = limits[k] + np.abs(angle[limits[k] : limits[k + 1]]).argmax()
+        after = limits[k + 1] + np.abs(angle[limits[k + 1] : limits[k + 2]]).argmax()
+        if (state[before] * state[after] == -1).any() and rate[c - 2] * rate[c + 4] > 0.0:
+            fast = np.abs(rate[c - 3 : c + 1]).max()  # gravity speeds it up until the impact
+            ratios.append((fast, abs(rate[c + 4]) / fast))
+    fastest = max((r for r, _ in ratios), default=0.0)
+    strong = [ratio for r, ratio in ratios if r > 0.2 * fastest]
+    return float(np.median(strong)) if strong else None
 
 
 def _tracked(model: Model, options: Dem, run: dem.Run) -> list[int]:
@@ -217,6 +236,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
     found = trial.run(output_step=min(options.output_step, 0.002)) if single else trial.run()
     gap_p, gap_q, slip = openings(model, found)
     state = hinges(model, gap_p, gap_q, slip)
+    ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
     body = model.rigid.body_of_block
     tracked = _tracked(model, options, found)
     rotation = -(found.place[:, body, 2] - found.settled[body, 2])
@@ -242,7 +262,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
         "energy_residual_ratio": found.residual,
-        "restitution_measured": restitution(found) if single else None,
+        "restitution_measured": restitution(found, state, ground) if single else None,
         "restitution_housner": 1.0 - 1.5 * float(np.sin(model.assembly.alpha[0]) ** 2)
         if isinstance(model.assembly, Block)
         else None,
@@ -293,9 +313,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
             for name, values in found.energy.items()
             if name != "leapfrog"
         },
-        "ground": Array(
-            context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time)), ("time",), "m/s^2"
-        ),
+        "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(_snapshot_times(options, found), ("snapshot",), "s"),
         **_support_arrays(model),
     }
@@ -402,7 +420,7 @@ def _vary(context: Context, options: Dem, trial: Trial, result: Result) -> None:
 
     def task(v: JointValues):
         # An unstable variation is a finding, not the end of the others.
-        return lambda: dem.run(trial.model.bodies(v), trial.options, trial.ground, shift=trial.shift, moves=trial.moves)
+        return lambda: trial.any_run(v)
 
     runs = dem_model.many(
         [task(v) for _, _, v in cases], context.threads, lambda k: context.progress(k, total, "sensitivity")
@@ -444,10 +462,7 @@ def friction_threshold(trial: Trial, model: Model, slip: float, accuracy: float 
     """
 
     def slides(friction: float) -> bool:
-        run = dem.run(
-            model.bodies(model.values.scaled(friction=friction)), trial.options, trial.ground, shift=trial.shift,
-            moves=trial.moves,
-        )  # fmt: skip
+        run = trial.any_run(model.values.scaled(friction=friction))
         if run.interrupted:
             raise Cancelled(status_code("cancelled"), "friction search interrupted")
         if run.reason == "unsettled":
