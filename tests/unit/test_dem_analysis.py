@@ -73,7 +73,13 @@ def test_refusals_name_what_is_wrong() -> None:
     assert "needs an arch" in reason({"kind": "column", "width": 1.0, "height": 2.0, "drums": 2}, merge="three-bars")
 
 
-@pytest.mark.parametrize("wrong", [{"friction": -0.1}, {"joint_stiffness": -1.0}, {"fraction": 1.5}, {"beta": -1e-3}])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"friction": -0.1}, {"joint_stiffness": -1.0}, {"fraction": 1.5}, {"beta": -1e-3}, {"tilt_accuracy": 1e-20},
+        {"output_step": 1e-12},
+    ],
+)  # fmt: skip
 def test_deck_complains(wrong: dict) -> None:
     with pytest.raises(DeckError) as error:
         make_deck({"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "dem"} | wrong]})
@@ -124,6 +130,7 @@ def test_failure_curve_resumes(tmp_path: Path) -> None:
     sweep.fails([(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)], lambda n: None)
     again = dem_domain.Sweep(Context(deck, out=tmp_path / "run", resume=True), options, model, [model.values])
     assert again.answers == sweep.answers and len(again.answers) == 2
+    assert (again.steps, again.residual) == (sweep.steps, sweep.residual) and sweep.steps > 0 < sweep.residual
     again.fails([(0, 0.6 * 9.80665, 0.2)], lambda n: pytest.fail("was computed again"))
     fresh = dem_domain.Sweep(Context(deck, out=tmp_path / "run"), options, model, [model.values])
     assert not fresh.answers
