@@ -195,6 +195,21 @@ def test_restitution_is_that_of_free_rocking() -> None:
     assert still["outcome"] == "no-hinging" and still["restitution_measured"] is None
 
 
+def test_answers_of_sliding_and_of_standing() -> None:
+    block = {"kind": "block", "width": 1.0, "height": 0.5}
+    dem = {"kind": "dem", "end_time": 0.8, "friction": 0.2, "joint_stiffness": 1e9}
+    motion = {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.2}
+    (slid,) = answers({"structure": block, "motion": motion, "analysis": [dem]})
+    # (a - mu g) t^2 / 2 under the step, then v^2 / 2 / (mu g + a / 2) as the ground brakes with a / 2.
+    fast, mu_g, a = 0.3 * 9.80665 * 0.2, 0.2 * 9.80665, 0.5 * 9.80665
+    exact = 0.5 * fast * 0.2 + 0.5 * fast**2 / (mu_g + 0.5 * a)
+    assert slid["peak_slip_m"] == pytest.approx(exact, rel=0.01)
+    assert slid.answer.startswith(f"It slides by {slid['peak_slip_m']:.3g} m; no joint opens"), slid.answer
+    (still,) = answers({"structure": block, "analysis": [dem]})
+    assert any("nothing moves it" in w for w in still.warnings)
+    assert "mrad" not in still.answer and not still["still_moving"]
+
+
 TILT = {
     "kind": "dem",
     "test": "tilt",

@@ -19,6 +19,8 @@ from extrados.structures.block import Block
 GRAVITY = dem.GRAVITY
 #: A joint is open where it gapes by more than this fraction of its length.
 OPEN = 5e-4
+#: A joint slides where it slips by more than this fraction of the shortest one.
+SLIDES = 0.01
 #: Blocks whose rotation is reported where none are named.
 MOST_TRACKED = 24
 
@@ -103,6 +105,11 @@ class Trial:
         self.moves = _moves(model, options)
         self.shift = _start(context, model)
 
+    @property
+    def idle(self) -> bool:
+        """Does nothing move it?"""
+        return self.ground is None and not self.moves and self.shift is None
+
     def any_run(self, values: JointValues | None = None, **change: object) -> dem.Run:
         """One run however it ends; `change` replaces options of the core."""
         bodies = self.model.bodies(values)
@@ -186,10 +193,11 @@ def _collapse_time(run: dem.Run, far: np.ndarray, limit: float) -> float | None:
     return run.stop_time if run.reason in ("collapse", "left") else None
 
 
-def _moving(run: dem.Run) -> bool:
-    """Is there motion worth the name at the end?"""
+def _moving(run: dem.Run, model: Model) -> bool:
+    """Is there motion worth the name at the end: beside the most there was, and beside the weight times the size?"""
     kinetic = run.energy["kinetic"]
-    return bool(len(kinetic) and kinetic[-1] > 1e-3 * kinetic.max())
+    noise = 1e-6 * float(model.rigid.mass.sum()) * GRAVITY * model.size
+    return bool(len(kinetic) and kinetic[-1] > max(1e-3 * kinetic.max(), noise))
 
 
 def restitution(run: dem.Run, state: np.ndarray, ground: np.ndarray) -> float | None:
@@ -254,7 +262,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         "stopped": found.reason,
         "stopped_by": [model.rigid.names[k] for k in found.blamed],
         "stop_time_s": found.stop_time,
-        "still_moving": found.reason == "end" and _moving(found),
+        "still_moving": found.reason == "end" and _moving(found, model),
         "peak_rotation_rad": {names[i]: float(rotation[peak[i], i]) for i in tracked},
         "peak_displacement_m": farthest,
         "peak_slip_m": sliding,
@@ -317,7 +325,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         "snapshot_time": Array(_snapshot_times(options, found), ("snapshot",), "s"),
         **_support_arrays(model),
     }
-    if sliding > 0.01 * float(model.assembly.length.min()):
+    if sliding > SLIDES * float(model.assembly.length.min()):
         result.warnings.append(f"joints slide by up to {1e3 * sliding:.3g} mm")
     if found.residual > 0.01:
         result.warnings.append(
@@ -325,10 +333,14 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         )
     if result.results["still_moving"]:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
+    if trial.idle:
+        result.warnings.append(
+            "nothing moves it: add [motion], [[analysis.support_movements]] or, for a block, initial_rotation_ratio"
+        )
     if not found.interrupted:
         _further(context, options, trial, result)
     result.files |= dem_files.files(model, found, options)
-    result.answer = _answer(context, result.results, model)
+    result.answer = _answer(result.results, model, trial.idle)
     return result
 
 
@@ -590,7 +602,9 @@ def _tilt(context: Context, options: Dem, model: Model) -> Result:
     return result
 
 
-def _answer(context: Context, r: dict, model: Model) -> str:
+def _answer(r: dict, model: Model, idle: bool) -> str:
+    if idle and r["outcome"] == "no-hinging":
+        return "It stands under its own weight; nothing moves it."
     turn = max(r["peak_rotation_rad"].items(), key=lambda item: abs(item[1]), default=("", 0.0))
     audit = f"energy ledger closed to {100 * r['energy_residual_ratio']:.2g} %"
     damping = (
@@ -600,6 +614,8 @@ def _answer(context: Context, r: dict, model: Model) -> str:
     if r["outcome"] == "collapse":
         who = f" ({r['stopped_by'][0]} is the first to go)" if r["stopped_by"] else ""
         first = f"It collapses{who} at {r['collapse_time_s']:.2f} s"
+    elif r["outcome"] == "no-hinging" and r["peak_slip_m"] > SLIDES * float(model.assembly.length.min()):
+        first = f"It slides by {r['peak_slip_m']:.3g} m; no joint opens"
     elif r["outcome"] == "no-hinging":
         first = "No joint opens"
     else:
