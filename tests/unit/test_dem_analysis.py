@@ -210,6 +210,16 @@ def test_answers_of_sliding_and_of_standing() -> None:
     assert "mrad" not in still.answer and not still["still_moving"]
 
 
+@pytest.mark.parametrize("keys", [{"time_step": 1e-8, "end_time": 1e-4}, {"collapse_displacement": 1e-12}])
+def test_settling_is_not_the_run(keys: dict) -> None:
+    """What stands comes to rest under its weight, whatever step and limit the run is given."""
+    dem = {"kind": "dem", "end_time": 0.2, "joint_stiffness": 1e9}
+    motion = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 0.5}
+    column = {"kind": "column", "width": 1.0, "height": 2.0, "drums": 2}
+    (found,) = answers({"structure": column, "motion": motion, "analysis": [dem | keys]})
+    assert found.status == "ok", found.reason
+
+
 TILT = {
     "kind": "dem",
     "test": "tilt",

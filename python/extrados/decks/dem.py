@@ -94,8 +94,10 @@ class Dem(Joints):
     support_movements: list[SupportMovement] = key([], "[[analysis.support_movements]]", max_length=100)
     vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
     vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)
-    vary_friction: list[Positive] = key([], "also run with these coefficients of friction", max_length=50)
-    find_friction: bool = key(False, "also find the least friction at which no joint slides")
+    vary_friction: list[Positive] = key(
+        [], "also run with these coefficients of friction at all joints, those of joint_types too", max_length=50
+    )
+    find_friction: bool = key(False, "also find the least friction, the same at all joints, at which no joint slides")
     slip: Length = key(1e-4, "slip that counts as sliding in that search", gt=0)
     tilt_limit: Acceleration = key(2.0 * STANDARD_GRAVITY, "cap of the tilt test", gt=0)
     tilt_accuracy: float = key(1e-3, "accuracy of the tilt test, in g", ge=1e-6, le=0.1)
@@ -115,7 +117,9 @@ class DemDomain(Joints):
     collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
     vary_damping: list[Positive] = key([], "further curves with beta times these factors", max_length=20)
     vary_stiffness: list[Positive] = key([], "further curves with joint stiffnesses times these factors", max_length=20)
-    vary_friction: list[Positive] = key([], "further curves with these coefficients of friction", max_length=20)
+    vary_friction: list[Positive] = key(
+        [], "further curves with these coefficients of friction at all joints, those of joint_types too", max_length=20
+    )
 
     @model_validator(mode="after")
     def _ascending(self) -> "DemDomain":
