@@ -1,6 +1,8 @@
 # `make run` and `make test` set up whatever is missing first; both are quick the second time.
 DECK ?= cases/arch/readme.toml
 PYTHON := .venv/bin/python
+# An import after a pull may build anew, and meson then looks for numpy-config and ninja on the path.
+export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
 .PHONY: run test verify bench lint format wheel setup table-5-3 docs clean
 

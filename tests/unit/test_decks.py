@@ -56,7 +56,7 @@ def test_good_deck() -> None:
         ('"150 cm"', "nan", 5, ["finite"]),
         ('"150 cm"', "1e400", 5, ["finite"]),
         ('"150 cm"', "true", 5, ["expected a number in m"]),
-        ('"150 cm"', "12.0", 2, ["not below the radius"]),
+        ('"150 cm"', "12.0", 5, ["not below the radius"]),
         ("voussoirs = 7", "voussoirs = 3", 7, ["greater than or equal to 4"]),
         ("voussoirs = 7", "voussoirs = 7.5", 7, ["voussoirs"]),
         ("embrace = 157.5", "embrace-x = 157.5", 6, ["unknown key", "did you mean 'embrace'"]),

@@ -244,8 +244,8 @@ def run(context: Context, options: FailureDomain) -> Result:
         for name, curve in names.items():
             result.results[name]["amplitude_ratios"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curve]
         result.results["mode_names"] = (
-            "Mode I: overturning after an impact (mode 1, with impact, of Zhang and Makris 2001); "
-            "Mode II: without impact (their mode 2)"
+            "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact (mode 1, with "
+            "impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)"
         )
     result.tables["failure_domain"] = TableData(
         columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"}
@@ -254,7 +254,7 @@ def run(context: Context, options: FailureDomain) -> Result:
         "duration": Array(durations, ("duration",), "s", "t_p of step and rectangular pulses, else the period T_p"),
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
-        "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in any half cycle"),
+        "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse, of either mode"),
         "pocket": Array(
             curves.pocket / GRAVITY, ("duration",), "g", "where the first safe pocket above the curve begins"
         ),
@@ -275,9 +275,15 @@ def _answer(model: RockingModel, options: FailureDomain, durations: np.ndarray, 
     governing = np.nanmin(curves.mode_i) / GRAVITY
     shortest = durations[np.isfinite(curves.mode_i)].min()
     start = "hinge" if model.what == "arch" else "rock"
+    below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
+    modes = (
+        "Collapse after an impact (Mode I) governs where its curve lies below that of Mode II"
+        if below.any()
+        else "None of them collapses after an impact at a lower amplitude than without (Mode II)"
+    )
     return (
         f"Under {shape} the {model.what} starts to {start} at {model.uplift:.3f} g. It comes down from {shortest:.3f} s on "
         f"(at up to {options.max_amplitude / GRAVITY:g} g); over the durations tried the lowest failing amplitude is {governing:.3f} g. "
-        f"Collapse after an impact (Mode I) governs where its curve lies below that of Mode II; "
+        f"{modes}; "
         f"{pockets} of {len(durations)} durations have safe pockets above the curve, not to be relied on."
     )

@@ -242,14 +242,19 @@ def _describe(
                 f"at this intensity ({r['expected_pga_g']:.2f} g, Worden et al. 2012)"
             )
     failures = swept.members[~ok]
-    for k in failures[:5]:
+    told: set[str] = set()  # a motion that fails at one level fails at all
+    for k in failures:
         name = (
             job.source.names[k // per_motion % len(job.source.names)]
             if isinstance(job.source, ListSource)
             else f"motion {k // per_motion + 1}"
         )
-        result.warnings.append(f"{name} has no result: {swept['reason'][np.searchsorted(swept.members, k)]}")
-    if len(failures) > 5:
+        if name in told:
+            continue
+        told.add(name)
+        if len(told) <= 5:
+            result.warnings.append(f"{name} has no result: {swept['reason'][np.searchsorted(swept.members, k)]}")
+    if len(told) > 5:
         result.warnings.append(f"{len(failures)} members in all have no result, see ensemble.csv")
     result.results = r
     _tables(job, swept, per_motion, options, result)
@@ -393,8 +398,14 @@ def _curves(
         result.warnings.append(
             f"the lognormal curve fits badly (deviance {fit.deviance:.1f} at {fit.freedom} degrees of freedom, p = {fit.p_value:.2g})"
         )
+    done = int(whole.sum())
+    whose = (
+        f"{motions} motions"
+        if done == motions
+        else f"{done} of {motions} motions (the rest has no result at some level)"
+    )
     result.answer = (
-        f"{motions} motions at {n} levels of {name}: {said}. "
+        f"{whose} at {n} levels of {name}: {said}. "
         f"Collapse runs from {100 * np.nanmin(table['collapse_probability']):.1f} % at the lowest to {100 * table['collapse_probability'][-1]:.1f} % at the "
         f"highest level. {r['resurrections']} motions leave the {base.what} standing at a level above one that overturns it."
     )

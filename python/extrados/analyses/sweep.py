@@ -8,7 +8,7 @@ import numpy as np
 
 from extrados.analyses.limit_common import packed
 from extrados.analyses.run import Context, Refused
-from extrados.analyses.variation import Outcome, Signature, changed, evaluate, measures_of, spoken
+from extrados.analyses.variation import LOCKED, Outcome, Signature, changed, evaluate, measures_of, spoken
 from extrados.decks.limit import Sweep
 from extrados.decks.table import Structure
 from extrados.limit.motion import finite_motion
@@ -88,11 +88,12 @@ def run(context: Context, options: Sweep) -> Result:
         [(v, o.signature) for v, o in zip(values, outcomes, strict=True)] + [(c["value"], c["after"]) for c in changes],
         key=lambda pair: pair[0],
     ):
-        if signature:
+        if signature and signature != LOCKED:
             numbers.setdefault(signature, len(numbers) + 1)
     best, best_gamma = _optimum(ask, values, outcomes, options.locate and not whole)
     result = Result("sweep")
     stable = [c for c in changes if not c["before"] or not c["after"]]
+    locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
     result.results = {
         "vary": options.vary,
         "unit": _unit(model, options.vary),
@@ -100,13 +101,14 @@ def run(context: Context, options: Sweep) -> Result:
         "changes": [
             {
                 "value": c["value"],
-                "from": numbers.get(c["before"], 0),
-                "to": numbers.get(c["after"], 0),
+                "from": "locked" if c["before"] == LOCKED else numbers.get(c["before"], 0),
+                "to": "locked" if c["after"] == LOCKED else numbers.get(c["after"], 0),
                 "collapse_acceleration_g": c["gamma"],
             }
             for c in changes
         ],
         "stable_limits": [c["value"] for c in stable],
+        "locked_limits": locks,
         "optimum_value": best,
         "optimum_collapse_acceleration_g": best_gamma,
         "optimum_tilt_angle_deg": float(np.degrees(np.arctan(best_gamma))),
@@ -224,13 +226,18 @@ def _examples(outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[st
 def _words(options: Sweep, results: dict[str, Any], numbers: dict[Signature, int]) -> str:
     best = f"{results['optimum_value']:.4g}"
     where = "an optimum at" if results["optimum_inside"] else "greatest at the end of the range,"
+    if results["locked_limits"]:
+        where = "greatest where it is nearly locked, at"
     text = (
         f"{options.vary} from {results['values'][0]:.4g} to {results['values'][-1]:.4g}: {where} {best} with "
         f"{results['optimum_collapse_acceleration_g']:.4f} g ({results['optimum_tilt_angle_deg']:.2f} degrees). "
         f"{len(numbers)} mechanism{'s' if len(numbers) != 1 else ''}"
     )
     moves = [f"{c['from']} to {c['to']} at {c['value']:.4g}" for c in results["changes"] if c["from"] and c["to"]]
+    locked = ", ".join(f"{v:.4g}" for v in results["locked_limits"])
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
+    if locked:
+        text += f" At {locked} it locks: past that no load of this kind brings it down."
     if results["stable_limits"]:
         text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in results['stable_limits'])}."
     elif results["gaps"]:

@@ -24,6 +24,9 @@ __all__ = ["geometry_arrays", "run", "state_arrays"]
 
 MOST_NAMED = 12  # hinges and sliding joints told in words
 
+#: Above this the joints of masonry slide
+USUAL_FRICTION = 0.7
+
 
 def degrees(gamma: float) -> float:
     """Tilt of the ground at which gravity has a sideways part of gamma (thesis Eq. 3.1)."""
@@ -77,6 +80,12 @@ def run(context: Context, options: Tilt) -> Result:
     if options.fracture:
         _fracture(assembly, options, answer, result)
     result.answer = _words(assembly, answer, hinges, result)
+    needed = result.results["required_friction"]
+    if options.friction is None and needed > USUAL_FRICTION:
+        result.warnings.append(
+            f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): it slides "
+            "before; give friction"
+        )
     if getattr(context.deck.structure, "preset", None):
         result.warnings.append(
             f'the sizes of preset "{context.deck.structure.preset}" are inferred or guessed, not taken from a survey'
@@ -160,10 +169,10 @@ def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Resul
     else:
         where = _some([f"joint {h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges])
     slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
+    moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
     text = (
         f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
-        f"tilted by {degrees(gamma):.2f} degrees. Pushed to +x it hinges at the {where or 'none of its joints'}"
-        f"{'; sliding or parting: ' + slides if slides else ''}. "
+        f"tilted by {degrees(gamma):.2f} degrees. Pushed to +x {' and '.join(moves)}. "
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
         text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "

@@ -13,12 +13,14 @@ from extrados.decks.limit import Joints
 from extrados.decks.table import Structure
 from extrados.limit.answer import CannotStand, why_not
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
-from extrados.limit.solver import NoAnswer
+from extrados.limit.solver import Immovable, NoAnswer
 from extrados.structures.assembly import Assembly
 from extrados.structures.builder import BadGeometry
 from extrados.structures.from_deck import make_structure
 
 Signature = tuple[tuple[str, str], ...]
+#: Stands for a structure that no load of the kind brings down
+LOCKED: Signature = (("all", "locked"),)
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class Outcome:
     assembly: Assembly | None = None
     mechanism: Mechanism | None = None
     notes: list[str] = field(default_factory=list)
+    locked: bool = False  # no load of the kind brings it down: it stands, but has no capacity to give
 
 
 def signature(assembly: Assembly, mechanism: Mechanism) -> Signature:
@@ -53,6 +56,8 @@ def signature(assembly: Assembly, mechanism: Mechanism) -> Signature:
 
 def spoken(found: Signature) -> str:
     """A signature in words."""
+    if found == LOCKED:
+        return "none: it cannot be brought down"
     words = {"i": "intrados", "e": "extrados", "s": "slide"}
     return "; ".join(f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
 
@@ -95,6 +100,8 @@ def evaluate(
         state, mechanism = limit.collapse(1)
         if state.gamma <= 0.0:
             raise NoEquilibrium
+    except Immovable as error:
+        return Outcome(signature=LOCKED, reason=f"cannot be brought down: {error}", assembly=assembly, locked=True)
     except NoEquilibrium:
         return Outcome(reason=_reason(limit) if explain else "cannot stand", assembly=assembly)
     except NoAnswer as error:

@@ -76,7 +76,7 @@ class VelocityPulse(Motion):
 class Treated(Motion):
     """What may be done to records, in this order: time_scale, filter, baseline, resampling, scaling, scale."""
 
-    time_step: Time | None = key(None, "sampling step where the file has none", gt=0)
+    time_step: Time | None = key(None, "sampling step where the file has none", ge=1e-4, le=10)
     unit: Literal["g", "m/s^2", "cm/s^2", "mm/s^2", "gal", "mg", "in/s^2"] | None = key(
         None, "unit where the file has none"
     )
@@ -159,6 +159,8 @@ class Suite(Treated):
 
     @model_validator(mode="after")
     def _one_source(self) -> "Suite":
+        if any("*" in name or "?" in name for name in self.files or []):
+            raise ValueError('files takes names; for wildcards use pattern = "records/*.AT2"')
         if sum(v is not None for v in (self.files, self.pattern, self.folder, self.records)) != 1:
             raise ValueError("give one of files, pattern, folder and records")
         return self

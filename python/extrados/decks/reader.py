@@ -2,6 +2,7 @@
 
 import difflib
 import hashlib
+import re
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -202,7 +203,13 @@ class _Checker:
             about = known[place[-1]].description if place and place[-1] in known else ""
             self.complain(at[:-1], f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
         elif sort == "value_error":
-            self.complain(at, str(problem.get("ctx", {}).get("error", problem["msg"])))
+            text = str(problem.get("ctx", {}).get("error", problem["msg"]))
+            if not place:  # a rule over several keys: shown at the first one that it names
+                given = problem.get("input") if isinstance(problem.get("input"), dict) else {}
+                found = ((re.search(rf"\b{re.escape(key)}\b", text), key) for key in given)
+                named = min(((match.start(), key) for match, key in found if match), default=None)
+                at = (*path, named[1]) if named else at
+            self.complain(at, text)
         else:
             unit = _unit(model, place)
             texts = dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems)

@@ -84,7 +84,7 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
         rest[a:b] -= coefficient[k] * wave[a - start : b - start]
     pulse = velocity - rest
     pgv_ratio = float(np.abs(rest).max()) / pgv
-    energy_ratio = float(rest @ rest) / float(velocity @ velocity)
+    energy_ratio = float((rest / pgv) @ (rest / pgv)) / float((velocity / pgv) @ (velocity / pgv))
     indicator = float(1.0 / (1.0 + np.exp(-23.3 + 14.6 * pgv_ratio + 20.5 * energy_ratio)))
     early = _time_of(pulse, 0.10) < _time_of(velocity, 0.20)
     return PulseClass(

@@ -285,8 +285,13 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         if "fractured" in run.arrays[name]:
             cracked = np.degrees(np.arctan(run.array(name, "fractured")))
             ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
+        crowded = 0.04 * (value[-1] - value[0])
+        shown = -np.inf
         for change in r["changes"]:
             ax.axvline(change["value"], color=style.EDGE, linestyle=":", linewidth=0.7)
+            if change["value"] - shown < crowded:
+                continue
+            shown = change["value"]
             ax.annotate(
                 f"{change['from'] or 'falls'}|{change['to'] or 'falls'}", (change["value"], 1.0), xycoords=("data", "axes fraction"),
                 ha="center", va="bottom", fontsize=7,

@@ -26,6 +26,10 @@ class Polygon:
     density: float | None = None
 
 
+#: No structure reaches farther [m]
+FARTHEST = 1e5
+
+
 def make_blocks(
     polygons: list[Polygon],
     ground: np.ndarray | None,
@@ -73,14 +77,14 @@ def make_blocks(
 
 def _outline(polygon: Polygon, tolerance: float) -> np.ndarray:
     points = np.asarray(polygon.points, dtype=float)
+    if not (np.abs(points) <= FARTHEST).all():  # NaN too
+        raise BadGeometry(f"block '{polygon.name}': a vertex lies farther than {FARTHEST:g} m from the origin")
     if len(points) > 1 and np.allclose(points[0], points[-1], atol=tolerance, rtol=0.0):
         points = points[:-1]
     apart = np.hypot(*(following(points) - points).T) > tolerance if len(points) else np.array([], bool)
     points = points[apart]
     if not 3 <= len(points) <= MOST_POINTS:
         raise BadGeometry(f"block '{polygon.name}': {len(points)} distinct vertices, expected 3 to {MOST_POINTS}")
-    if not np.isfinite(points).all():
-        raise BadGeometry(f"block '{polygon.name}': a vertex is not a finite number")
     if crosses_itself(points):
         raise BadGeometry(f"block '{polygon.name}': its outline crosses itself")
     area = signed_area(points)
