@@ -116,10 +116,17 @@ contains
       type(run_record), intent(inout) :: record
       integer(c_int), intent(out) :: status
       integer, parameter :: batch = 8
-      real(wp) :: kinetic, before
+      real(wp), parameter :: fallen = 0.2_wp   ! of the size of a block: no settlement of what stands goes so far
+      type(run_options) :: quiet
+      real(wp) :: kinetic, before, step
       integer :: n
 
       status = status_ok
+      ! A tiny step or collapse limit of the run must not keep from rest what stands.
+      quiet = options
+      if (options%collapse > 0.0_wp) quiet%collapse = max(options%collapse, fallen * it%set%size)
+      step = it%step
+      it%step = max(step, options%fraction * record%critical)
       it%shaking = .false.
       before = 0.0_wp
       n = 0
@@ -142,13 +149,14 @@ contains
          else
             before = kinetic
          end if
-         call limits(it, options, record)
+         call limits(it, quiet, record)
          if (record%reason /= stop_end) exit
          if (cancel_requested()) then
             status = status_cancelled
             return
          end if
       end do
+      it%step = min(it%step, step)   ! the step may have been cut as contacts formed
       record%settling = n
       if (n >= options%settle_steps .or. record%reason /= stop_end) then
          record%reason = stop_unsettled

@@ -73,7 +73,13 @@ def test_refusals_name_what_is_wrong() -> None:
     assert "needs an arch" in reason({"kind": "column", "width": 1.0, "height": 2.0, "drums": 2}, merge="three-bars")
 
 
-@pytest.mark.parametrize("wrong", [{"friction": -0.1}, {"joint_stiffness": -1.0}, {"fraction": 1.5}, {"beta": -1e-3}])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"friction": -0.1}, {"joint_stiffness": -1.0}, {"fraction": 1.5}, {"beta": -1e-3}, {"tilt_accuracy": 1e-20},
+        {"output_step": 1e-12},
+    ],
+)  # fmt: skip
 def test_deck_complains(wrong: dict) -> None:
     with pytest.raises(DeckError) as error:
         make_deck({"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "dem"} | wrong]})
@@ -124,11 +130,126 @@ def test_failure_curve_resumes(tmp_path: Path) -> None:
     sweep.fails([(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)], lambda n: None)
     again = dem_domain.Sweep(Context(deck, out=tmp_path / "run", resume=True), options, model, [model.values])
     assert again.answers == sweep.answers and len(again.answers) == 2
+    assert (again.steps, again.residual) == (sweep.steps, sweep.residual) and sweep.steps > 0 < sweep.residual
     again.fails([(0, 0.6 * 9.80665, 0.2)], lambda n: pytest.fail("was computed again"))
     fresh = dem_domain.Sweep(Context(deck, out=tmp_path / "run"), options, model, [model.values])
     assert not fresh.answers
     (found,) = run_analyses(Context(deck, threads=2, out=tmp_path / "run"))
     assert found.status == "ok" and 0.2 < found["shortest_durations_s"][0] <= 0.8
+
+
+def interrupt_from(monkeypatch: pytest.MonkeyPatch, first: int, **change) -> list[int]:
+    """From run `first` on the core answers as after Ctrl-C (or with `change`); the list grows with each run."""
+    from dataclasses import replace
+
+    from extrados.core import dem
+
+    real, count = dem.run, []
+
+    def run(*args, **keys):
+        count.append(len(count) + 1)
+        found = real(*args, **keys)
+        return found if len(count) < first else replace(found, **(change or {"interrupted": True}))
+
+    monkeypatch.setattr(dem, "run", run)
+    return count
+
+
+SLIDING = {
+    "structure": {"kind": "block", "width": 1.0, "height": 1.0},
+    "motion": {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.5},
+    "analysis": [{"kind": "dem", "end_time": 0.6, "joint_stiffness": 1e9, "find_friction": True}],
+}
+
+
+def test_friction_search_does_not_survive_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interrupted run is no answer: the base run is kept, no threshold is claimed."""
+    (whole,) = answers(SLIDING)
+    assert whole["friction_threshold"] == pytest.approx(0.5, abs=0.06)
+    with monkeypatch.context() as patch:
+        interrupt_from(patch, 4)
+        (found,) = answers(SLIDING)
+    assert found.status == "interrupted" and "friction_threshold" not in found.results
+    assert found["stop_time_s"] == whole["stop_time_s"]
+    with monkeypatch.context() as patch:
+        count = interrupt_from(patch, 1)
+        (found,) = answers(SLIDING)
+    assert found.status == "interrupted" and len(count) == 1
+    with monkeypatch.context() as patch:
+        interrupt_from(patch, 4, reason="blow-up")
+        (found,) = answers(SLIDING)
+    assert found["friction_threshold"] is None
+    assert any("ledger does not close" in w for w in found.warnings)
+
+
+def test_restitution_is_that_of_free_rocking() -> None:
+    """Housner's 1 - 1.5 sin^2 alpha = 0.9118 where a block rocks freely; nothing where it does not rock."""
+    block = {"kind": "block", "width": 1.0, "height": 4.0, "initial_rotation_ratio": 0.4}
+    dem = {"kind": "dem", "end_time": 4.0, "friction": 2.0, "joint_stiffness": 1e12}
+    (free,) = answers({"structure": block, "analysis": [dem]})
+    assert free["restitution_measured"] == pytest.approx(0.9118, abs=0.012)
+    # The rotation is that of the block, not the one since it was let go.
+    assert free["rotation"][0, 0] == pytest.approx(0.4 * np.arctan(0.25), rel=1e-6)
+    motion = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 0.5}
+    (still,) = answers({"structure": block | {"initial_rotation_ratio": 0.0}, "motion": motion, "analysis": [dem]})
+    assert still["outcome"] == "no-hinging" and still["restitution_measured"] is None
+
+
+def test_answers_of_sliding_and_of_standing() -> None:
+    block = {"kind": "block", "width": 1.0, "height": 0.5}
+    dem = {"kind": "dem", "end_time": 0.8, "friction": 0.2, "joint_stiffness": 1e9}
+    motion = {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.2}
+    (slid,) = answers({"structure": block, "motion": motion, "analysis": [dem]})
+    # (a - mu g) t^2 / 2 under the step, then v^2 / 2 / (mu g + a / 2) as the ground brakes with a / 2.
+    fast, mu_g, a = 0.3 * 9.80665 * 0.2, 0.2 * 9.80665, 0.5 * 9.80665
+    exact = 0.5 * fast * 0.2 + 0.5 * fast**2 / (mu_g + 0.5 * a)
+    assert slid["peak_slip_m"] == pytest.approx(exact, rel=0.01)
+    assert slid.answer.startswith(f"It slides by {slid['peak_slip_m']:.3g} m; no joint opens"), slid.answer
+    (still,) = answers({"structure": block, "analysis": [dem]})
+    assert any("nothing moves it" in w for w in still.warnings)
+    assert "mrad" not in still.answer and not still["still_moving"]
+
+
+@pytest.mark.parametrize("keys", [{"time_step": 1e-8, "end_time": 1e-4}, {"collapse_displacement": 1e-12}])
+def test_settling_is_not_the_run(keys: dict) -> None:
+    """What stands comes to rest under its weight, whatever step and limit the run is given."""
+    dem = {"kind": "dem", "end_time": 0.2, "joint_stiffness": 1e9}
+    motion = {"kind": "sine-pulse", "amplitude": "0.1 g", "period": 0.5}
+    column = {"kind": "column", "width": 1.0, "height": 2.0, "drums": 2}
+    (found,) = answers({"structure": column, "motion": motion, "analysis": [dem | keys]})
+    assert found.status == "ok", found.reason
+
+
+TILT = {
+    "kind": "dem",
+    "test": "tilt",
+    "friction": 2.0,
+    "joint_stiffness": 1e10,
+    "tilt_limit": "1 g",
+    "tilt_accuracy": 4e-3,
+}
+
+
+def test_tilt_in_both_senses() -> None:
+    """A block whose weight lies nearer to its right toe falls sooner to +x than to -x, as limit analysis says."""
+    outline = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.6, 2.0]]
+    leaning = {"kind": "blocks", "block": [{"name": "block", "points": outline}]}
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.5}
+    deck = {"structure": leaning, "motion": motion, "analysis": [{"kind": "tilt"}, TILT | {"vary_friction": [0.5]}]}
+    exact, found = answers(deck)
+    for key in ("collapse_acceleration_g", "collapse_acceleration_opposite_g"):
+        assert found[key] == pytest.approx(exact[key], abs=6e-3), key
+    assert found["collapse_acceleration_g"] < 0.8 * found["collapse_acceleration_opposite_g"]
+    assert found["outcome"] == "collapse" and found["peak_rotation_rad"]["block"] > 0.0
+    assert "+x" in found.answer and "-x" in found.answer
+    assert any("vary_friction" in w and "[motion]" in w for w in found.warnings)
+
+
+def test_tilt_stops_at_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An interrupted run does not count as one that stands."""
+    count = interrupt_from(monkeypatch, 3)
+    (found,) = answers({"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "analysis": [TILT]})
+    assert found.status == "interrupted" and len(count) == 3
 
 
 def test_vtk_collection(tmp_path: Path) -> None:

@@ -10,6 +10,7 @@ from extrados.analyses.dem_model import JointValues, Model
 from extrados.analyses.limit_common import geometry_arrays
 from extrados.analyses.run import Context, Refused
 from extrados.core import dem
+from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground
 from extrados.decks.dem import Dem
 from extrados.results.model import Array, Result, TableData
@@ -18,6 +19,8 @@ from extrados.structures.block import Block
 GRAVITY = dem.GRAVITY
 #: A joint is open where it gapes by more than this fraction of its length.
 OPEN = 5e-4
+#: A joint slides where it slips by more than this fraction of the shortest one.
+SLIDES = 0.01
 #: Blocks whose rotation is reported where none are named.
 MOST_TRACKED = 24
 
@@ -102,12 +105,23 @@ class Trial:
         self.moves = _moves(model, options)
         self.shift = _start(context, model)
 
+    @property
+    def idle(self) -> bool:
+        """Does nothing move it?"""
+        return self.ground is None and not self.moves and self.shift is None
+
+    def any_run(self, values: JointValues | None = None, **change: object) -> dem.Run:
+        """One run however it ends; `change` replaces options of the core."""
+        bodies = self.model.bodies(values)
+        found = dem.run(bodies, replace(self.options, **change), self.ground, shift=self.shift, moves=self.moves)
+        if self.shift is None:
+            return found
+        # A block that starts rotated does not settle: its place of rest is the one it was drawn in.
+        return replace(found, settled=np.column_stack([bodies.centroid, np.zeros(len(bodies.mass))]))
+
     def run(self, values: JointValues | None = None, **change: object) -> dem.Run:
-        """One run; `change` replaces options of the core."""
-        found = dem.run(
-            self.model.bodies(values), replace(self.options, **change), self.ground, shift=self.shift, moves=self.moves
-        )
-        return dem_model.checked(found, self.model)
+        """One run; Refused where it is not to be trusted."""
+        return dem_model.checked(self.any_run(values, **change), self.model)
 
 
 def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -179,21 +193,35 @@ def _collapse_time(run: dem.Run, far: np.ndarray, limit: float) -> float | None:
     return run.stop_time if run.reason in ("collapse", "left") else None
 
 
-def _moving(run: dem.Run) -> bool:
-    """Is there motion worth the name at the end?"""
+def _moving(run: dem.Run, model: Model) -> bool:
+    """Is there motion worth the name at the end: beside the most there was, and beside the weight times the size?"""
     kinetic = run.energy["kinetic"]
-    return bool(len(kinetic) and kinetic[-1] > 1e-3 * kinetic.max())
+    noise = 1e-6 * float(model.rigid.mass.sum()) * GRAVITY * model.size
+    return bool(len(kinetic) and kinetic[-1] > max(1e-3 * kinetic.max(), noise))
 
 
-def restitution(run: dem.Run) -> float | None:
-    """Median ratio of the rates after and before the impacts of a single block; None without a clear impact."""
+def restitution(run: dem.Run, state: np.ndarray, ground: np.ndarray) -> float | None:
+    """Median ratio of the rates after and before the impacts of a single block that rocks freely.
+
+    state: of the joints (time, joint); ground: its acceleration (time) [m/s^2]. An impact counts where the block
+    stood on one end of a joint before and on the other after, so that noise about rest and a changing
+    lean do not, and where the ground is still meanwhile: it would change the rates as well. None without one.
+    """
     angle, rate = run.place[:, 0, 2], run.rate[:, 0, 2]
     cross = np.flatnonzero(angle[:-1] * angle[1:] < 0.0)
-    cross = cross[(cross > 3) & (cross < len(rate) - 6)]
-    strong = cross[np.abs(rate[cross - 1]) > 0.2 * np.abs(rate).max(initial=0.0)]
-    if not len(strong):
-        return None
-    return float(np.median(np.abs(rate[strong + 4] / rate[strong - 2])))
+    limits = [0, *(cross + 1).tolist(), len(angle)]
+    ratios = []
+    for k, c in enumerate(cross):
+        if not 3 < c < len(rate) - 6 or (ground[c - 2 : c + 5] != 0.0).any():
+            continue
+        before = limits[k] + np.abs(angle[limits[k] : limits[k + 1]]).argmax()
+        after = limits[k + 1] + np.abs(angle[limits[k + 1] : limits[k + 2]]).argmax()
+        if (state[before] * state[after] == -1).any() and rate[c - 2] * rate[c + 4] > 0.0:
+            fast = np.abs(rate[c - 3 : c + 1]).max()  # gravity speeds it up until the impact
+            ratios.append((fast, abs(rate[c + 4]) / fast))
+    fastest = max((r for r, _ in ratios), default=0.0)
+    strong = [ratio for r, ratio in ratios if r > 0.2 * fastest]
+    return float(np.median(strong)) if strong else None
 
 
 def _tracked(model: Model, options: Dem, run: dem.Run) -> list[int]:
@@ -216,6 +244,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
     found = trial.run(output_step=min(options.output_step, 0.002)) if single else trial.run()
     gap_p, gap_q, slip = openings(model, found)
     state = hinges(model, gap_p, gap_q, slip)
+    ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
     body = model.rigid.body_of_block
     tracked = _tracked(model, options, found)
     rotation = -(found.place[:, body, 2] - found.settled[body, 2])
@@ -233,7 +262,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         "stopped": found.reason,
         "stopped_by": [model.rigid.names[k] for k in found.blamed],
         "stop_time_s": found.stop_time,
-        "still_moving": found.reason == "end" and _moving(found),
+        "still_moving": found.reason == "end" and _moving(found, model),
         "peak_rotation_rad": {names[i]: float(rotation[peak[i], i]) for i in tracked},
         "peak_displacement_m": farthest,
         "peak_slip_m": sliding,
@@ -241,7 +270,7 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
         "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
         "energy_residual_ratio": found.residual,
-        "restitution_measured": restitution(found) if single else None,
+        "restitution_measured": restitution(found, state, ground) if single else None,
         "restitution_housner": 1.0 - 1.5 * float(np.sin(model.assembly.alpha[0]) ** 2)
         if isinstance(model.assembly, Block)
         else None,
@@ -292,13 +321,11 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
             for name, values in found.energy.items()
             if name != "leapfrog"
         },
-        "ground": Array(
-            context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time)), ("time",), "m/s^2"
-        ),
+        "ground": Array(ground, ("time",), "m/s^2"),
         "snapshot_time": Array(_snapshot_times(options, found), ("snapshot",), "s"),
         **_support_arrays(model),
     }
-    if sliding > 0.01 * float(model.assembly.length.min()):
+    if sliding > SLIDES * float(model.assembly.length.min()):
         result.warnings.append(f"joints slide by up to {1e3 * sliding:.3g} mm")
     if found.residual > 0.01:
         result.warnings.append(
@@ -306,12 +333,29 @@ def _motion(context: Context, options: Dem, model: Model) -> Result:
         )
     if result.results["still_moving"]:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
-    _vary(context, options, trial, result)
-    if options.find_friction:
-        result.results["friction_threshold"] = friction_threshold(trial, model, options.slip)
+    if trial.idle:
+        result.warnings.append(
+            "nothing moves it: add [motion], [[analysis.support_movements]] or, for a block, initial_rotation_ratio"
+        )
+    if not found.interrupted:
+        _further(context, options, trial, result)
     result.files |= dem_files.files(model, found, options)
-    result.answer = _answer(context, result.results, model)
+    result.answer = _answer(result.results, model, trial.idle)
     return result
+
+
+def _further(context: Context, options: Dem, trial: Trial, result: Result) -> None:
+    """Variations and the search for the friction; what stops them leaves the run itself as it is."""
+    try:
+        _vary(context, options, trial, result)
+        if options.find_friction:
+            result.results["friction_threshold"] = friction_threshold(trial, trial.model, options.slip)
+    except (Cancelled, KeyboardInterrupt):
+        result.status = "interrupted"
+        result.reason = "interrupted in the variations or the friction search; the run before them is complete"
+    except Refused as error:
+        result.results["friction_threshold"] = None
+        result.warnings.append(f"the least friction was not found: {error}")
 
 
 def _block_places(model: Model, place: np.ndarray) -> np.ndarray:
@@ -388,7 +432,7 @@ def _vary(context: Context, options: Dem, trial: Trial, result: Result) -> None:
 
     def task(v: JointValues):
         # An unstable variation is a finding, not the end of the others.
-        return lambda: dem.run(trial.model.bodies(v), trial.options, trial.ground, shift=trial.shift, moves=trial.moves)
+        return lambda: trial.any_run(v)
 
     runs = dem_model.many(
         [task(v) for _, _, v in cases], context.threads, lambda k: context.progress(k, total, "sensitivity")
@@ -424,15 +468,18 @@ def _vary(context: Context, options: Dem, trial: Trial, result: Result) -> None:
 
 
 def friction_threshold(trial: Trial, model: Model, slip: float, accuracy: float = 0.005) -> float | None:
-    """Least coefficient of friction at which no joint slides by more than `slip` [m] (thesis 7.2.2); None above 2."""
+    """Least coefficient of friction at which no joint slides by more than `slip` [m] (thesis 7.2.2); None above 2.
+
+    Raises Cancelled after Ctrl-C, and Refused where a run of the search is not to be trusted.
+    """
 
     def slides(friction: float) -> bool:
-        run = dem.run(
-            model.bodies(model.values.scaled(friction=friction)), trial.options, trial.ground, shift=trial.shift,
-            moves=trial.moves,
-        )  # fmt: skip
+        run = trial.any_run(model.values.scaled(friction=friction))
+        if run.interrupted:
+            raise Cancelled(status_code("cancelled"), "friction search interrupted")
         if run.reason == "unsettled":
             return True
+        dem_model.checked(run, model)
         gap_p, gap_q, moved = openings(model, run)
         return peak_slip(hinges(model, gap_p, gap_q, moved), moved) > slip
 
@@ -445,53 +492,93 @@ def friction_threshold(trial: Trial, model: Model, slip: float, accuracy: float 
     return high
 
 
+#: Keys of the deck that a tilt test does not look at.
+NOT_IN_TILT = (
+    "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "vtk", "support_movements",
+    "vary_damping", "vary_stiffness", "vary_friction", "find_friction", "slip",
+)  # fmt: skip
+
+
 def _tilt(context: Context, options: Dem, model: Model) -> Result:
-    """The constant acceleration that brings the structure down: brought in slowly, held, bisected."""
+    """The constant acceleration that brings the structure down: brought in slowly, held, bisected, in both senses."""
+    unused = [key for key in NOT_IN_TILT if key in options.model_fields_set]
+    if context.deck.motion:
+        unused.append("the [motion]")
+    if unused:
+        context.warnings.append(f"plays no part in a tilt test: {', '.join(unused)}")
     ramp, hold = 2.0, dem_model.settle_time(model)
     base = replace(
         core_options(context, options, model), end_time=ramp + hold, stop_at_rest=False, output_step=0.05,
         collapse=options.collapse_displacement or 0.05 * model.size,
     )  # fmt: skip
+    wanted = options.tilt_accuracy * GRAVITY
+    total, done = 2.0 * float(np.log2(options.tilt_limit / wanted)), 0
 
-    def falls(a: float) -> dem.Run:
+    def falls(a: float) -> dem.Run | None:
+        """The run where the acceleration of the ground to -x [m/s^2] brings it down, else None."""
         ground = Ground(
             breaks=np.array([0.0, ramp, ramp + hold + 1.0]),
             linear=np.array([[[0.0, -a / ramp]], [[-a, 0.0]]]), harmonic=np.zeros((2, 1, 0, 4)),
         )  # fmt: skip
-        return dem_model.checked(dem.run(model.bodies(), base, ground), model)
+        found = dem_model.checked(dem.run(model.bodies(), base, ground), model)
+        if found.interrupted:
+            raise Cancelled(status_code("cancelled"), "tilt test interrupted")
+        return found if found.reason in ("collapse", "left") else None
 
-    low, high = 0.0, options.tilt_limit
-    last = falls(high)
-    if last.reason not in ("collapse", "left"):
-        raise Refused(f"stands at {high / GRAVITY:g} g: raise tilt_limit")
-    total = float(np.log2((high - low) / (options.tilt_accuracy * GRAVITY)))
-    done = 0
-    while high - low > options.tilt_accuracy * GRAVITY:
-        middle = 0.5 * (low + high)
-        found = falls(middle)
-        if found.reason in ("collapse", "left"):
-            high, last = middle, found
-        else:
-            low = middle
-        done += 1
-        context.progress(done, total, "tilt test")
-    collapse = 0.5 * (low + high) / GRAVITY
-    gap_p, gap_q, slip = openings(model, last)
-    state = hinges(model, gap_p, gap_q, slip)
-    begun = np.searchsorted(displacements(model, last).max(axis=1), 0.005 * model.size)
-    at = min(int(begun), len(last.time) - 1)
-    found_hinges = [
-        {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] < 0 else "extrados"}
-        for j in np.flatnonzero(np.abs(state[at]) == 1)
-    ]
+    def capacity(sense: float) -> tuple[float, dem.Run]:
+        """Acceleration [g] and the last run that fell, pushed to +x (sense 1) or -x (-1)."""
+        nonlocal done
+        low, high = 0.0, options.tilt_limit
+        last = falls(sense * high)
+        if last is None:
+            raise Refused(f"stands at {high / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit")
+        while high - low > wanted:
+            middle = 0.5 * (low + high)
+            if middle in (low, high):  # as fine as numbers are
+                break
+            found = falls(sense * middle)
+            if found is None:
+                low = middle
+            else:
+                high, last = middle, found
+            done += 1
+            context.progress(min(done, total), total, "tilt test")
+        return 0.5 * (low + high) / GRAVITY, last
+
+    def hinged(run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, list[dict]]:
+        """States and slips of the joints, the output where it begins to go, and the hinges there."""
+        gap_p, gap_q, slip = openings(model, run)
+        state = hinges(model, gap_p, gap_q, slip)
+        begun = np.searchsorted(displacements(model, run).max(axis=1), 0.005 * model.size)
+        at = min(int(begun), len(run.time) - 1)
+        rows = [
+            {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] < 0 else "extrados"}
+            for j in np.flatnonzero(np.abs(state[at]) == 1)
+        ]  # fmt: skip
+        return state, slip, at, rows
+
+    collapse, last = capacity(1.0)
+    back, back_run = capacity(-1.0)
+    state, slip, at, found_hinges = hinged(last)
+    body = model.rigid.body_of_block
+    rotation = -(last.place[:, body, 2] - last.settled[body, 2])
+    peak = np.abs(rotation).argmax(axis=0)
     result = Result("dem")
     result.results = {
         "test": "tilt",
+        "outcome": "collapse",
         "collapse_acceleration_g": collapse,
+        "collapse_acceleration_opposite_g": back,
         "tilt_angle_deg": float(np.degrees(np.arctan(collapse))),
+        "tilt_angle_opposite_deg": float(np.degrees(np.arctan(back))),
+        "load_direction": "+x",
         "hinges": found_hinges,
+        "hinges_opposite": hinged(back_run)[3],
+        "peak_rotation_rad": {
+            model.assembly.block_names[i]: float(rotation[peak[i], i]) for i in _tracked(model, options, last)
+        },
         "peak_slip_m": float(np.nanmax(np.abs(slip[at]), initial=0.0)),
-        "energy_residual_ratio": last.residual,
+        "energy_residual_ratio": max(last.residual, back_run.residual),
         "time_step_s": last.step,
         "steps": last.steps,
         "beta_s": model.values.beta,
@@ -506,14 +593,18 @@ def _tilt(context: Context, options: Dem, model: Model) -> Result:
         **_support_arrays(model),
     }
     where = ", ".join(f"{h['name']} ({h['side']})" for h in found_hinges[:6]) or "none"
+    least, sense = min((collapse, "+x"), (back, "-x"))
     result.answer = (
-        f"A constant horizontal acceleration of {collapse:.4f} g (a tilt of {result.results['tilt_angle_deg']:.2f} deg) brings it "
-        f"down; hinges as it goes: {where}."
+        f"A constant horizontal acceleration brings it down at {collapse:.4f} g pushed to +x (a tilt of "
+        f"{result.results['tilt_angle_deg']:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
+        f"Hinges as it goes to +x: {where}."
     )
     return result
 
 
-def _answer(context: Context, r: dict, model: Model) -> str:
+def _answer(r: dict, model: Model, idle: bool) -> str:
+    if idle and r["outcome"] == "no-hinging":
+        return "It stands under its own weight; nothing moves it."
     turn = max(r["peak_rotation_rad"].items(), key=lambda item: abs(item[1]), default=("", 0.0))
     audit = f"energy ledger closed to {100 * r['energy_residual_ratio']:.2g} %"
     damping = (
@@ -523,6 +614,8 @@ def _answer(context: Context, r: dict, model: Model) -> str:
     if r["outcome"] == "collapse":
         who = f" ({r['stopped_by'][0]} is the first to go)" if r["stopped_by"] else ""
         first = f"It collapses{who} at {r['collapse_time_s']:.2f} s"
+    elif r["outcome"] == "no-hinging" and r["peak_slip_m"] > SLIDES * float(model.assembly.length.min()):
+        first = f"It slides by {r['peak_slip_m']:.3g} m; no joint opens"
     elif r["outcome"] == "no-hinging":
         first = "No joint opens"
     else:

@@ -40,14 +40,16 @@ class Sweep:
         self.limit = options.collapse_displacement or 0.2 * model.size
         self.answers: dict[str, bool] = {}
         self.batches = 0
+        self.residual = 0.0
+        self.steps = 0
         # The deck guards the checkpoint; two sweeps of one deck are told apart by what they ask.
         self.name = "dem-domain-" + fingerprint(options.model_dump())[:16]
         if context.checkpoint is not None:
             for first, kept in context.checkpoint.load(self.name):
                 self.answers |= dict(zip(kept["pulse"].tolist(), kept["fails"].tolist(), strict=True))
+                self.residual = max(self.residual, float(kept["residual"]))
+                self.steps += int(kept["steps"])
                 self.batches = max(self.batches, first + 1)
-        self.residual = 0.0
-        self.steps = 0
 
     def fails(self, asked: list[tuple[int, float, float]], tick: Callable[[int], None]) -> list[bool]:
         """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down."""
@@ -64,7 +66,12 @@ class Sweep:
                 self.steps += run.steps
             if self.context.checkpoint is not None:
                 done = [key for key, _ in part]
-                arrays = {"pulse": np.array(done), "fails": np.array([self.answers[key] for key in done])}
+                arrays = {
+                    "pulse": np.array(done),
+                    "fails": np.array([self.answers[key] for key in done]),
+                    "residual": np.array(max(run.residual for run in runs)),
+                    "steps": np.array(sum(run.steps for run in runs)),
+                }
                 self.context.checkpoint.keep(self.name, self.batches, arrays)
                 self.batches += 1
             tick(len(part))
@@ -165,7 +172,11 @@ def _shortest(
                 low[r] = duration
         open_rows = [r for r, failed in zip(open_rows, fails, strict=True) if not failed]
     while True:
-        wide = [r for r in range(len(rows)) if np.isfinite(high[r]) and high[r] - low[r] > accuracy]
+        wide = [
+            r for r in range(len(rows))
+            # as fine as numbers are where the middle is one of the ends
+            if np.isfinite(high[r]) and high[r] - low[r] > accuracy and low[r] < 0.5 * (low[r] + high[r]) < high[r]
+        ]  # fmt: skip
         if not wide:
             return high.reshape(curves, len(amplitudes))
         fails = sweep.fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide], tick)

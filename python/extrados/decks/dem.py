@@ -80,7 +80,7 @@ class Dem(Joints):
         "motion", "follow the motion, or find the constant acceleration that brings it down"
     )
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
-    output_step: Time = key(0.01, "spacing of the history", gt=0)
+    output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
     time_step: Time | None = key(None, "instead of the fraction of the critical step", gt=0)
     base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
     collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
@@ -94,11 +94,13 @@ class Dem(Joints):
     support_movements: list[SupportMovement] = key([], "[[analysis.support_movements]]", max_length=100)
     vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
     vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)
-    vary_friction: list[Positive] = key([], "also run with these coefficients of friction", max_length=50)
-    find_friction: bool = key(False, "also find the least friction at which no joint slides")
+    vary_friction: list[Positive] = key(
+        [], "also run with these coefficients of friction at all joints, those of joint_types too", max_length=50
+    )
+    find_friction: bool = key(False, "also find the least friction, the same at all joints, at which no joint slides")
     slip: Length = key(1e-4, "slip that counts as sliding in that search", gt=0)
     tilt_limit: Acceleration = key(2.0 * STANDARD_GRAVITY, "cap of the tilt test", gt=0)
-    tilt_accuracy: float = key(1e-3, "accuracy of the tilt test, in g", gt=0, le=0.1)
+    tilt_accuracy: float = key(1e-3, "accuracy of the tilt test, in g", ge=1e-6, le=0.1)
 
 
 class DemDomain(Joints):
@@ -110,12 +112,14 @@ class DemDomain(Joints):
         about="amplitudes at which the shortest failing duration is sought", min_length=1, max_length=200
     )
     durations: list[Time] = key(about="durations that are tried first, ascending", min_length=2, max_length=500)
-    accuracy: Time = key(0.005, "of the failing durations", gt=0)
+    accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
     settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
     collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
     vary_damping: list[Positive] = key([], "further curves with beta times these factors", max_length=20)
     vary_stiffness: list[Positive] = key([], "further curves with joint stiffnesses times these factors", max_length=20)
-    vary_friction: list[Positive] = key([], "further curves with these coefficients of friction", max_length=20)
+    vary_friction: list[Positive] = key(
+        [], "further curves with these coefficients of friction at all joints, those of joint_types too", max_length=20
+    )
 
     @model_validator(mode="after")
     def _ascending(self) -> "DemDomain":
