@@ -6,7 +6,8 @@ module api_sla
    implicit none
    private
    public :: teeth, band, intervals, body_force
-   public :: create, add_plane, add_bars, add_springs, prepare, factorise, loads, run, displacement, measure, report, damage
+   public :: create, add_plane, add_bars, add_springs, prepare, factorise, loads, run, displacement
+   public :: measure, report, damage
    public :: free
 
 contains
