@@ -1,7 +1,10 @@
 """A whole run: deck, analyses, results folder, figures and report."""
 
 import contextlib
+import signal
 import subprocess
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -38,6 +41,23 @@ def default_out(deck: Deck) -> Path:
     return Path("results") / (Path(deck.path).stem or "deck")
 
 
+@contextlib.contextmanager
+def _after_writing() -> Iterator[None]:
+    """Ctrl-C while results are written waits until they are: a long run is not lost in its last moment."""
+    asked: list[int] = []
+    before = {}
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGINT, signal.SIGTERM):
+            before[number] = signal.signal(number, lambda number, _: asked.append(number))
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    if asked:
+        raise KeyboardInterrupt
+
+
 def run_deck(context: Context, out: Path | None = None, figures: bool = True) -> tuple[Path, list[Result]]:
     """Run a deck and write its folder (default results/<deck name>); the folder and the results."""
     deck = context.deck
@@ -47,7 +67,7 @@ def run_deck(context: Context, out: Path | None = None, figures: bool = True) ->
     if context.resume:
         checkpoint.refuse_other_deck(out, deck.identity)
     results = run_analyses(context)
-    with store.new_folder(out) as folder:
+    with _after_writing(), store.new_folder(out) as folder:
         head = {
             "extrados": provenance(),
             "deck": {
