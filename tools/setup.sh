@@ -57,14 +57,21 @@ python=$(command -v python3)
   exit 1
 }
 
+# Warnings are errors with the compiler the project is checked with. A newer one may warn of more, and that must
+# not keep a user from building.
+case "$(gfortran -dumpversion)" in
+  12*) strict=true ;;
+  *) strict=false ;;
+esac
+
 # The stamp holds what the environment was made from: a change of it makes the environment anew.
 stamp=".venv/made-from"
 want="$("$python" -V) $(cat pyproject.toml meson.build meson.options tools/setup.sh | cksum)"
 if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$want" ]; then
   echo "making .venv and building (about two minutes) ..."
-  [ -x .venv/bin/python ] || "$python" -m venv .venv
+  .venv/bin/python -m pip --version >/dev/null 2>&1 || "$python" -m venv --clear .venv
   .venv/bin/python -m pip install -q --disable-pip-version-check "meson-python>=0.18" "meson>=1.4" ninja "numpy>=2.0"
   PATH="$PWD/.venv/bin:$PATH" .venv/bin/python -m pip install -q --disable-pip-version-check \
-    --no-build-isolation -e ".[dev]"
+    --no-build-isolation -e ".[dev]" -Csetup-args=-Dwerror=$strict
   echo "$want" > "$stamp"
 fi
