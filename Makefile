@@ -33,7 +33,7 @@ docs: setup  ## the deck reference, from the deck models
 	@.venv/bin/extrados explain --manual > docs/decks.md
 
 table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3)
-	@$(PYTHON) -m extrados.analyses.criterion
+	@$(PYTHON) -m extrados.analyses.rocking.criterion
 
 wheel: setup
 	@$(PYTHON) -m pip wheel --no-deps --no-build-isolation -w dist .

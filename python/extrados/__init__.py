@@ -25,7 +25,7 @@ def run(
     """
     import tempfile
 
-    from extrados.analyses.run import Context, default_threads
+    from extrados.analyses.context import Context, default_threads
     from extrados.decks.reader import make_deck, read_deck
     from extrados.results.store import read
     from extrados.session import run_deck

@@ -87,7 +87,7 @@ def run(
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
 ) -> None:
     """Run decks: print the answer, write results, figures and report."""
-    from extrados.analyses.run import Context, default_threads
+    from extrados.analyses.context import Context, default_threads
     from extrados.decks.reader import DeckError, read_deck
     from extrados.session import default_out, run_deck
 
@@ -156,7 +156,7 @@ def motion(
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
 ) -> None:
     """What a ground motion is, on one page, without a deck."""
-    from extrados.analyses.run import Context, default_threads
+    from extrados.analyses.context import Context, default_threads
     from extrados.decks.reader import make_deck
     from extrados.session import run_deck
 

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from extrados._build_info import BUILD_TYPE, C_COMPILER, COMPILER, VERSION
-from extrados.analyses.run import Context, run_analyses
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.decks.reader import Deck
 from extrados.results import checkpoint, store
 from extrados.results.model import Result

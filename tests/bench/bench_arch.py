@@ -6,13 +6,13 @@ import time
 import numpy as np
 from tests.bench.timing import seconds
 
-from extrados.analyses.arch_model import ArchModel
-from extrados.analyses.failure_domain import Mapper, failure_curves, settling_time
+from extrados.building.rockers.arch import ArchModel
+from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time
+from extrados.building.templates.arch import make_arch
 from extrados.core import rocking
 from extrados.limit.programme import LimitAnalysis
 from extrados.motions.motion import GRAVITY
 from extrados.motions.records import locate, read_record, record_motion
-from extrados.structures.arch import make_arch
 
 
 def four_bar(model: ArchModel):

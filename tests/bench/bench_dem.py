@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 from tests.bench import dem_peers
 
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.rigid import rigid_bodies
+from extrados.building.templates.arch import make_arch
+from extrados.building.templates.masonry import make_column, make_wall
 from extrados.core import dem
 from extrados.core.ground import Ground
-from extrados.structures.arch import make_arch
-from extrados.structures.assembly import Assembly
-from extrados.structures.masonry import make_column, make_wall
-from extrados.structures.rigid import rigid_bodies
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "unit"))
 from dem_models import G, cosine, housner, pieces

@@ -8,15 +8,16 @@ from scipy import sparse
 from scipy.optimize import linprog
 from tests.bench.timing import seconds
 
-from extrados.analyses.run import Context, run_analyses
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.templates.arch import make_arch
+from extrados.building.templates.blocks import Polygon, make_blocks
+from extrados.building.templates.vault import Aisle, make_church
 from extrados.decks.reader import make_deck
 from extrados.limit.answer import assess
 from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis
-from extrados.structures.arch import make_arch
-from extrados.structures.assembly import GROUND, Assembly
-from extrados.structures.blocks import Polygon, make_blocks
-from extrados.structures.vault import Aisle, make_church
 
 
 def church() -> Assembly:

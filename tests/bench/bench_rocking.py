@@ -15,10 +15,10 @@ from scipy.integrate import solve_ivp
 from tests.bench.rocking_peers import GRAVITY, rk4_many
 from tests.verification.rocking_oracle import reference
 
-from extrados.analyses.block_model import BlockModel
+from extrados.building.rockers.block import BlockModel
+from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.core.rocking import Ground
-from extrados.structures.block import make_block
 
 STEP, END, THREADS = 0.005, 10.0, 2
 
@@ -132,8 +132,8 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
 
 def many() -> None:
     """Cost and memory over the number of runs, as fragility streams them (generated motions, 10 s at 10 ms)."""
-    from extrados.analyses.fragility import EnsembleJob
     from extrados.analyses.motion_source import GeneratedSource
+    from extrados.analyses.statistics.fragility import EnsembleJob
     from extrados.motions.generated import generated
 
     m = BlockModel(make_block(0.1, 0.4))

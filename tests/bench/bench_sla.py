@@ -12,9 +12,9 @@ import time
 
 import numpy as np
 
+from extrados.building.mesh.panel import make_panel
+from extrados.building.templates.wall_tables import Panel
 from extrados.core.sla import Freedoms, Model, Monitor, Plane, Softening, body_force
-from extrados.decks.walls import Panel
-from extrados.structures.panel import make_panel
 
 #: elements a side -> events by update, by refactorisation
 SIZES = {52: (400, 40), 106: (200, 20), 212: (60, 8), 336: (30, 4)}

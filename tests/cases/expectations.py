@@ -96,7 +96,7 @@ def changed(data: dict[str, Any], change: tuple[tuple[str, Any], ...]) -> dict[s
         place: Any = data
         *way, last = dotted.split(".")
         for part in way:
-            place = place[int(part)] if isinstance(place, list) else place[part]
+            place = place[int(part)] if isinstance(place, list) else place.setdefault(part, {})
         place[last] = value
     return data
 
@@ -114,7 +114,7 @@ def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dic
     """Run the deck with the change, as a user would through Python; analysis name -> results."""
     import tempfile
 
-    from extrados.analyses.run import Context
+    from extrados.analyses.context import Context
     from extrados.decks.reader import make_deck
     from extrados.results.store import read
     from extrados.session import run_deck

@@ -15,7 +15,7 @@ import pytest
 
 from extrados.analyses import batches
 from extrados.analyses.batches import sweep
-from extrados.analyses.run import Context
+from extrados.analyses.context import Context
 from extrados.core import calls
 from extrados.decks.reader import make_deck
 from extrados.results.checkpoint import Checkpoint, fingerprint, folder_of
@@ -287,7 +287,7 @@ def test_cluster_scheduler_dies(cluster, tmp_path: Path) -> None:
 
 def test_no_scheduler_answers() -> None:
     pytest.importorskip("distributed")
-    from extrados.analyses.run import Refused
+    from extrados.analyses.context import Refused
 
     c = context()
     c.scheduler = "tcp://127.0.0.1:9"

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from extrados.analyses.block_model import BlockModel
-from extrados.analyses.block_rocking import pose, toe_forces
+from extrados.analyses.rocking.block import pose, toe_forces
+from extrados.building.rockers.block import BlockModel
+from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.core.rocking import Ground
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions import pulses
-from extrados.structures.block import make_block
 
 G = 9.80665
 

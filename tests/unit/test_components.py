@@ -6,7 +6,8 @@ import motion_files as files
 import numpy as np
 import pytest
 
-from extrados.analyses.run import Context, run_analyses
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.core import motion as core_motion
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck

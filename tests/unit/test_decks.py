@@ -6,8 +6,8 @@ from hypothesis import strategies as st
 
 from extrados.decks import explain
 from extrados.decks.positions import key_lines
-from extrados.decks.quantities import parse
 from extrados.decks.reader import DeckError, make_deck, read_deck, read_text
+from extrados.schema.quantities import parse
 
 GOOD = """title = "t"
 [structure]

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extrados.analyses.run import Context, run_analyses
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
@@ -87,10 +88,10 @@ def test_deck_complains(wrong: dict) -> None:
 
 
 def test_overlapping_blocks_are_refused_by_name(tmp_path: Path) -> None:
-    from extrados.analyses import dem_model
+    from extrados.analyses.dem.dem import model as dem_model
+    from extrados.analyses.dem.tables import Dem
+    from extrados.building.templates.masonry import make_column
     from extrados.core import dem
-    from extrados.decks.dem import Dem
-    from extrados.structures.masonry import make_column
 
     column = make_column(1.0, [1.0, 1.0])
     column.outlines[1][:2, 1] -= 0.2  # the upper drum reaches into the lower one
@@ -110,7 +111,8 @@ def test_overlapping_blocks_are_refused_by_name(tmp_path: Path) -> None:
 
 def test_failure_curve_resumes(tmp_path: Path) -> None:
     """An interrupted sweep goes on from what it has: the answers kept are not computed again."""
-    from extrados.analyses import dem_domain, dem_model
+    from extrados.analyses.dem.dem import dem_domain
+    from extrados.analyses.dem.dem import model as dem_model
 
     deck = make_deck(
         {

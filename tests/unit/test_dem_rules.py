@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from extrados.analyses import impact_rules as rules
-from extrados.structures.arch import make_arch
-from extrados.structures.convex import convex_parts, is_convex
-from extrados.structures.masonry import make_column, make_wall
-from extrados.structures.polygons import signed_area as area
-from extrados.structures.rigid import BadShape, rigid_bodies
+from extrados.analyses.dem.dem import impact_rules as rules
+from extrados.building.geometry.convex import convex_parts, is_convex
+from extrados.building.geometry.polygons import signed_area as area
+from extrados.building.geometry.rigid import BadShape, rigid_bodies
+from extrados.building.templates.arch import make_arch
+from extrados.building.templates.masonry import make_column, make_wall
 
 
 def block(width: float, height: float, density: float, stiffness: float) -> rules.Impact:

@@ -6,15 +6,21 @@ import numpy as np
 import pytest
 
 import extrados
-from extrados.analyses.block_model import BlockModel
-from extrados.analyses.code_rules import asce43, ishiyama, piers
-from extrados.analyses.resonance import cap_for_collapse_within, half_cycles_to_collapse, least_cap, optimal_motion
-from extrados.analyses.rocking_model import RockingModel
-from extrados.analyses.run import Context, run_analyses
+from extrados.analyses.codes.code_rules import asce43, ishiyama, piers
+from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.rocker import RockingModel
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
+from extrados.analyses.statistics.resonance import (
+    cap_for_collapse_within,
+    half_cycles_to_collapse,
+    least_cap,
+    optimal_motion,
+)
+from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions import pulses
-from extrados.structures.block import make_block
 
 G = 9.80665
 BLOCK = {"kind": "block", "width": 0.1, "height": 0.4}
@@ -80,8 +86,8 @@ def test_uncertain_values_are_sampled_evenly() -> None:
     plain = run({"kind": "fragility", "count": 256, "seed": 5})
     assert np.array_equal(result.arrays["peak_ratio"].data, again.arrays["peak_ratio"].data)
     assert not np.array_equal(result.arrays["peak_ratio"].data, plain.arrays["peak_ratio"].data)
-    from extrados.analyses.fragility import sampled_models
-    from extrados.analyses.rocking_model import rocking_model
+    from extrados.building.rockers.rocker import rocking_model
+    from extrados.analyses.statistics.fragility import sampled_models
 
     context = Context(
         make_deck(
@@ -189,7 +195,7 @@ def test_rocking_spectrum_of_one_block_is_its_response() -> None:
 
 def test_rocking_spectrum_of_arches() -> None:
     """The arch of the deck itself is one point of its own spectrum."""
-    from extrados.analyses.rocking_model import rocking_model
+    from extrados.building.rockers.rocker import rocking_model
 
     arch = {
         "kind": "arch",

@@ -6,14 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.builder import Builder
+from extrados.building.templates.arch import make_arch
+from extrados.building.templates.arches import make_elliptical_arch, make_pointed_arch
 from extrados.limit.answer import CannotStand, assess
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.motion import finite_motion, rigid_parts
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
-from extrados.structures.arch import make_arch
-from extrados.structures.arches import make_elliptical_arch, make_pointed_arch
-from extrados.structures.assembly import GROUND, Assembly
-from extrados.structures.builder import Builder
 
 GRAVITY = 9.80665
 

@@ -7,15 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from extrados.building.geometry.assembly import GROUND
+from extrados.building.geometry.builder import BadGeometry
+from extrados.building.geometry.contacts import Overlap, find_contacts
+from extrados.building.geometry.drawing import read_dxf
+from extrados.building.geometry.polygons import below, crosses_itself, crossings, cut, inside, properties, signed_area
+from extrados.building.templates.arch import make_arch
+from extrados.building.templates.blocks import Polygon, make_blocks, read_json
 from extrados.limit.interior import collapse_load
 from extrados.limit.programme import Immovable, LimitAnalysis
-from extrados.structures.arch import make_arch
-from extrados.structures.assembly import GROUND
-from extrados.structures.blocks import Polygon, make_blocks, read_json
-from extrados.structures.builder import BadGeometry
-from extrados.structures.contacts import Overlap, find_contacts
-from extrados.structures.drawing import read_dxf
-from extrados.structures.polygons import below, crosses_itself, crossings, cut, inside, properties, signed_area
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 

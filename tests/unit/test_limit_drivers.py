@@ -7,7 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from extrados.analyses.run import Context, run_analyses
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.model import Result
 

@@ -5,7 +5,7 @@ import signal
 
 import pytest
 
-from extrados.analyses.run import Context
+from extrados.analyses.context import Context
 from extrados.decks.reader import make_deck
 from extrados.results import store
 from extrados.session import run_deck

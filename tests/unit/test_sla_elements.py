@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from extrados.building.mesh.mesh import add_middles
 from extrados.core.sla import (
     BadElement,
     Bars,
@@ -17,7 +18,6 @@ from extrados.core.sla import (
     Stop,
     body_force,
 )  # fmt: skip
-from extrados.structures.wall import add_middles
 
 YOUNG, NU = 7.3e9, 0.23
 LINES = {"T3": 1, "Q4": 1, "T6": 2, "Q8": 2}

@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extrados.analyses.run import Context, Refused, run_analyses
-from extrados.analyses.sla_curve import bilinear, envelope
-from extrados.analyses.sla_model import build
-from extrados.analyses.sla_run import damage_before, run_curves
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.run import run_analyses
+from extrados.analyses.sla.curve import bilinear, envelope
+from extrados.analyses.sla.events import damage_before, run_curves
+from extrados.analyses.sla.model import build
 from extrados.core.errors import CoreError
 from extrados.core.sla import Behaviour, Model, Monitor, Stop
 from extrados.decks.reader import DeckError, make_deck
@@ -41,7 +42,7 @@ def wall(size: float = 0.15, **analysis) -> dict:
 def curves(data: dict, threads: int = 1):
     deck = make_deck(data)
     context = Context(deck)
-    model = build(context.structure, deck.analyses[0])
+    model = build(context.building.blocks(), deck.analyses[0])
     return model, run_curves(model, deck.analyses[0], threads, lambda *_: None)
 
 
@@ -285,7 +286,7 @@ def test_displacement_with_a_part_held_back() -> None:
 @pytest.mark.parametrize("element", ["T3", "Q4", "T6", "Q8"])
 def test_loads_between_mesh_lines(element) -> None:
     """A pressure and a line load over a part of the top that no mesh line bounds: their force and its moment."""
-    from extrados.analyses.sla_model import nodal_forces
+    from extrados.analyses.sla.model import nodal_forces
 
     place = {"edge": "top", "x": [0.37, 1.21]}
     data = wall(0.3, constant=[{"kind": "pressure", "value": 5e4, **place}, {"kind": "line", "px": 700.0, **place}])

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from test_sla_events import run_deck, wall
 
-from extrados.analyses.run import Context, run_analyses
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.store import read
 from extrados.session import run_deck as run_to_folder
@@ -111,7 +112,7 @@ def test_repetitions_give_a_band() -> None:
 
 
 def test_strength_field_has_its_mean_and_scatter() -> None:
-    from extrados.analyses.sla_model import strength_factors
+    from extrados.analyses.sla.model import strength_factors
 
     deck = make_deck(wall(0.05, strength_variation=0.3))
     factors = strength_factors(Context(deck).structure, deck.analyses[0], 11)

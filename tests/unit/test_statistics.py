@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize
 from scipy.stats import binomtest, norm
 
-from extrados.analyses.statistics import NoFit, bootstrap, fit_lognormal, wilson
+from extrados.analyses.statistics.summaries import NoFit, bootstrap, fit_lognormal, wilson
 
 
 @pytest.mark.parametrize(("hits", "count"), [(0, 10), (1, 10), (5, 10), (10, 10), (450, 1000), (999, 1000)])

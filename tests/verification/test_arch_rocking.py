@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from arch_oracle import Oracle
 
-from extrados.analyses.arch_model import ArchModel, minimum_thickness
-from extrados.analyses.run import Refused
+from extrados.building.rockers.arch import ArchModel, minimum_thickness
+from extrados.analyses.context import Refused
+from extrados.building.templates.arch import make_arch
 from extrados.core import rocking
 from extrados.motions import pulses
 from extrados.motions.motion import GRAVITY
 from extrados.motions.records import locate, read_record, record_motion
-from extrados.structures.arch import make_arch
 
 
 @pytest.fixture(scope="module")
@@ -181,7 +181,7 @@ def test_minimum_thickness(n, value) -> None:
 
 def test_ring_sector_against_a_fine_polygon() -> None:
     """Area, centroid and inertia of a voussoir against its polygon of many sides."""
-    from extrados.structures.arch import ring_sector
+    from extrados.building.templates.arch import ring_sector
 
     inner, outer, angle = 1.3, 1.9, 0.37
     area, centre, polar = ring_sector(inner, outer, angle)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from extrados.analyses import criterion
-from extrados.analyses.arch_model import ArchModel
+from extrados.building.rockers.arch import ArchModel
+from extrados.analyses.rocking.rocking import criterion
+from extrados.building.templates.arch import make_arch
 from extrados.motions.impulse import primary_impulses
-from extrados.structures.arch import make_arch
 
 #: Table 5.3, cells whose impact rule is not in question (c_v below 0.9)
 PRINTED = {

@@ -12,7 +12,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from extrados.analyses.run import Context, Refused
+from extrados.analyses.context import Context, Refused
 from extrados.core.calls import cancel_requested, interruptible
 from extrados.core.errors import Cancelled
 from extrados.results.checkpoint import fingerprint

@@ -7,10 +7,10 @@ from typing import Protocol
 
 import numpy as np
 
-from extrados.analyses.run import Context, Refused
+from extrados.analyses.context import Context, Refused
 from extrados.core import motion as core_motion
 from extrados.core.rocking import Ground
-from extrados.decks import motions as models
+from extrados.motions import tables as models
 from extrados.motions.from_deck import generated_set, make_motion, member_name, suite_members, suite_motion
 from extrados.motions.generated import GeneratedSet
 from extrados.motions.motion import Motion

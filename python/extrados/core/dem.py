@@ -8,8 +8,8 @@ from extrados import _core
 from extrados.core.calls import integers, long_call, real
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, motion_set
+from extrados.schema.constants import GRAVITY
 
-GRAVITY = 9.80665
 #: Why a run ended, by the number the core gives.
 REASONS = ("end", "collapse", "rest", "left", "blow-up", "step", "unsettled", "overlap")
 #: Rows of the energy ledger [J].

@@ -4,23 +4,36 @@ import difflib
 import textwrap
 from typing import Any
 
-from extrados.decks.kinds import SECTIONS
-from extrados.decks.table import Table
+from extrados import kinds
+from extrados.analyses.table import OVERRIDES
+from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.schema.table import Table
+
+#: Tables without kinds that say what the building is besides its geometry
+PLAIN: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
+
+
+def sections() -> dict[str, dict[str, type[Table]]]:
+    """Section -> kind -> table; a section without kinds has one table, under no name."""
+    found = {name: {kind: kinds.table(name, kind) for kind in there} for name, there in kinds.TABLES.items()}
+    return {"structure": found["structure"], **{n: {"": m} for n, m in PLAIN.items()},
+            "motion": found["motion"], "analysis": found["analysis"]}  # fmt: skip
 
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema of a whole deck, for editors."""
     definitions: dict[str, Any] = {}
-    branches: dict[str, list] = {}
-    for section, kinds in SECTIONS.items():
-        branches[section] = []
-        for kind, model in kinds.items():
+    one: dict[str, dict[str, Any]] = {}
+    for section, known in sections().items():
+        refs = []
+        for kind, model in known.items():
             schema = model.model_json_schema(ref_template="#/$defs/{model}")
             definitions.update(schema.pop("$defs", {}))
-            _allow_units(schema)
-            definitions[f"{section}-{kind}"] = schema
-            branches[section].append({"$ref": f"#/$defs/{section}-{kind}"})
-    one = {section: {"oneOf": refs} for section, refs in branches.items()}
+            definitions[f"{section}-{kind}" if kind else section] = schema
+            refs.append({"$ref": f"#/$defs/{section}-{kind}" if kind else f"#/$defs/{section}"})
+        one[section] = {"oneOf": refs} if len(refs) > 1 else refs[0]
+    for schema in definitions.values():
+        _allow_units(schema)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "extrados deck",
@@ -30,8 +43,8 @@ def json_schema() -> dict[str, Any]:
         "properties": {
             "title": {"type": "string"},
             "note": {"type": "string"},
-            "structure": one["structure"],
-            "motion": one["motion"],
+            **one,
+            "materials": {"type": "object", "additionalProperties": one["material"]},
             "analysis": {"anyOf": [one["analysis"], {"type": "array", "items": one["analysis"]}]},
         },
         "$defs": definitions,
@@ -75,6 +88,8 @@ def _keys(
     definitions = schema.get("$defs", {}) if definitions is None else definitions
     found: dict[str, dict[str, Any]] = {}
     for name, about in schema["properties"].items():
+        if depth == 0 and "kind" in schema["properties"] and name in OVERRIDES:
+            continue  # they repeat the keys of the building's own table
         found[name] = {**about, "required": name in schema.get("required", [])}
         places = [about, about.get("items", {}), about.get("additionalProperties", {}), *about.get("anyOf", [])]
         for place in [*places, *(p.get("items", {}) for p in places if isinstance(p, dict))]:
@@ -113,30 +128,30 @@ def _facts(about: dict[str, Any]) -> str:
 def _entry(section: str, kind: str, name: str, about: dict[str, Any]) -> str:
     source = f" [{about['source']}]" if about.get("source") else ""
     facts = _facts(about)
-    return f"{section}.{name} ({kind}): {about.get('description', '')}{source}" + (f"\n    {facts}" if facts else "")
+    of = f" ({kind})" if kind else ""
+    return f"{section}.{name}{of}: {about.get('description', '')}{source}" + (f"\n    {facts}" if facts else "")
 
 
 def explain(word: str) -> str:
     """What a key, a kind or a section means; KeyError with the nearest known word where there is none."""
-    if word in SECTIONS:
-        rows = [f"{kind:16} {_summary(model)}" for kind, model in SECTIONS[word].items()]
+    everything = sections()
+    if word in kinds.TABLES:
+        rows = [f"{kind:16} {_summary(model)}" for kind, model in everything[word].items()]
         return f"[{word}] takes kind =\n  " + "\n  ".join(rows)
     found = []
-    known: set[str] = set(SECTIONS)
-    for section, kinds in SECTIONS.items():
-        for kind, model in kinds.items():
+    known: set[str] = set(everything)
+    for section, there in everything.items():
+        for kind, model in there.items():
             known.add(kind)
-            if word == kind:
-                rows = [
-                    textwrap.indent(_entry(section, kind, name, about), "  ")
-                    for name, about in _keys(model.model_json_schema()).items()
-                    if name != "kind"
-                ]
-                found.append(f'[{section}] kind = "{kind}": {_summary(model)}\n' + "\n".join(rows))
-            for name, about in _keys(model.model_json_schema()).items():
+            keys = {name: about for name, about in _keys(model.model_json_schema()).items() if name != "kind"}
+            if word == (kind or section):
+                rows = [textwrap.indent(_entry(section, kind, name, about), "  ") for name, about in keys.items()]
+                head = f'[{section}] kind = "{kind}"' if kind else f"[{section}]"
+                found.append(f"{head}: {_summary(model)}\n" + "\n".join(rows))
+            for name, about in keys.items():
                 last = name.rsplit(".", 1)[-1]
                 known.update((name, last))
-                if word in (name, last, f"{section}.{name}") and name != "kind":
+                if word in (name, last, f"{section}.{name}"):
                     found.append(_entry(section, kind, name, about))
     if not found:
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
@@ -149,23 +164,28 @@ def _summary(model: type[Table]) -> str:
 
 
 def starter(kind: str) -> str:
-    """A commented deck for an analysis or structure kind; KeyError where there is none."""
-    if kind in SECTIONS["analysis"]:
-        analysis = SECTIONS["analysis"][kind]
-        structures = analysis.structures
-        structure = None if structures == () else (structures[0] if structures else next(iter(SECTIONS["structure"])))
-    elif kind in SECTIONS["structure"]:
-        structure = kind
-        analysis = next(a for a in SECTIONS["analysis"].values() if a.structures is None or kind in a.structures)
-    else:
-        close = difflib.get_close_matches(kind, [*SECTIONS["analysis"], *SECTIONS["structure"]], n=1, cutoff=0.4)
+    """A commented deck for a kind; KeyError where there is none."""
+    section = next((name for name in ("analysis", "structure", "motion") if kind in kinds.TABLES[name]), None)
+    if section is None:
+        known = [kind for there in kinds.TABLES.values() for kind in there]
+        close = difflib.get_close_matches(kind, known, n=1, cutoff=0.4)
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
+    structure = kind if section == "structure" else "arch"
+    asked = kind if section == "analysis" else "motion" if section == "motion" else "tilt"
+    if section == "structure" and "blocks" in kinds.table("structure", kind).lacks:
+        asked = "sla"
+    analysis = kinds.table("analysis", asked)
+    structure = analysis.structures[0] if section == "analysis" and analysis.structures else structure
     lines = [f'title = "A first {kind} deck"', ""]
-    if structure:
-        lines += _section("structure", SECTIONS["structure"][structure], "[structure]")
-    if analysis.needs_motion:
-        lines += _section("motion", SECTIONS["motion"][analysis.starter_motion], "[motion]")
-    lines += _section("analysis", analysis, "[[analysis]]")
+    if analysis.view or analysis.structures:
+        lines += _section(kinds.table("structure", structure), "[structure]", structure)
+        for name in OVERRIDES:
+            if any(use.startswith(f"{name}.") for use in analysis.uses):
+                lines += _section(PLAIN[name], f"[{name}]")
+    if analysis.needs_motion or section == "motion":
+        motion = kind if section == "motion" else analysis.starter_motion
+        lines += _section(kinds.table("motion", motion), "[motion]", motion)
+    lines += _section(analysis, "[[analysis]]", asked)
     return "\n".join(lines)
 
 
@@ -177,12 +197,10 @@ _STARTER = {
 }  # fmt: skip
 
 
-def _section(section: str, model: type[Table], header: str) -> list[str]:
-    from extrados.decks.kinds import kind_of
-
-    lines = [f"# {_summary(model)}", header, f'kind = "{kind_of(model)}"']
+def _section(model: type[Table], header: str, kind: str = "") -> list[str]:
+    lines = [f"# {_summary(model)}", header] + ([f'kind = "{kind}"'] if kind else [])
     for name, about in _properties(model).items():
-        if name == "kind":
+        if name == "kind" or (kind and name in OVERRIDES):
             continue
         facts = _facts(about)
         comment = f"  # {about.get('description', '')}" + (f" ({facts})" if facts else "")
@@ -213,12 +231,11 @@ def manual() -> str:
         "Generated from the deck models (`extrados explain --manual`); do not edit.",
         "",
     ]
-    for section, kinds in SECTIONS.items():
+    for section, there in sections().items():
         lines += [f"## [{section}]", ""]
-        for kind, model in kinds.items():
+        for kind, model in there.items():
             lines += [
-                f'### kind = "{kind}"',
-                "",
+                *([f'### kind = "{kind}"', ""] if kind else []),
                 _summary(model),
                 "",
                 "| key | meaning | type and default |",

@@ -10,13 +10,20 @@ from typing import Any, get_args
 
 from pydantic import ValidationError
 
-from extrados.decks.kinds import SECTIONS
+from extrados import kinds
+from extrados.analyses.table import OVERRIDES, Analysis
+from extrados.building.building import Building
+from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.building.structure import Structure
+from extrados.decks.moved import MOVED, MOVED_KINDS
 from extrados.decks.positions import key_lines, line_of
-from extrados.decks.table import Analysis, Motion, Structure, Table
+from extrados.schema.table import Motion, Table
 
 LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
-TOP_LEVEL = {"title", "note", "structure", "motion", "analysis"}
+#: Tables that say what the building is besides its geometry
+PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
+TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", "motion", "analysis"}
 
 
 class DeckError(Exception):
@@ -29,17 +36,27 @@ class DeckError(Exception):
 
 @dataclass(frozen=True)
 class Deck:
-    """A checked deck. `data` is what stood in it; folder is where its files are looked for."""
+    """A checked deck. `data` is what stood in it; folder is where its files are looked for.
+
+    building: what [structure], [material], [joints], [supports] and [initial] say; buildings: as each analysis sees it,
+    with what it overrides.
+    """
 
     title: str
     note: str
-    structure: Structure | None
+    building: Building
     motion: Motion | None
     analyses: list[Analysis]
+    buildings: list[Building]
     path: str = ""
     folder: Path = field(default_factory=Path.cwd)
     sha256: str = ""
     data: dict[str, Any] = field(default_factory=dict)
+
+    @property
+    def structure(self) -> Structure | None:
+        """The geometry; None in a deck without [structure]."""
+        return self.building.structure
 
     @property
     def identity(self) -> str:
@@ -48,11 +65,14 @@ class Deck:
 
     def resolved(self) -> dict[str, Any]:
         """All keys with their defaults, in SI."""
+        own = {name: getattr(self.building, name).model_dump() for name in PROPERTIES}
         return {
             "title": self.title,
             "structure": self.structure.model_dump() if self.structure else None,
+            **own,
+            "materials": {name: m.model_dump() for name, m in self.building.materials.items()},
             "motion": self.motion.model_dump() if self.motion else None,
-            "analysis": [a.model_dump() for a in self.analyses],
+            "analysis": [a.model_dump(exclude_none=True) for a in self.analyses],
         }
 
 
@@ -136,17 +156,19 @@ class _Checker:
         motion = self.section("motion", data.get("motion"), ("motion",))
         given = data.get("analysis")
         if given is None or given == []:
-            self.complain((), f"no [analysis]: expected one of {_words(SECTIONS['analysis'])}")
+            self.complain((), f"no [analysis]: expected one of {_words(kinds.ANALYSES)}")
             given = []
         tables = given if isinstance(given, list) else [given]
         several = isinstance(given, list)
-        analyses = []
+        building = self.building(structure, data, folder)
+        analyses, buildings = [], []
         for i, table in enumerate(tables):
             path = ("analysis", i) if several else ("analysis",)
             analysis = self.section("analysis", table, path)
             if analysis is not None:
                 self.fits(analysis, data, path)
                 analyses.append(analysis)
+                buildings.append(self.overridden(building, data, table, path))
         if self.complaints:
             found = [text for _, text in sorted(self.complaints, key=lambda c: c[0])]
             if len(found) > MOST_COMPLAINTS:
@@ -156,14 +178,43 @@ class _Checker:
         return Deck(
             data.get("title", ""),
             data.get("note", ""),
-            structure,
+            building,
             motion,
             analyses,
+            buildings,
             self.name,
             folder,
             sha256,
             data,
         )
+
+    def building(self, structure: Structure | None, data: dict[str, Any], folder: Path) -> Building:
+        """The building of the deck; where one of its tables is wrong it is complained of and left out."""
+        own = {name: self.table(model, data.get(name, {}), (name,)) for name, model in PROPERTIES.items()}
+        materials = data.get("materials", {})
+        if not isinstance(materials, dict):
+            self.complain(("materials",), "expected tables [materials.NAME]")
+            materials = {}
+        named = {name: self.table(Material, table, ("materials", name)) for name, table in materials.items()}
+        for part in (*getattr(structure, "regions", ()), *getattr(structure, "bars", ())):
+            if part.material is not None and part.material not in named:
+                known = ", ".join(sorted(named)) or "none"
+                self.complain(("structure",), f"unknown material '{part.material}'; [materials] holds {known}")
+        return Building(
+            structure, materials={n: m for n, m in named.items() if m}, folder=folder,
+            **{name: table for name, table in own.items() if table},
+        )  # fmt: skip
+
+    def overridden(self, building: Building, data: dict[str, Any], table: dict[str, Any], path: tuple) -> Building:
+        """The building as one analysis sees it."""
+        changes = {}
+        for name in OVERRIDES:
+            below, above = data.get(name, {}), table.get(name)
+            if isinstance(above, dict) and isinstance(below, dict):
+                made = self.table(PROPERTIES[name], {**below, **above}, (*path, name))
+                if made is not None:
+                    changes[name] = made
+        return building.having(**changes) if changes else building
 
     def section(self, section: str, table: Any, path: tuple) -> Any:
         if table is None:
@@ -171,15 +222,23 @@ class _Checker:
         if not isinstance(table, dict):
             self.complain(path, f"expected a table [{section}]")
             return None
-        kinds = SECTIONS[section]
+        known = kinds.TABLES[section]
         kind = table.get("kind")
-        if kind not in kinds if isinstance(kind, str) else True:
+        if not isinstance(kind, str) or kind not in known:
             if kind is None:
-                self.complain(path, f"kind is missing: expected one of {_words(kinds)}")
+                self.complain(path, f"kind is missing: expected one of {_words(known)}")
+            elif (section, kind) in MOVED_KINDS:
+                self.complain((*path, "kind"), f"'{kind}' is called '{MOVED_KINDS[section, kind]}' now")
             else:
-                self.complain((*path, "kind"), f"unknown kind {kind!r}{_nearest(str(kind), kinds)}")
+                self.complain((*path, "kind"), f"unknown kind {_shown(kind)}{_nearest(str(kind), known)}")
             return None
-        model = kinds[kind]
+        return self.table(kinds.table(section, kind), table, path)
+
+    def table(self, model: type[Table], table: Any, path: tuple) -> Any:
+        """A checked table; None where it is wrong, which is complained of."""
+        if not isinstance(table, dict):
+            self.complain(path, f"expected a table [{'.'.join(str(p) for p in path if not isinstance(p, int))}]")
+            return None
         try:
             return model.model_validate(table)
         except ValidationError as error:
@@ -196,7 +255,9 @@ class _Checker:
         place = _place(problem)
         at = (*path, *place)
         sort = problem["type"]
-        if sort == "extra_forbidden":
+        if sort == "extra_forbidden" and (path[0], place[-1]) in MOVED and len(place) == 1:
+            self.complain(at, f"stands elsewhere now: {MOVED[path[0], place[-1]]}")
+        elif sort == "extra_forbidden":
             self.complain(at, f"unknown key{_nearest(str(place[-1]), _table_at(model, place[:-1]).model_fields)}")
         elif sort == "missing":
             known = _table_at(model, place[:-1]).model_fields
@@ -216,19 +277,21 @@ class _Checker:
             self.complain(at, f"{_shown(problem.get('input'))}: {', or '.join(texts)}{f' {unit}' if unit else ''}")
 
     def fits(self, analysis: Analysis, data: dict[str, Any], path: tuple) -> None:
+        """Complain where the deck lacks what an analysis looks at."""
+        kind, structure = analysis.kind, data.get("structure")
         wanted = analysis.structures
-        kind = analysis.kind
-        structure = data.get("structure")
-        if wanted != () and structure is None:
+        if structure is None and (analysis.view or wanted):
             self.complain(path, f"{kind} needs a [structure]{'' if wanted is None else ' of kind ' + _words(wanted)}")
-        elif wanted and isinstance(structure, dict) and structure.get("kind") in SECTIONS["structure"] \
-                and structure["kind"] not in wanted:  # fmt: skip
-            self.complain(
-                path,
-                f"{kind} does not take a structure of kind '{structure['kind']}'; expected {_words(wanted)}",
-            )
+        elif isinstance(structure, dict) and isinstance(structure.get("kind"), str):
+            shape = structure["kind"]
+            known = shape in kinds.STRUCTURES
+            lacks = kinds.table("structure", shape).lacks if known else {}
+            if known and wanted is not None and shape not in wanted:
+                self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
+            elif analysis.view in lacks:
+                self.complain(path, f"{kind} cannot look at a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
-            self.complain(path, f"{kind} needs a [motion]: expected one of {_words(SECTIONS['motion'])}")
+            self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")
 
 
 def _place(problem: dict[str, Any]) -> tuple:

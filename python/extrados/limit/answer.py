@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.graphic import force_polygon, funicular, pier_line
 from extrados.limit.loads import Loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoEquilibrium, State
 from extrados.limit.systems import Sparse
-from extrados.structures.assembly import GROUND, Assembly
 
 MOST_LINES = 12
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.loads import Loads
-from extrados.structures.assembly import GROUND, Assembly
 
 
 class Disconnected(ValueError):

@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from extrados.limit.loads import GRAVITY, Loads
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.polygons import below, signed_area
+from extrados.limit.loads import Loads
 from extrados.limit.states import State
-from extrados.structures.assembly import GROUND, Assembly
-from extrados.structures.polygons import below, signed_area
+from extrados.schema.constants import GRAVITY
 
 
 def force_polygon(assembly: Assembly, state: State, joints: list[int]) -> np.ndarray:

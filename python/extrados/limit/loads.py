@@ -5,9 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from extrados.structures.assembly import Assembly
-
-GRAVITY = 9.80665
+from extrados.building.geometry.assembly import Assembly
+from extrados.schema.constants import GRAVITY
 
 
 @dataclass(frozen=True)

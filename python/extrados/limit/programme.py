@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from extrados.building.geometry.assembly import Assembly
 from extrados.limit.equilibrium import spanning_tree
 from extrados.limit.interior import Interior, collapse_load
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.solver import BOUND, Immovable, NoAnswer, NoEquilibrium, Programme, Solution
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
-from extrados.structures.assembly import Assembly
 
 __all__ = ["Immovable", "LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
 

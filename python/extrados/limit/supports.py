@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.limit.loads import GRAVITY
+from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.solver import BOUND
-from extrados.structures.assembly import GROUND, Assembly
+from extrados.schema.constants import GRAVITY
 
 ROOM = 1e-9  # of a joint's length: how far outside the line may lie by rounding
 CLOSE = 1e-9  # of the size of the arch: how closely the fall is found

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-GRAVITY = 9.80665
+from extrados.schema.constants import GRAVITY
+
 Spectrum = Callable[[np.ndarray], np.ndarray]
 
 #: EN 1998-1:2004 Tables 3.2 and 3.3: S, T_B, T_C, T_D

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from extrados.motions.motion import GRAVITY
+from extrados.schema.constants import GRAVITY
 
 
 def at2(name: str, acceleration: np.ndarray, step: float) -> bytes:

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from extrados.core.rocking import Ground
-from extrados.decks import motions as models
-from extrados.decks.table import Motion as Model
 from extrados.motions import code_spectra, pulses, records
+from extrados.motions import tables as models
 from extrados.motions.compatible import CompatibleSet, NotMatched
 from extrados.motions.formats.record import RecordError
 from extrados.motions.generated import GeneratedSet, generated
 from extrados.motions.motion import Motion
+from extrados.schema.table import Motion as Model
 
 Sets = models.Suite | models.Generated | models.Compatible
 

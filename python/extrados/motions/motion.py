@@ -7,7 +7,6 @@ import numpy as np
 
 from extrados.core.rocking import Ground
 
-GRAVITY = 9.80665
 #: An analytic motion is never sampled at more points than this.
 MOST_SAMPLES = 1_000_000
 

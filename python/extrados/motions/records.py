@@ -11,7 +11,8 @@ from extrados.motions import processing
 from extrados.motions.directions import rotated
 from extrados.motions.formats.recognise import read_record as read_record
 from extrados.motions.formats.record import ACCELERATION, QUANTITIES, Record, RecordError
-from extrados.motions.motion import GRAVITY, Motion
+from extrados.motions.motion import Motion
+from extrados.schema.constants import GRAVITY
 
 STRONGEST = 5.0 * GRAVITY
 SHIPPED = {"el-centro-1940": "el-centro-1940.csv"}

@@ -7,8 +7,7 @@ import numpy as np
 
 from extrados.plots import style
 from extrados.results.store import Stored
-
-GRAVITY = 9.80665
+from extrados.schema.constants import GRAVITY
 
 
 def outlines(run: Stored, name: str) -> list[np.ndarray]:

@@ -11,8 +11,8 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from extrados.plots import style
 from extrados.plots.arch import moved, outlines
 from extrados.results.store import Stored
+from extrados.schema.constants import GRAVITY
 
-GRAVITY = 9.80665
 SHOWN = 6
 
 

@@ -6,8 +6,7 @@ import numpy as np
 
 from extrados.plots import style
 from extrados.results.store import Stored
-
-GRAVITY = 9.80665
+from extrados.schema.constants import GRAVITY
 
 
 def draw_motion(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

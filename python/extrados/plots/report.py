@@ -1,7 +1,6 @@
 """Figures and one self-contained HTML report of a stored run."""
 
 import base64
-import importlib
 import shutil
 import tempfile
 from pathlib import Path
@@ -9,31 +8,8 @@ from typing import Any
 
 import jinja2
 
+from extrados import kinds
 from extrados.results.store import REPORT, Stored, StoreError, read, reason
-
-#: Analysis kind -> "module:function" that draws its figures: (run, analysis name, folder) -> [(figure, caption)]
-DRAWERS = {
-    "tilt": "extrados.plots.limit:draw_tilt",
-    "thrust": "extrados.plots.limit:draw_thrust",
-    "sweep": "extrados.plots.limit:draw_sweep",
-    "survey": "extrados.plots.limit:draw_survey",
-    "supports": "extrados.plots.limit:draw_supports",
-    "moving-load": "extrados.plots.limit:draw_moving_load",
-    "rocking": "extrados.plots.arch:draw_rocking",
-    "failure-domain": "extrados.plots.arch:draw_failure_domain",
-    "assessment": "extrados.plots.arch:draw_assessment",
-    "fragility": "extrados.plots.statistics:draw_fragility",
-    "resonance": "extrados.plots.statistics:draw_resonance",
-    "rocking-spectrum": "extrados.plots.statistics:draw_rocking_spectrum",
-    "harmonic-map": "extrados.plots.statistics:draw_harmonic_map",
-    "code-checks": "extrados.plots.statistics:draw_code_checks",
-    "motion": "extrados.plots.motion:draw_motion",
-    "shake-table": "extrados.plots.motion:draw_shake_table",
-    "sla": "extrados.plots.sla:draw_sla",
-    "dem": "extrados.plots.dem:draw_dem",
-    "dem-domain": "extrados.plots.dem:draw_domain",
-    "dem-parameters": "extrados.plots.dem:draw_parameters",
-}
 
 TEMPLATE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title>
@@ -72,11 +48,9 @@ def draw(run: Stored, folder: Path) -> dict[str, list[tuple[str, str]]]:
     try:
         for analysis in run.analyses:
             name = analysis["name"]
-            drawer = DRAWERS.get(analysis["kind"])
-            if not drawer or not run.arrays.get(name):
+            if analysis["kind"] not in kinds.ANALYSES or not run.arrays.get(name):
                 continue
-            module, function = drawer.split(":")
-            drawn[name] = getattr(importlib.import_module(module), function)(run, name, folder)
+            drawn[name] = kinds.load(kinds.ANALYSES[analysis["kind"]].figures)(run, name, folder)
     except OSError as error:
         raise StoreError(f"{run.folder}: figures could not be written: {reason(error)}") from None
     except KeyError as error:

@@ -1,0 +1,125 @@
+"""code-checks: rules of codes for rocking bodies, and for walls as piers, beside the computed rocking."""
+
+import numpy as np
+
+from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, ntc, piers, west
+from extrados.analyses.codes.tables import CodeChecks
+from extrados.analyses.context import Context, Refused
+from extrados.building.templates.block import BlockAssembly
+from extrados.core import motion as core_motion
+from extrados.core import rocking as core_rocking
+from extrados.motions.impulse import primary_impulses
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+
+def run(context: Context, options: CodeChecks) -> Result:
+    """All rules that apply, with the computed rocking of the deck's motion beside them."""
+    structure = context.deck.structure
+    result = Result("code-checks")
+    if structure.kind == "panel":
+        lines = _panel(context, options)
+    else:
+        block = context.building.rocker().model.block
+        lines = _block(context, options, block, result)
+        if options.axial_load is not None:
+            lines += _pier(context, options, block.toe_right + block.toe_left, 2.0 * block.centre_height,
+                           options.thickness or block.depth, float(block.mass[0]) * GRAVITY)  # fmt: skip
+    result.results |= {
+        "checks": {line.rule: {"capacity": line.capacity, "demand": line.demand, "unit": line.unit, "verdict": line.verdict,
+                               "source": line.source, "note": line.note} for line in lines},
+    }  # fmt: skip
+    demand = np.array([np.nan if x.demand is None else x.demand for x in lines])
+    capacity = np.array([x.capacity for x in lines])
+    result.tables["code_checks"] = TableData({
+        "rule": [x.rule for x in lines], "quantity": [x.quantity for x in lines], "capacity": capacity, "demand": demand,
+        "unit": [x.unit for x in lines], "verdict": [x.verdict for x in lines], "source": [x.source for x in lines],
+        "note": [x.note for x in lines],
+    })  # fmt: skip
+    result.arrays = {
+        "capacity": Array(capacity, ("rule",), "", "each in its unit, see code_checks.csv"),
+        "demand": Array(demand, ("rule",)),
+    }
+    said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]
+    words = ["; ".join(said) + "."] if said else []
+    fate = result.results.get("dynamic_outcome")
+    if fate:
+        ratio = result.results["dynamic_peak_rotation_ratio"]
+        spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and stays up",
+                  "no-hinging": "does not rock"}[fate]  # fmt: skip
+        words.append(f"Computed under the motion itself, the block {spoken}.")
+    strengths = [x for x in lines if x.unit == "N"]
+    if strengths:
+        weakest = min(strengths, key=lambda x: x.capacity)
+        words.append(f"As a pier its least strength is {weakest.capacity / 1e3:.4g} kN ({weakest.rule}).")
+    result.answer = " ".join(words) or "Capacities without a demand, see the table."
+    return result
+
+
+def _block(context: Context, options: CodeChecks, block: BlockAssembly, result: Result) -> list[Line]:
+    rocker = context.building.rocker()
+    model = rocker.model
+    context.warnings += model.warnings
+    width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
+    pga = options.peak_acceleration / GRAVITY if options.peak_acceleration else None
+    pgv, pulse, sd, sa = options.peak_velocity, None, None, None
+    if context.deck.motion is not None:
+        motion = context.motion
+        context.warnings += motion.notes
+        time, values = motion.series()
+        step = float(time[1] - time[0])
+        measured = core_motion.measures(values, step)
+        pga = float(measured.pga[0]) / GRAVITY if pga is None else pga
+        pgv = float(measured.pgv[0]) if pgv is None else pgv
+
+        def spectra(period: float, damping: float) -> core_motion.Spectra:
+            return core_motion.response_spectra(values, step, [period], [damping], threads=context.threads)
+
+        def sd(period: float, damping: float) -> float:
+            return float(spectra(period, damping).sd.ravel()[0])
+
+        def sa(period: float, damping: float) -> float:
+            return float(spectra(period, damping).psa.ravel()[0]) / GRAVITY
+
+        found = primary_impulses(time, values, 1)
+        pulse = 2.0 * np.pi / found[0].period if found else None
+        start = rocker.start_rotation
+        dynamic = core_rocking.history(
+            model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
+            start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
+        )  # fmt: skip
+        result.results |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
+    result.results |= {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
+    alpha = float(model.alpha.min())
+    return [
+        west(float(np.tan(alpha)), pga), housner(float(model.frequency[0]), alpha, pga, pulse),
+        *ishiyama(width, height, pga, pgv), *ntc(model, pga, options.behaviour_factor, options.confidence_factor, sd),
+        asce43(width, height, sa),
+    ]  # fmt: skip
+
+
+def _panel(context: Context, options: CodeChecks) -> list[Line]:
+    """The pier rules for a finite-element wall without openings, with its material's compressive strength."""
+    panel = context.deck.structure
+    if options.axial_load is None:
+        raise Refused("a panel is checked as a pier: give axial_load")
+    if panel.width is None or panel.openings:
+        raise Refused(
+            "the pier rules are for a rectangle without openings: check each pier between openings as its own panel"
+        )
+    thickness = options.thickness or panel.thickness
+    weight = context.building.material.density * panel.width * panel.height * thickness * GRAVITY
+    return _pier(context, options, panel.width, panel.height, thickness, weight)
+
+
+def _pier(
+    context: Context, options: CodeChecks, width: float, height: float, thickness: float, weight: float
+) -> list[Line]:
+    strength, joints = context.building.material.compressive_strength, context.building.joints
+    if strength is None:
+        raise Refused("the pier rules need [material] compressive_strength (f_m)")
+    load = options.axial_load + weight
+    if load >= 0.7 * strength * width * thickness:
+        raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)")
+    fixed = options.fixity == "double"
+    return piers(width, height, thickness, load, strength, joints.cohesion, options.sliding_friction, fixed)

@@ -1,0 +1,171 @@
+"""Rules of codes and simple formulas for rocking bodies and wall piers, each with its source.
+
+Clauses marked "verify clause" are quoted from memory of the standards: compare with the text before use.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.building.rockers.block import BlockModel
+from extrados.schema.constants import GRAVITY
+
+
+@dataclass(frozen=True)
+class Line:
+    """One rule: its capacity and demand in `unit`, and where it comes from; verdict "" where there is no demand."""
+
+    rule: str
+    quantity: str
+    capacity: float
+    demand: float | None
+    unit: str
+    source: str
+    note: str = ""
+
+    @property
+    def verdict(self) -> str:
+        if self.demand is None:
+            return ""
+        return "holds" if self.demand <= self.capacity else "fails"
+
+
+def west(tan_alpha: float, pga: float | None) -> Line:
+    """Uplift: a = g tan alpha."""
+    return Line("uplift", "PGA", tan_alpha, pga, "g", "West's formula, quoted by Milne 1882")
+
+
+def housner(p: float, alpha: float, pga: float | None, pulse: float | None) -> Line:
+    """Half sine of circular frequency w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
+    x = float(np.sqrt(1.0 + (pulse / p) ** 2)) if pulse else 1.0
+    note = (
+        "for the primary impulse of the motion taken as a half sine" if pulse else "static limit: no impulse was found"
+    )
+    return Line("Housner half sine", "PGA", x * np.tan(alpha), pga, "g", "Housner 1963, Eq. 15 (verify clause)", note)
+
+
+def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) -> tuple[Line, Line]:
+    """Overturning needs both PGA >= (B/H) g and PGV >= 10 B/sqrt(H) cm/s with B, H in cm."""
+    source = "Ishiyama 1982 (verify clause)"
+    speed = 10.0 * 100.0 * width / np.sqrt(100.0 * height) / 100.0
+    note = "overturns only where both limits are passed"
+    return (
+        Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note),
+        Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note),
+    )
+
+
+def ntc(model: BlockModel, pga: float | None, q: float, fc: float, sd) -> list[Line]:
+    """Linear and nonlinear kinematic checks of a local mechanism: one body, all its mass takes part (e* = 1)."""
+    b = model.block
+    alpha0 = float(np.tan(model.alpha.min()))
+    a0 = alpha0 / fc
+    # d* is the displacement of the centre of mass; it vanishes the multiplier at the rotation alpha.
+    d0 = b.centre_height * alpha0
+    lines = [
+        Line(
+            "NTC linear (ground level)",
+            "a_g S",
+            a0 * q,
+            pga,
+            "g",
+            "NTC 2018 C8.7.1.2.1: a0* >= a_g S/q (verify clause)",
+        ),
+    ]
+    d_u = 0.4 * d0
+    d_s = 0.4 * d_u
+    a_s = a0 * GRAVITY * (1.0 - d_s / d0)
+    t_s = 2.0 * np.pi * float(np.sqrt(d_s / a_s))
+    lines.append(
+        Line("NTC nonlinear", "displacement", d_u, None if sd is None else sd(t_s, 0.05), "m",
+             "Circ. 617/2009 C8A.4.2.2: d_u* = 0.4 d_0* >= S_De(T_s) (verify clause)", f"T_s = {t_s:.3f} s")
+    )  # fmt: skip
+    return lines
+
+
+def asce43(width: float, height: float, sa) -> Line:
+    """Rocking as an equivalent oscillator, capacity at the rotation alpha (Makris and Konstantinidis 2003 object)."""
+    # b/h is that of the half sizes, h the height of the centre of mass; theta is the rotation of the best estimate.
+    ratio, h = width / height, 0.5 * height
+    theta = float(np.arctan(ratio))
+    f1 = np.cos(theta) + ratio * np.sin(theta) - 1.0
+    c3 = 4.0 / 3.0 * (1.0 + ratio**2)
+    c_r = 1.0 - 2.0 * ratio**2 / c3
+    gamma = -2.0 * np.log(c_r)
+    damping = float(gamma / np.sqrt(4.0 * np.pi**2 + gamma**2))
+    frequency = float(np.sqrt(2.0 * f1 * GRAVITY / (c3 * theta**2 * h)) / (2.0 * np.pi))
+    capacity = float(2.0 * f1 / (c3 * theta))
+    demand = None if sa is None else sa(1.0 / frequency, damping)
+    return Line("ASCE 43 rocking", "SA", capacity, demand, "g", "ASCE/SEI 43-05, App. A (verify clause)",
+                f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha")  # fmt: skip
+
+
+def piers(
+    width: float,
+    height: float,
+    thickness: float,
+    load: float,
+    strength: float,
+    cohesion: float,
+    friction: float,
+    double: bool,
+) -> list[Line]:
+    """Lateral strength of a wall pier, `load` [N] in all at its base; lengths [m], stresses [Pa]."""
+    area = width * thickness
+    stress = load / area
+    effective = height / 2.0 if double else height
+    slenderness = effective / width
+    share = max(0.0, 1.0 - stress / (0.85 * strength))
+    factor = 1.0 if double else 0.5
+    fema = 0.9 * factor * load * width / height
+    sliding_fema = area * 0.75 * (0.75 * cohesion + stress) / 1.5
+    crushing = factor * load * width / height * max(0.0, 1.0 - stress / (0.7 * strength))
+    rocking = width * load * share / (2.0 * effective)
+    # Magenes and Calvi 1997: bed-joint sliding of the cracked base, and diagonal cracking of the units left out
+    cracked = (
+        thickness
+        * width
+        * (1.5 * cohesion + friction * stress)
+        / (1.0 + 3.0 * cohesion * slenderness / max(stress, 1e-300))
+    )
+    shear = area * (cohesion + friction * stress) / (1.0 + slenderness)
+    return [
+        Line(
+            "FEMA 356 rocking", "lateral strength", fema, None, "N", "FEMA 356 Eq. 7-4: 0.9 alpha P L/h (verify clause)"
+        ),
+        Line(
+            "FEMA 356 bed-joint sliding",
+            "lateral strength",
+            sliding_fema,
+            None,
+            "N",
+            "FEMA 356 Eqs 7-1, 7-3: v_me = 0.75 (0.75 v_te + P/A)/1.5, v_te = cohesion (verify clause)",
+        ),
+        Line(
+            "FEMA 356 toe crushing",
+            "lateral strength",
+            crushing,
+            None,
+            "N",
+            "FEMA 356 Eq. 7-6: alpha P L/h (1 - f_a/(0.7 f_m)) (verify clause)",
+        ),
+        Line(
+            "Magenes-Calvi rocking",
+            "lateral strength",
+            rocking,
+            None,
+            "N",
+            "Magenes and Calvi 1997, Eq. 1 (verify clause)",
+        ),
+        Line(
+            "Magenes-Calvi shear", "lateral strength", shear, None, "N", "Magenes and Calvi 1997, Eq. 6 (verify clause)"
+        ),
+        Line(
+            "Magenes-Calvi sliding",
+            "lateral strength",
+            cracked,
+            None,
+            "N",
+            "Magenes and Calvi 1997, Eq. 4 (verify clause)",
+        ),
+    ]

@@ -1,0 +1,58 @@
+"""dem-parameters: stiffness, impact frequencies and damping of the joints by the rules of thesis 7.3."""
+
+import numpy as np
+
+from extrados.analyses.context import Context
+from extrados.analyses.dem import impact_rules
+from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.tables import DemParameters
+from extrados.results.model import Array, Result, TableData
+
+
+def run(context: Context, options: DemParameters) -> Result:
+    """What a run with these options would use, and the damping constants of the three rules."""
+    model = dem_model.make_model(context, options)
+    v = model.values
+    result = Result("dem-parameters")
+    constants = {
+        name: impact_rules.damping_constant(float(v.impact.of(name).max())) for name in ("rotation", "corner", "edge")
+    }
+    ratios = v.ratios()
+    result.results = {
+        "joint_stiffness_min_Pa_per_m": float(v.stiffness.min()),
+        "joint_stiffness_max_Pa_per_m": float(v.stiffness.max()),
+        **{f"{name}_frequency_rad_s": float(v.impact.of(name).max()) for name in ("rotation", "corner", "edge")},
+        **{f"critical_beta_{name}_s": constants[name] for name in constants},
+        "beta_s": v.beta,
+        **{f"damping_ratio_{name}": ratios[name] for name in ratios},
+        "convention": context.building.joints.stiffness_rule,
+    }
+    result.warnings = dem_model.warnings(model, options)
+    columns = {
+        "joint": list(model.assembly.joint_names),
+        "stiffness": v.stiffness,
+        "stone_length": v.length,
+        "rotation_frequency": v.impact.rotation,
+        "corner_frequency": v.impact.corner,
+        "edge_frequency": v.impact.edge,
+        **{
+            f"damping_ratio_{name}": impact_rules.damping_ratio(v.beta, v.impact.of(name))
+            for name in ("rotation", "corner", "edge")
+        },
+    }
+    units = {"stiffness": "Pa/m", "stone_length": "m"}
+    units |= {f"{name}_frequency": "rad/s" for name in ("rotation", "corner", "edge")}
+    result.tables["dem_parameters"] = TableData(columns, units)
+    result.arrays = {
+        name: Array(np.asarray(values), ("joint",), units.get(name, ""))
+        for name, values in columns.items()
+        if name != "joint"
+    }
+    result.answer = (
+        f"Joints of {v.stiffness.min():.3g} to {v.stiffness.max():.3g} Pa/m; impact frequencies up to {v.impact.rotation.max():.4g} "
+        f"(rotation), {v.impact.corner.max():.4g} (corner) and {v.impact.edge.max():.4g} rad/s (edge). beta = {v.beta:.4g} s gives "
+        f"{100 * ratios['rotation']:.3g} %, {100 * ratios['corner']:.3g} % and {100 * ratios['edge']:.3g} % of critical damping at the "
+        f"least. Advice: at least 10 % at rotational and 25 % at edge impact; start from 100 % at edge impact "
+        f"(beta = {constants['edge']:.4g} s) and vary it."
+    )
+    return result

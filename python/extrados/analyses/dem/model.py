@@ -1,0 +1,179 @@
+"""A deck's structure as a discrete-element model: bodies, joint types, damping."""
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import impact_rules
+from extrados.analyses.dem.tables import DemTable
+from extrados.building.building import Building
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.rigid import RigidBodies
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.templates.arch import ArchAssembly
+from extrados.core import dem
+from extrados.core.errors import Cancelled, status_code
+from extrados.schema.constants import GRAVITY
+
+
+@dataclass(frozen=True)
+class JointValues:
+    """Properties of all joints of an assembly (joints,), SI, and the damping constant beta [s]."""
+
+    stiffness: np.ndarray
+    shear_stiffness: np.ndarray
+    friction: np.ndarray
+    cohesion: np.ndarray
+    tension: np.ndarray
+    beta: float
+    impact: impact_rules.Impact
+    length: np.ndarray
+
+    def scaled(self, stiffness: float = 1.0, damping: float = 1.0, friction: float | None = None) -> "JointValues":
+        """Other stiffnesses, beta and friction; the impact frequencies follow the stiffness."""
+        root = np.sqrt(stiffness)
+        impact = impact_rules.Impact(self.impact.corner * root, self.impact.edge * root, self.impact.rotation * root)
+        return replace(
+            self, stiffness=self.stiffness * stiffness, shear_stiffness=self.shear_stiffness * stiffness, beta=self.beta * damping, impact=impact,
+            friction=self.friction if friction is None else np.full_like(self.friction, friction),
+        )  # fmt: skip
+
+    def ratios(self) -> dict[str, float]:
+        """Least fraction of critical damping over the joints at each impact frequency."""
+        return {
+            name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min())
+            for name in ("rotation", "corner", "edge")
+        }
+
+
+def joint_values(building: Building) -> JointValues:
+    """Properties of all joints by the rules and exceptions of [joints]; Refused where the deck names an unknown joint."""
+    assembly, joints = building.blocks(), building.joints
+    length = impact_rules.joint_lengths(assembly)
+    rule = impact_rules.joint_stiffness(building.material.young, length, assembly.length, joints.stiffness_rule)
+    given = building.joint_property("normal_stiffness")
+    stiffness = np.where(np.isnan(given), rule, given)
+    if building.supports.stiffness is not None:
+        grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
+        series = 1.0 / (1.0 / stiffness + 1.0 / building.supports.stiffness)
+        stiffness = np.where(grounded, series, stiffness)
+    impact = impact_rules.joint_impact(assembly, stiffness)
+    # The highest frequency of its kind: the smallest block sets the least damping (thesis 7.4.4).
+    beta = joints.beta
+    if beta is None:
+        beta = impact_rules.damping_constant(float(impact.of(joints.damping).max()), joints.damping_ratio)
+    shear = (
+        np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
+    )
+    return JointValues(
+        stiffness,
+        shear,
+        *(building.joint_property(name) for name in ("friction", "cohesion", "tension")),
+        beta,
+        impact,
+        length,
+    )
+
+
+@dataclass(frozen=True)
+class Model:
+    """An assembly with its bodies; laws come from joint values, so that sweeps share the geometry."""
+
+    assembly: Assembly
+    rigid: RigidBodies
+    values: JointValues
+
+    @property
+    def size(self) -> float:
+        """Greatest extent of the structure [m]."""
+        return float(np.ptp(np.concatenate(self.assembly.outlines), axis=0).max())
+
+    def bodies(self, values: JointValues | None = None) -> dem.Bodies:
+        """Bodies and laws for the core; contacts that form later take the median of the joints, without mortar."""
+        v = values or self.values
+
+        def law(k: float, shear: float, friction: float, cohesion: float = 0.0, tension: float = 0.0) -> dem.Law:
+            return dem.Law(float(k), float(shear), float(friction), float(cohesion), float(tension), v.beta)
+
+        laws = [law(np.median(v.stiffness), np.median(v.shear_stiffness), np.median(v.friction))]
+        numbers: dict[dem.Law, int] = {}
+        joints: dict[tuple[int, int], int] = {}
+        for j, pair in enumerate(self.rigid.joints):
+            if pair is None:
+                continue
+            one = law(v.stiffness[j], v.shear_stiffness[j], v.friction[j], v.cohesion[j], v.tension[j])
+            if one not in numbers:
+                numbers[one] = len(laws)
+                laws.append(one)
+            joints[pair] = numbers[one]
+        r = self.rigid
+        return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints)
+
+
+def make_model(context: Context, options: DemTable, floor: float | None = None) -> Model:
+    """The model of a deck; Refused where a block has no area or crosses itself."""
+    building = context.building
+    assembly = building.blocks()
+    groups: tuple[tuple[int, ...], ...] = ()
+    if options.merge == "three-bars":
+        if not isinstance(assembly, ArchAssembly):
+            raise Refused('merge = "three-bars" needs an arch')
+        joint = ArchModel(assembly).four_hinge.joint
+        groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
+    return Model(assembly, building.rigid(groups, floor), joint_values(building))
+
+
+def checked(run: dem.Run, model: Model, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")) -> dem.Run:
+    """The run where it ended in one of the ways of `keep`; Refused says what stopped it and which block."""
+    if run.interrupted or run.reason in keep:
+        return run
+    names = [model.rigid.names[k] for k in run.blamed]
+    first = names[0] if names else "a block"
+    raise Refused(
+        {
+            "step": f"the time step is above the critical one, {run.critical_step:.3g} s",
+            "overlap": f"{' and '.join(names)} overlap at the start",
+            "unsettled": f"the structure does not come to rest under its own weight: {first} moves",
+            "blow-up": f"the energy ledger does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
+            f"{first}; a smaller fraction of the critical step may help",
+        }.get(run.reason, f"stopped: {run.reason} ({first})")
+    )
+
+
+def warnings(model: Model, options: DemTable, values: JointValues | None = None) -> list[str]:
+    """What is doubtful about the damping (thesis 7.2.1, 7.4.2)."""
+    found = []
+    ratio = (values or model.values).ratios()
+    if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
+        found.append(
+            f"under-damped: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} % at edge "
+            f"impact, advised are at least 10 % and 25 %; blocks may bounce and walk"
+        )
+    if options.mass_damping > 0.0:
+        found.append(
+            "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
+        )
+    return found
+
+
+def settle_time(model: Model) -> float:
+    """Long enough for the structure to come to rest or down after a pulse [s]."""
+    return 15.0 * float(np.sqrt(model.size / GRAVITY))
+
+
+def many(tasks: list[Callable[[], dem.Run]], threads: int, tick: Callable[[int], None]) -> list[dem.Run]:
+    """Independent runs on several threads; the answer does not depend on their number."""
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(max(1, threads)) as pool:
+        waiting = [pool.submit(task) for task in tasks]
+        runs = []
+        for one in waiting:
+            runs.append(one.result())
+            tick(len(runs))
+    if any(run.interrupted for run in runs):
+        raise Cancelled(status_code("cancelled"), "discrete elements interrupted")
+    return runs

@@ -1,0 +1,92 @@
+"""Analysis kinds of the discrete elements: dem, dem-domain, dem-parameters."""
+
+import itertools
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from extrados.analyses.table import BuildingAnalysis
+from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import Acceleration, Length, Time
+from extrados.schema.table import key
+
+Positive = Annotated[float, Field(gt=0.0)]
+
+
+class DemTable(BuildingAnalysis):
+    """What all analyses with discrete elements ask."""
+
+    uses: ClassVar = (
+        "material.density", "material.young", "joints.friction", "joints.cohesion", "joints.tension",
+        "joints.normal_stiffness", "joints.damping",
+    )  # fmt: skip
+    mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking", ge=0, le=1e4)
+    merge: Literal["none", "three-bars"] = key(
+        "none", "glue the voussoirs of an arch into the three links of its four-hinge mechanism"
+    )
+    fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
+
+
+class Dem(DemTable):
+    """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
+
+    kind: Literal["dem"]
+    test: Literal["motion", "tilt"] = key(
+        "motion", "follow the motion, or find the constant acceleration that brings it down"
+    )
+    end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
+    output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
+    time_step: Time | None = key(None, "instead of the fraction of the critical step", gt=0)
+    base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
+    collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    floor: Length | None = key(None, "height of a floor that catches what falls")
+    domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
+    stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
+    track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
+    snapshot_times: list[Time] = key([], "draw the structure at these times; default six telling ones", max_length=24)
+    animation: Literal["none", "gif", "mp4"] = key("none", "write an animation")
+    vtk: bool = key(False, "write VTU files and a PVD collection")
+    vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
+    vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)
+    vary_friction: list[Positive] = key(
+        [], "also run with these coefficients of friction at all joints, those of [[joints.types]] too", max_length=50
+    )
+    find_friction: bool = key(False, "also find the least friction, the same at all joints, at which no joint slides")
+    slip: Length = key(1e-4, "slip that counts as sliding in that search", gt=0)
+    tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
+    tilt_accuracy: float = key(1e-3, "accuracy of the tilt test, in g", ge=1e-6, le=0.1)
+
+
+class DemDomain(DemTable):
+    """Which pulses bring the structure down, by discrete elements, beside the four-hinge curves where they exist."""
+
+    kind: Literal["dem-domain"]
+    pulse: Literal["step", "sine"] = key("step", "step pulse of duration t_p, or one sine of period T_p")
+    amplitudes: list[Acceleration] = key(
+        about="amplitudes at which the shortest failing duration is sought", min_length=1, max_length=200
+    )
+    durations: list[Time] = key(about="durations that are tried first, ascending", min_length=2, max_length=500)
+    accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
+    settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
+    collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    vary_damping: list[Positive] = key([], "further curves with beta times these factors", max_length=20)
+    vary_stiffness: list[Positive] = key([], "further curves with joint stiffnesses times these factors", max_length=20)
+    vary_friction: list[Positive] = key(
+        [],
+        "further curves with these coefficients of friction at all joints, those of [[joints.types]] too",
+        max_length=20,
+    )
+
+    @model_validator(mode="after")
+    def _ascending(self) -> "DemDomain":
+        if any(b <= a for a, b in itertools.pairwise(self.durations)) or self.durations[0] <= 0.0:
+            raise ValueError("durations must ascend from above zero")
+        if min(self.amplitudes) <= 0.0:
+            raise ValueError("amplitudes must be above zero")
+        return self
+
+
+class DemParameters(DemTable):
+    """Joint stiffnesses, impact frequencies and damping by the rules of thesis 7.3, without a run."""
+
+    kind: Literal["dem-parameters"]

@@ -1,0 +1,133 @@
+"""survey: many sections from a table, one line of results each."""
+
+import csv
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.tables import Survey
+from extrados.analyses.limit.variation import Outcome, changed, evaluate, spoken
+from extrados.analyses.limit.variation import read_table as read_section
+from extrados.building.errors import BadGeometry
+from extrados.results.model import Array, Result, TableData
+
+LARGEST_FILE = 50_000_000  # bytes
+MOST_ROWS = 200_000
+
+
+def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of a CSV file; Refused with file and line where it is wrong."""
+    try:
+        if path.stat().st_size > LARGEST_FILE:
+            raise Refused(f"{path.name}: larger than {LARGEST_FILE / 1e6:g} MB")
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.reader(file)
+            header = [name.strip() for name in next(reader, [])]
+            rows = []
+            for row in reader:
+                if not any(cell.strip() for cell in row):
+                    continue
+                if len(row) != len(header):
+                    raise Refused(f"{path.name}:{reader.line_num}: {len(row)} cells, the header has {len(header)}")
+                rows.append([cell.strip() for cell in row])
+                if len(rows) > MOST_ROWS:
+                    raise Refused(f"{path.name}: more than {MOST_ROWS} sections")
+    except OSError as error:
+        raise Refused(f"{path.name}: cannot be read: {error.strerror or error}") from None
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise Refused(f"{path.name}: is not a CSV table in UTF-8: {error}") from None
+    if not header or not rows:
+        raise Refused(f"{path.name}: expected a header of [structure] keys and at least one row")
+    if len(set(header)) < len(header):
+        raise Refused(f"{path.name}:1: a column name stands twice")
+    return header, rows
+
+
+def _value(cell: str) -> Any:
+    """A cell as TOML would read it: a whole number, a number, true, false or text (also a quantity with unit)."""
+    if cell in ("true", "false"):
+        return cell == "true"
+    for kind in (int, float):
+        try:
+            return kind(cell)
+        except ValueError:
+            continue
+    return cell
+
+
+def run(context: Context, options: Survey) -> Result:
+    """The deck's structure with the keys of each row in their place; empty cells leave the deck's value."""
+    model = type(context.deck.structure)
+    header, rows = read_table(context.deck.folder / options.file)
+    for name in header:
+        if name != "name" and name.split(".")[0] not in model.model_fields:
+            raise Refused(
+                f"{options.file}:1: [structure] of kind '{context.deck.structure.kind}' has no key '{name}'; "
+                f"it has {', '.join(k for k in model.model_fields if k != 'kind')}, and 'name'"
+            )
+    begin = time.perf_counter()
+    outcomes: list[Outcome] = []
+    names = []
+    for i, row in enumerate(rows):
+        if i % 50 == 0:
+            context.progress(i, len(rows), "survey")
+        data = context.deck.data["structure"]
+        names.append(f"section {i + 1}")
+        for name, cell in zip(header, row, strict=True):
+            if name == "name":
+                names[-1] = cell or names[-1]
+            elif cell:
+                data = changed(data, name, _value(cell))
+        try:
+            building = context.building.having(structure=read_section(model, data))
+        except BadGeometry as error:
+            outcomes.append(Outcome(reason=str(error)))
+            continue
+        outcomes.append(evaluate(building, options, fracture=options.fracture))
+    seconds = time.perf_counter() - begin
+    gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
+    columns: dict[str, Any] = {
+        "name": names,
+        "collapse_acceleration": gamma,
+        "tilt_angle": np.degrees(np.arctan(gamma)),
+        "mechanism": [spoken(o.signature) for o in outcomes],
+    }
+    if options.fracture:
+        columns["fractured_collapse_acceleration"] = [np.nan if o.fractured is None else o.fractured for o in outcomes]
+    for k, name in enumerate(header):
+        if name != "name":
+            columns[name] = [row[k] for row in rows]
+    columns["reason"] = ["; ".join([o.reason] if o.reason else o.notes) for o in outcomes]
+    stand = np.isfinite(gamma)
+    result = Result("survey")
+    result.results = {
+        "sections": len(rows),
+        "standing": int(stand.sum()),
+        "without_answer": [
+            {"row": i + 2, "name": n, "reason": o.reason}
+            for i, (n, o) in enumerate(zip(names, outcomes, strict=True))
+            if o.reason
+        ][:100],
+        "weakest": names[int(np.nanargmin(gamma))] if stand.any() else None,
+        "weakest_collapse_acceleration_g": float(np.nanmin(gamma)) if stand.any() else None,
+        "median_collapse_acceleration_g": float(np.nanmedian(gamma)) if stand.any() else None,
+        "sections_per_second": len(rows) / max(seconds, 1e-9),
+        "duality_gap": max(o.gap for o in outcomes),
+    }
+    result.arrays = {
+        "gamma": Array(gamma, ("section",), "g", "collapse acceleration to +x; NaN without an answer"),
+        "section_name": Array(np.array(names, dtype=object), ("section",), "", "names of the sections"),
+    }
+    units = {"collapse_acceleration": "g", "fractured_collapse_acceleration": "g", "tilt_angle": "deg"}
+    result.tables = {"survey": TableData(columns, units)}
+    text = f"{int(stand.sum())} of {len(rows)} sections stand"
+    if stand.any():
+        text += (
+            f"; the weakest is {result.results['weakest']} with {result.results['weakest_collapse_acceleration_g']:.4f} g, "
+            f"the median {result.results['median_collapse_acceleration_g']:.4f} g"
+        )
+    result.answer = text + f". {len(rows) - int(stand.sum())} rows carry a reason in survey.csv."
+    return result

@@ -1,0 +1,257 @@
+"""sweep: the capacity as one key of the structure varies; changes of mechanism, optimum, stable range."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.common import packed
+from extrados.analyses.limit.tables import Sweep
+from extrados.analyses.limit.variation import (
+    LOCKED,
+    Outcome,
+    Signature,
+    changed,
+    evaluate,
+    measures_of,
+    read_table,
+    spoken,
+)
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
+from extrados.limit.motion import finite_motion
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.table import Table
+
+# Of the range: how closely changes of mechanism and the optimum are found.
+CLOSE = 1e-7
+MOST_CHANGES = 40
+GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
+
+
+@dataclass(frozen=True)
+class Range:
+    """The question of a sweep, put at any value of the key: a key of `table`, whose data stand in the deck."""
+
+    building: Building
+    table: str
+    path: str
+    data: dict[str, Any]
+    options: Sweep
+    whole: bool
+
+    def at(self, value: float, *, fracture: bool = False, explain: bool = False) -> Outcome:
+        data = changed(self.data, self.path, round(value) if self.whole else float(value))
+        try:
+            table = read_table(type(getattr(self.building, self.table)), data)
+        except BadGeometry as error:
+            return Outcome(reason=str(error))
+        return evaluate(self.building.having(**{self.table: table}), self.options, fracture=fracture, explain=explain)
+
+
+def _placed(vary: str) -> tuple[str, str]:
+    """Table and key that `vary` names; a key alone is one of [structure]."""
+    table, _, path = vary.partition(".")
+    return (table, path) if table in ("structure", "material", "joints") and path else ("structure", vary)
+
+
+def _is_whole(model: Table, table: str, path: str) -> bool:
+    """True where the key takes whole numbers; Refused where there is no such key, or it holds no number."""
+    place: Any = type(model)
+    for part in path.split("."):
+        known = getattr(place, "model_fields", {})
+        if part not in known:
+            kind = f" of kind '{model.kind}'" if table == "structure" else ""
+            raise Refused(f"vary: [{table}]{kind} has no key '{path}'; it has {', '.join(known)}")
+        annotation = known[part].annotation
+        inner = [a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")]
+        place = inner[0] if inner else annotation
+    text = str(known[part].annotation)
+    if not ("float" in text or "int" in text) or part == "kind":
+        raise Refused(f"vary: '{path}' holds no number")
+    return "int" in text and "float" not in text
+
+
+def _unit(model: Table, path: str) -> str:
+    """Unit of a key of the table itself, none where it has none."""
+    about = type(model).model_json_schema()["properties"].get(path, {})
+    return next((b["unit"] for b in (about, *about.get("anyOf", [])) if "unit" in b), "")
+
+
+def run(context: Context, options: Sweep) -> Result:
+    """All values in order, then the places between them where something changes."""
+    table, path = _placed(options.vary)
+    model = getattr(context.building, table)
+    whole = _is_whole(model, table, path)
+    values = np.array(options.values) if options.values else np.linspace(options.start, options.stop, options.count)
+    values = np.unique(np.round(values)) if whole else np.sort(values)
+    data = {**context.deck.data.get(table, {}), **(options.model_dump(exclude_none=True).get(table) or {})}
+    ask = Range(context.building, table, path, data, options, whole)
+    outcomes = []
+    for i, value in enumerate(values):
+        context.progress(i, len(values), f"sweep of {options.vary}")
+        outcomes.append(ask.at(value, fracture=options.fracture, explain=True))
+    if all(o.gamma is None for o in outcomes):
+        raise Refused(f"no value of {options.vary} gives a structure that stands: {outcomes[-1].reason}")
+    changes = _changes(ask, values, outcomes) if options.locate and not whole else []
+    numbers: dict[Signature, int] = {}
+    for _, signature in sorted(
+        [(v, o.signature) for v, o in zip(values, outcomes, strict=True)] + [(c["value"], c["after"]) for c in changes],
+        key=lambda pair: pair[0],
+    ):
+        if signature and signature != LOCKED:
+            numbers.setdefault(signature, len(numbers) + 1)
+    best, best_gamma = _optimum(ask, values, outcomes, options.locate and not whole)
+    result = Result("sweep")
+    stable = [c for c in changes if not c["before"] or not c["after"]]
+    locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
+    result.results = {
+        "vary": options.vary,
+        "unit": _unit(model, path),
+        "mechanisms": [{"number": n, "hinges": spoken(s)} for s, n in numbers.items()],
+        "changes": [
+            {
+                "value": c["value"],
+                "from": "locked" if c["before"] == LOCKED else numbers.get(c["before"], 0),
+                "to": "locked" if c["after"] == LOCKED else numbers.get(c["after"], 0),
+                "collapse_acceleration_g": c["gamma"],
+            }
+            for c in changes
+        ],
+        "stable_limits": [c["value"] for c in stable],
+        "locked_limits": locks,
+        "optimum_value": best,
+        "optimum_collapse_acceleration_g": best_gamma,
+        "optimum_tilt_angle_deg": float(np.degrees(np.arctan(best_gamma))),
+        "optimum_inside": bool(values[0] < best < values[-1]),
+        "values": values.tolist(),
+        "collapse_accelerations_g": [o.gamma for o in outcomes],
+        "gaps": [{"value": float(v), "reason": o.reason} for v, o in zip(values, outcomes, strict=True) if o.reason],
+        "duality_gap": max(o.gap for o in outcomes),
+    }
+    gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
+    number = np.array([numbers.get(o.signature, 0) for o in outcomes])
+    columns: dict[str, Any] = {
+        options.vary: values,
+        "collapse_acceleration": gamma,
+        "tilt_angle": np.degrees(np.arctan(gamma)),
+        "mechanism": number,
+    }
+    result.arrays = {
+        "value": Array(values, ("value",), "", f"values of {options.vary}"),
+        "gamma": Array(gamma, ("value",), "g", "collapse acceleration to +x; NaN where it cannot stand"),
+        "mechanism": Array(number, ("value",), "", "number of the mechanism; 0 where it cannot stand"),
+        "change": Array(np.array([c["value"] for c in changes]), ("change",), "", "where the mechanism changes"),
+    }
+    if options.fracture:
+        cracked = np.array([np.nan if o.fractured is None else o.fractured for o in outcomes])
+        result.results["fractured_collapse_accelerations_g"] = [o.fractured for o in outcomes]
+        result.arrays["fractured"] = Array(cracked, ("value",), "g", "with the leeward buttress cracked")
+        columns["fractured_collapse_acceleration"] = cracked
+    names = next((o.assembly.measures for o in outcomes if o.assembly is not None), {})
+    for name in names:
+        columns[name] = [measures_of(o.assembly).get(name, np.nan) for o in outcomes]
+    columns["reason"] = [o.reason for o in outcomes]
+    units = {
+        options.vary: result.results["unit"],
+        "collapse_acceleration": "g",
+        "fractured_collapse_acceleration": "g",
+        "tilt_angle": "deg",
+    }
+    result.tables = {"sweep": TableData(columns, units)}
+    result.arrays.update(_examples(outcomes, numbers))
+    result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
+    result.answer = _words(options, result.results, numbers)
+    return result
+
+
+def _changes(ask: Range, values: np.ndarray, outcomes: list[Outcome]) -> list[dict[str, Any]]:
+    """Every value at which the mechanism becomes another, by bisection between neighbours that differ."""
+    close = CLOSE * float(values[-1] - values[0])
+    found: list[dict[str, Any]] = []
+    for i in range(len(values) - 1):
+        low, before = float(values[i]), outcomes[i]
+        while before.signature != outcomes[i + 1].signature and len(found) < MOST_CHANGES:
+            left, right = low, float(values[i + 1])
+            after = outcomes[i + 1]
+            while right - left > close:
+                middle = 0.5 * (left + right)
+                here = ask.at(middle)
+                if here.signature == before.signature:
+                    left, before = middle, here
+                else:
+                    right, after = middle, here
+            gamma = after.gamma if before.gamma is None else before.gamma
+            found.append({"value": right, "before": before.signature, "after": after.signature, "gamma": gamma})
+            low, before = right, after
+    return found
+
+
+def _optimum(ask: Range, values: np.ndarray, outcomes: list[Outcome], closely: bool) -> tuple[float, float]:
+    """The value of greatest capacity, by golden section between the neighbours of the best one."""
+    gamma = np.array([-np.inf if o.gamma is None else o.gamma for o in outcomes])
+    k = int(gamma.argmax())
+    if not closely:
+        return float(values[k]), float(gamma[k])
+    low, high = float(values[max(k - 1, 0)]), float(values[min(k + 1, len(values) - 1)])
+
+    def capacity(value: float) -> float:
+        found = ask.at(value).gamma
+        return -np.inf if found is None else found
+
+    one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+    at_one, at_two = capacity(one), capacity(two)
+    while high - low > CLOSE * float(values[-1] - values[0]):
+        if at_one >= at_two:
+            high, two, at_two = two, one, at_one
+            one = high - GOLDEN * (high - low)
+            at_one = capacity(one)
+        else:
+            low, one, at_one = one, two, at_two
+            two = low + GOLDEN * (high - low)
+            at_two = capacity(two)
+    best = max([(float(gamma[k]), float(values[k])), (at_one, one), (at_two, two)])
+    return best[1], best[0]
+
+
+def _examples(outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[str, Array]:
+    """One section of each mechanism, in the middle of where it governs, with its mechanism carried on."""
+    outlines: dict[str, np.ndarray] = {}
+    moved: dict[str, np.ndarray] = {}
+    for signature, number in numbers.items():
+        same = [o for o in outcomes if o.signature == signature]
+        if not same:
+            continue
+        one = same[len(same) // 2]
+        pose = finite_motion(one.assembly, one.mechanism)
+        for i, (outline, c, p) in enumerate(zip(one.assembly.outlines, one.assembly.centroid, pose, strict=True)):
+            cos, sin = np.cos(p[2]), np.sin(p[2])
+            outlines[f"{number}/{i}"] = outline
+            moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
+    return {
+        **packed("example", outlines, "m", "blocks of one section of each mechanism (number/block)"),
+        **packed("example_moved", moved, "m", "the same, moved"),
+    }
+
+
+def _words(options: Sweep, results: dict[str, Any], numbers: dict[Signature, int]) -> str:
+    best = f"{results['optimum_value']:.4g}"
+    where = "an optimum at" if results["optimum_inside"] else "greatest at the end of the range,"
+    if results["locked_limits"]:
+        where = "greatest where it is nearly locked, at"
+    text = (
+        f"{options.vary} from {results['values'][0]:.4g} to {results['values'][-1]:.4g}: {where} {best} with "
+        f"{results['optimum_collapse_acceleration_g']:.4f} g ({results['optimum_tilt_angle_deg']:.2f} degrees). "
+        f"{len(numbers)} mechanism{'s' if len(numbers) != 1 else ''}"
+    )
+    moves = [f"{c['from']} to {c['to']} at {c['value']:.4g}" for c in results["changes"] if c["from"] and c["to"]]
+    locked = ", ".join(f"{v:.4g}" for v in results["locked_limits"])
+    text += f"; changes {', '.join(moves[:8])}." if moves else "."
+    if locked:
+        text += f" At {locked} it locks: past that no load of this kind brings it down."
+    if results["stable_limits"]:
+        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in results['stable_limits'])}."
+    elif results["gaps"]:
+        text += f" {len(results['gaps'])} of {len(results['values'])} values give no structure that stands."
+    return text

@@ -1,0 +1,104 @@
+"""Analysis kinds of limit analysis: tilt, thrust, sweep, survey, supports, moving load."""
+
+from typing import ClassVar, Literal
+
+from pydantic import model_validator
+
+from extrados.analyses.table import BuildingAnalysis
+from extrados.schema.quantities import Force, Length
+from extrados.schema.table import Table, key
+
+ARCHES = ("arch", "pointed-arch", "elliptical-arch")
+
+
+class PointLoad(Table):
+    """A vertical load that rests on the structure."""
+
+    x: Length = key(about="where it stands; it acts on the highest block below")
+    force: Force = key(about="its weight, downward", gt=0)
+
+
+class LimitAnalysisTable(BuildingAnalysis):
+    """What all questions of limit analysis ask."""
+
+    uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
+    friction_rule: Literal["associated", "non-associated"] = key(
+        "associated",
+        "associated sliding dilates (an upper bound); non-associated is found by iteration",
+        source="Gilbert, Casapulla and Ahmed 2006",
+    )
+    load: list[PointLoad] = key([], "vertical point loads at rest, which do not sway", max_length=1000)
+
+
+class Tilt(LimitAnalysisTable):
+    """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
+
+    kind: Literal["tilt"]
+    fracture: bool = key(False, "also let the leeward buttress crack: monolithic and fractured side by side")
+
+
+class Thrust(LimitAnalysisTable):
+    """Thrust lines at a given horizontal acceleration: least, greatest and most central thrust, safety, reactions."""
+
+    kind: Literal["thrust"]
+    gamma: float = key(0.0, "horizontal acceleration to +x, in g, at which the lines are drawn", ge=-5, le=5)
+    chain: str | None = key(None, "whose thrust is least and greatest; default the first: arch, vault or nave")
+
+
+class Sweep(LimitAnalysisTable):
+    """One deck key of the structure varied: capacity, mechanism and its changes, the optimum (Figs 3-4, 3-6a, 3-7b)."""
+
+    kind: Literal["sweep"]
+    starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
+    vary: str = key(
+        about="key to vary: of [structure], for instance buttress_width or right.buttress_width, or of another table, for "
+        "instance joints.friction or material.compressive_strength"
+    )
+    start: float | None = key(None, "first value, in the unit of the key")
+    stop: float | None = key(None, "last value")
+    count: int = key(41, "number of values from start to stop", ge=2, le=2000)
+    values: list[float] | None = key(None, "the values, in place of start and stop", min_length=2, max_length=2000)
+    fracture: bool = key(False, "also with the leeward buttress cracked")
+    locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
+
+    @model_validator(mode="after")
+    def _range(self) -> "Sweep":
+        if (self.values is None) == (self.start is None or self.stop is None):
+            raise ValueError("expected either values, or start and stop")
+        return self
+
+
+class Survey(LimitAnalysisTable):
+    """Many sections from a CSV table, one line of results each."""
+
+    kind: Literal["survey"]
+    starter: ClassVar = {"file": '"sections.csv"'}
+    file: str = key(about="CSV beside the deck; a header of [structure] keys (lengths in m), one section a row")
+    fracture: bool = key(False, "also with the leeward buttress cracked")
+
+
+class Supports(BuildingAnalysis):
+    """An arch whose supports spread or settle: three-hinge states on the way, until it falls."""
+
+    kind: Literal["supports"]
+    structures: ClassVar = ARCHES
+    spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
+    settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
+    steps: int = key(200, "steps from rest to the fall", ge=10, le=5000)
+
+
+class MovingLoad(LimitAnalysisTable):
+    """A point or axle load that crosses: the load it takes to bring the structure down, at every place."""
+
+    kind: Literal["moving-load"]
+    chain: str | None = key(None, "the arch it crosses; default the first: arch, vault or nave")
+    axles: list[Length] = key([0.0], "places of the axles behind the first", max_length=50)
+    shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=50)
+    force: Force | None = key(None, "the load itself; the safety factor is told when it is given", gt=0)
+    count: int = key(81, "number of places along the span", ge=3, le=2000)
+
+    @model_validator(mode="after")
+    def _axles(self) -> "MovingLoad":
+        if self.shares is not None and (len(self.shares) != len(self.axles) or min(self.shares) <= 0.0):
+            raise ValueError("shares: expected one number above 0 for each of axles")
+        return self

@@ -1,0 +1,193 @@
+"""tilt: the horizontal acceleration at which a structure becomes a mechanism (thesis chapter 3)."""
+
+import numpy as np
+
+from extrados.analyses.context import Context
+from extrados.analyses.limit.common import (
+    answer_of,
+    fracture_of,
+    geometry_arrays,
+    graphic_arrays,
+    hinge_rows,
+    reaction_rows,
+    state_arrays,
+)  # fmt: skip
+from extrados.analyses.limit.tables import Tilt
+from extrados.building.building import Building
+from extrados.building.geometry.assembly import Assembly
+from extrados.limit.answer import Answer
+from extrados.limit.fracture import Fracture
+from extrados.limit.motion import finite_motion
+from extrados.limit.programme import NoEquilibrium
+from extrados.results.model import Array, Result
+
+__all__ = ["geometry_arrays", "run", "state_arrays"]
+
+MOST_NAMED = 12  # hinges and sliding joints told in words
+
+#: Above this the joints of masonry slide
+USUAL_FRICTION = 0.7
+
+
+def degrees(gamma: float) -> float:
+    """Tilt of the ground at which gravity has a sideways part of gamma (thesis Eq. 3.1)."""
+    return float(np.degrees(np.arctan(gamma)))
+
+
+def run(context: Context, options: Tilt) -> Result:
+    """Capacity both ways, hinges, mechanism, thrust line at collapse, least and greatest thrust upright."""
+    assembly: Assembly = context.building.blocks()
+    answer = answer_of(context.building, options)
+    state, mechanism = answer.collapse_state, answer.mechanism
+    hinges = hinge_rows(assembly, mechanism.hinges, mechanism.pivot)
+    result = Result("tilt")
+    result.results = {
+        "collapse_acceleration_g": state.gamma,
+        "collapse_acceleration_opposite_g": -answer.back_state.gamma,
+        "tilt_angle_deg": degrees(state.gamma),
+        "tilt_angle_opposite_deg": degrees(-answer.back_state.gamma),
+        "admissible_interval_g": [answer.back_state.gamma, state.gamma],
+        "load_direction": "+x",
+        "hinges": hinges,
+        "sliding_joints": mechanism.sliding,
+        "hinges_opposite": hinge_rows(assembly, answer.back_mechanism.hinges, answer.back_mechanism.pivot),
+        "touching_joints": answer.touching,
+        "required_friction": float(state.friction.max()),
+        "required_friction_joint": int(state.friction.argmax()),
+        "geometric_safety_factor": answer.safety,
+        "weight_N": answer.loads.scale,
+        "depth_m": assembly.depth,
+        "reactions": reaction_rows(answer, state),
+        **_thrusts(answer),
+        **assembly.measures,
+        "duality_gap": answer.gap,
+    }
+    result.arrays = {
+        **geometry_arrays(assembly),
+        **state_arrays(assembly, "collapse", state, "at collapse, load to +x"),
+        **graphic_arrays(answer, "collapse", state, "at collapse, load to +x"),
+        "velocity": Array(mechanism.velocity, ("block", "component"), "m, m, rad", "mechanism: x, y, rotation"),
+        "mechanism_pose": Array(
+            finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad",
+            "the mechanism carried on: places of the centroids, rotations",
+        ),
+    }  # fmt: skip
+    if assembly.chains:
+        first = next(iter(assembly.chains))
+        for word, state_of in (("least", answer.least[first]), ("most", answer.most[first])):
+            about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
+            result.arrays.update(state_arrays(assembly, word, state_of, about))
+            result.arrays.update(graphic_arrays(answer, word, state_of, about))
+    if options.fracture:
+        _fracture(context.building, options, answer, result)
+    result.answer = _words(assembly, answer, hinges, result)
+    needed = result.results["required_friction"]
+    if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
+        result.warnings.append(
+            f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): it slides "
+            "before; give friction"
+        )
+    if getattr(context.deck.structure, "preset", None):
+        result.warnings.append(
+            f'the sizes of preset "{context.deck.structure.preset}" are inferred or guessed, not taken from a survey'
+        )
+    return result
+
+
+def _thrusts(answer: Answer) -> dict[str, object]:
+    """Least and greatest horizontal thrust upright of each chain [N]; the first also by the common names."""
+
+    def horizontal(name: str, state) -> float:
+        return abs(float(state.force(answer.assembly)[answer.assembly.chains[name][0], 0]))
+
+    table = {
+        name: {"min_N": horizontal(name, answer.least[name]), "max_N": horizontal(name, answer.most[name])}
+        for name in answer.assembly.chains
+    }
+    if not table:
+        return {}
+    first = next(iter(table.values()))
+    return {"thrust_min_N": first["min_N"], "thrust_max_N": first["max_N"], "thrusts": table}
+
+
+def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> None:
+    """Add the capacity with a cracked buttress beside the monolithic one."""
+    assembly = building.blocks()
+    block = assembly.buttresses[-1] if assembly.buttresses else None
+    try:
+        found: Fracture | None = fracture_of(building, options)
+        if found is not None and found.gamma <= 0.0:
+            raise NoEquilibrium
+    except NoEquilibrium:
+        result.results["fracture"] = {"stands": False}
+        result.warnings.append("with its leeward buttress cracked the structure cannot stand upright")
+        return
+    if found is None:
+        result.results["fracture"] = {"cracks": False, "collapse_acceleration_g": answer.gamma, "ratio": 1.0}
+        return
+    result.results["fracture"] = {
+        "cracks": True,
+        "buttress": assembly.block_names[block],
+        "collapse_acceleration_g": found.gamma,
+        "tilt_angle_deg": degrees(found.gamma),
+        "ratio": found.gamma / answer.gamma,
+        "crack_height_m": found.height,
+        "crack_height_ratio": found.height_ratio,
+        "resultant_from_outer_face_ratio": found.section_ratio,
+        "hinges": hinge_rows(found.assembly, found.mechanism.hinges, found.mechanism.pivot),
+    }
+    outlines = found.assembly.outlines
+    result.arrays.update(
+        {
+            "crack": Array(found.line, ("crack_end", "axis"), "m", "fracture line: inner face, outer toe"),
+            "crack_pose": Array(
+                finite_motion(found.assembly, found.mechanism), ("block", "component"), "m, m, rad",
+                "the mechanism with the buttress cracked, carried on",
+            ),
+            "crack_centroid": Array(found.assembly.centroid, ("block", "axis"), "m", "centroids of the cracked blocks"),
+            "crack_outline": Array(
+                np.concatenate(outlines), ("crack_vertex", "axis"), "m", "outlines of the blocks, the buttress cracked"
+            ),
+            "crack_outline_start": Array(
+                np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"
+            ),
+            "crack_point": Array(found.state.points(found.assembly), ("joint", "axis"), "m", "thrust line, cracked"),
+        }
+    )  # fmt: skip
+
+
+def _some(names: list[str]) -> str:
+    """The first of many names."""
+    return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
+
+
+def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Result) -> str:
+    gamma, back = answer.gamma, -answer.back_state.gamma
+    what = {"arch": "arch", "vault": "vault on its buttresses", "nave": "church section"}.get(
+        next(iter(assembly.chains), ""), "structure"
+    )
+    if assembly.chains:
+        where = _some([f"{h['side']} of {h['name']}" for h in hinges])
+    else:
+        where = _some([f"joint {h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges])
+    slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
+    moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
+    text = (
+        f"The {what} becomes a mechanism at a constant horizontal acceleration of {gamma:.4f} g, or when its base is "
+        f"tilted by {degrees(gamma):.2f} degrees. Pushed to +x {' and '.join(moves)}. "
+    )
+    if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
+        text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
+    text += f"Friction of {result.results['required_friction']:.2f} is needed" + (
+        f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."
+    )
+    fracture = result.results.get("fracture", {})
+    if fracture.get("cracks"):
+        text += (
+            f" With the leeward buttress cracked from {fracture['crack_height_m']:.2f} m above its base down to the toe it "
+            f"bears only {fracture['collapse_acceleration_g']:.4f} g ({fracture['tilt_angle_deg']:.2f} degrees), "
+            f"{fracture['ratio']:.2f} of that."
+        )
+    elif fracture.get("cracks") is False:
+        text += " The leeward buttress does not crack before that."
+    return text

@@ -1,0 +1,131 @@
+"""One section among many: its structure from changed deck keys, its capacity, mechanism or the reason for none."""
+
+import copy
+from dataclasses import dataclass, field
+from typing import Any
+
+from pydantic import ValidationError
+
+from extrados.analyses.context import Refused
+from extrados.analyses.limit.common import fracture_of, limit_of
+from extrados.analyses.limit.tables import LimitAnalysisTable
+from extrados.building.building import Building
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.builder import BadGeometry
+from extrados.limit.answer import CannotStand, why_not
+from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
+from extrados.limit.solver import Immovable, NoAnswer
+from extrados.schema.table import Table
+
+Signature = tuple[tuple[str, str], ...]
+#: Stands for a structure that no load of the kind brings down
+LOCKED: Signature = (("all", "locked"),)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What one section gives; gamma is None with a reason where it gives nothing."""
+
+    gamma: float | None = None
+    fractured: float | None = None
+    signature: Signature = ()
+    gap: float = 0.0
+    reason: str = ""
+    assembly: Assembly | None = None
+    mechanism: Mechanism | None = None
+    notes: list[str] = field(default_factory=list)
+    locked: bool = False  # no load of the kind brings it down: it stands, but has no capacity to give
+
+
+def signature(assembly: Assembly, mechanism: Mechanism) -> Signature:
+    """A mechanism but for the numbers of its joints: the order of hinges of each arch, and what else turns.
+
+    A hinge that moves on by a voussoir makes no new mechanism; another part that moves does.
+    """
+    inside = {j: name for name, joints in assembly.chains.items() for j in joints}
+    marks = {j: side[0] for j, side in mechanism.hinges} | {j: "s" for j in mechanism.sliding}
+    found = [
+        (name, "-".join(marks[j] for j in joints if j in marks))
+        for name, joints in assembly.chains.items()
+        if any(j in marks for j in joints)
+    ]
+    found += [(assembly.joint_names[j], mark) for j, mark in sorted(marks.items()) if j not in inside]
+    return tuple(found)
+
+
+def spoken(found: Signature) -> str:
+    """A signature in words."""
+    if found == LOCKED:
+        return "none: it cannot be brought down"
+    words = {"i": "intrados", "e": "extrados", "s": "slide"}
+    return "; ".join(f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
+
+
+def changed(data: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
+    """A structure's table with one key, dotted for a table within it, set to another value."""
+    data = copy.deepcopy(data)
+    place = data
+    *way, last = path.split(".")
+    for part in way:
+        place = place.setdefault(part, {})
+        if not isinstance(place, dict):
+            raise Refused(f"'{path}' is no key of the deck")
+    place[last] = value
+    return data
+
+
+def read_table(model: type[Table], data: dict[str, Any]) -> Any:
+    """The checked table; BadGeometry with the first complaint."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(p) for p in first["loc"])
+        text = str(first.get("ctx", {}).get("error", first["msg"]))
+        raise BadGeometry(f"{where}: {text}" if where else text) from None
+
+
+def evaluate(
+    building: Building, options: LimitAnalysisTable, *, fracture: bool = False, explain: bool = True
+) -> Outcome:
+    """Build the section and load it to +x."""
+    try:
+        assembly, limit = building.blocks(), limit_of(building, options)
+    except (BadGeometry, Refused, ValueError) as error:
+        return Outcome(reason=str(error))
+    try:
+        state, mechanism = limit.collapse(1)
+        if state.gamma <= 0.0:
+            raise NoEquilibrium
+    except Immovable as error:
+        return Outcome(signature=LOCKED, reason=f"cannot be brought down: {error}", assembly=assembly, locked=True)
+    except NoEquilibrium:
+        return Outcome(reason=_reason(limit) if explain else "cannot stand", assembly=assembly)
+    except NoAnswer as error:
+        return Outcome(reason=str(error), assembly=assembly)
+    cracked, notes = None, []
+    if fracture:
+        try:
+            found = fracture_of(building, options)
+            cracked = state.gamma if found is None else found.gamma
+            if cracked <= 0.0:
+                raise NoEquilibrium("cannot stand upright")
+        except (NoEquilibrium, Refused) as error:
+            cracked = None
+            notes.append(f"with the buttress cracked: {error}")
+    return Outcome(
+        state.gamma, cracked, signature(assembly, mechanism), abs(state.gamma - mechanism.upper_bound), "",
+        assembly, mechanism, notes,
+    )  # fmt: skip
+
+
+def _reason(limit: LimitAnalysis) -> str:
+    try:
+        return f"cannot stand: {why_not(limit)}"
+    except (NoEquilibrium, NoAnswer, CannotStand) as error:
+        return f"cannot stand: {error}"
+
+
+def measures_of(assembly: Assembly | None) -> dict[str, float]:
+    """Derived lengths of a section, none where it could not be built."""
+    return {} if assembly is None else {k: float(v) for k, v in assembly.measures.items()}

@@ -1,0 +1,369 @@
+"""motion: what a ground motion is, alone or as a set: peaks, measures, spectra, pulses, export."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.motion.tables import MotionStudy
+from extrados.core import motion as core
+from extrados.motions import directions, export
+from extrados.motions import tables as models
+from extrados.motions.formats.record import RecordError
+from extrados.motions.from_deck import compatible_set, generated_set, is_set, make_members
+from extrados.motions.impulse import Impulse, primary_impulses
+from extrados.motions.measures import fourier_spectrum, spectral_measures
+from extrados.motions.motion import Motion
+from extrados.motions.wavelet_pulse import classify
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+MOST_POINTS = 2_000_000
+MOST_SPECTRA = 1000  # of a set: what percentiles are taken over
+MOST_IMPULSES = 60  # of a set: whose primary impulse is fitted
+SHOWN = 4  # motions of a set that are stored and drawn
+PERCENTILES = (16, 50, 84)
+
+
+def run(context: Context, options: MotionStudy) -> Result:
+    """One motion in depth, or the statistics of a set."""
+    return _run_set(context, options) if is_set(context.deck.motion) else _run_one(context, options)
+
+
+def _periods(options: MotionStudy, step: float) -> np.ndarray:
+    return np.geomspace(max(options.shortest, core.POINTS_PER_CYCLE * step / 4096.0), options.longest, options.periods)
+
+
+def _series(motion: Motion) -> tuple[np.ndarray, float]:
+    """Horizontal acceleration from time zero of the file, and its step."""
+    time, acceleration = motion.series()
+    if len(time) > MOST_POINTS:
+        raise Refused(f"{motion.name} has {len(time)} samples, at most {MOST_POINTS} can be studied")
+    return acceleration, float(time[1] - time[0])
+
+
+def _impulse(i: Impulse) -> dict[str, float]:
+    return {
+        "amplitude_g": i.amplitude / GRAVITY, "period_s": i.period, "start_s": i.start, "goodness_of_fit": i.goodness,
+        "explained": i.explained,
+    }  # fmt: skip
+
+
+def _study(motion: Motion, options: MotionStudy) -> dict:
+    """All numbers of one motion, keys ending in their unit."""
+    a, step = _series(motion)
+    m, s = core.measures(a, step), spectral_measures(a, step)
+    time = step * np.arange(len(a))
+    impulses = primary_impulses(time, a, options.impulses, None, options.max_period)
+    pulse = classify(a, step)
+    return {
+        "pga_g": float(m.pga[0]) / GRAVITY,
+        "pga_time_s": float(m.pga_time[0]),
+        "pgv_m_s": float(m.pgv[0]),
+        "pgd_m": float(m.pgd[0]),
+        "pgv_over_pga_s": float(m.pgv[0] / m.pga[0]) if m.pga[0] > 0.0 else None,
+        "arias_m_s": float(m.arias[0]),
+        "cav_m_s": float(m.cav[0]),
+        "duration_5_95_s": float(m.duration[0]),
+        "duration_5_75_s": float(m.duration_75[0]),
+        "housner_intensity_m": s.housner_intensity,
+        "predominant_period_s": s.predominant_period,
+        "velocity_period_s": s.velocity_period,
+        "mean_period_s": s.mean_period,
+        "points": len(a),
+        "time_step_s": step,
+        "primary_impulse": _impulse(impulses[0]) if impulses else None,
+        "impulses": [_impulse(i) for i in impulses],
+        "wavelet_pulse": {
+            "indicator": pulse.indicator, "period_s": pulse.period, "peak_velocity_m_s": pulse.peak_velocity,
+            "pgv_ratio": pulse.pgv_ratio, "energy_ratio": pulse.energy_ratio, "early": pulse.early,
+            "pulse_like": pulse.pulse_like,
+        },
+    }  # fmt: skip
+
+
+def _run_one(context: Context, options: MotionStudy) -> Result:
+    motion = context.motion
+    a, step = _series(motion)
+    velocity, displacement = core.kinematics(a, step)
+    periods = _periods(options, step)
+    spectra = core.response_spectra(a, step, periods, options.dampings, threads=context.threads)
+    frequency, amplitude = fourier_spectrum(a, step)
+    result = Result("motion", results=_study(motion, options), warnings=list(motion.notes))
+    r = result.results
+    if abs(velocity[-1]) > 0.1 * np.abs(velocity).max() or abs(displacement[-1]) > 0.5 * np.abs(displacement).max(
+        initial=1e-300
+    ):
+        result.warnings.append(
+            f"the motion drifts: it ends with {velocity[-1]:.3g} m/s and {displacement[-1]:.3g} m; "
+            'a baseline correction (baseline = "quadratic") or low_cut takes that out'
+        )
+    husid = np.concatenate([[0.0], np.cumsum(0.5 * step * (a[1:] ** 2 + a[:-1] ** 2))])
+    time = step * np.arange(len(a))
+    result.arrays = {
+        "time": Array(time, ("time",), "s"),
+        "acceleration": Array(a, ("time",), "m/s^2", "horizontal ground acceleration"),
+        "velocity": Array(velocity, ("time",), "m/s", "from rest"),
+        "displacement": Array(displacement, ("time",), "m", "from rest"),
+        "pulse_velocity": Array(classify(a, step).velocity, ("time",), "m/s", "pulse of Baker's classification"),
+        "husid": Array(husid / max(husid[-1], 1e-300), ("time",), "", "share of the Arias intensity"),
+        "frequency": Array(frequency, ("frequency",), "Hz"),
+        "fourier": Array(amplitude, ("frequency",), "m/s", "Fourier amplitude of the acceleration"),
+        **_spectra_arrays(spectra),
+    }
+    if context.motion.ground.channels > 1:
+        result.arrays["vertical"] = Array(
+            motion.sample(motion.ground.start + time, 1), ("time",), "m/s^2", "vertical acceleration"
+        )
+        r["vertical_pga_g"] = float(np.abs(result["vertical"]).max()) / GRAVITY
+    rotd = _all_directions(context, options, periods, result) if motion.horizontal is not None else {}
+    result.tables = {
+        "motion": TableData(
+            {"time": time, "acceleration": a, "velocity": velocity, "displacement": displacement},
+            {"time": "s", "acceleration": "m/s^2", "velocity": "m/s", "displacement": "m"},
+        ),
+        "response_spectra": TableData(
+            {
+                "period": periods,
+                **{f"{n}_{100 * d:g}": v[k] for k, d in enumerate(options.dampings)
+                   for n, v in (("psa", spectra.psa), ("psv", spectra.psv), ("sd", spectra.sd))},
+                **rotd,
+            },
+            {"period": "s", **{f"{n}_{100 * d:g}": u for d in options.dampings for n, u in (("psa", "m/s^2"), ("psv", "m/s"), ("sd", "m"))},
+             **dict.fromkeys(rotd, "m/s^2")},
+        ),
+    }  # fmt: skip
+    writers = {"AT2": ("motion.AT2", export.at2), "columns": ("motion_columns.csv", export.columns)}
+    result.files = {
+        name: write(motion.name, a, step) for name, write in (writers[e] for e in dict.fromkeys(options.export))
+    }
+    result.answer = describe(motion.name, r)
+    return result
+
+
+def _damping(options: MotionStudy) -> float:
+    """Damping ratio where one spectrum must do."""
+    return options.dampings[min(1, len(options.dampings) - 1)]
+
+
+def _all_directions(
+    context: Context, options: MotionStudy, periods: np.ndarray, result: Result
+) -> dict[str, np.ndarray]:
+    """What both horizontal components give over all directions, into `result`; columns for the table of spectra."""
+    horizontal, step, damping = context.motion.horizontal, context.motion.ground.step, _damping(options)
+    psa = directions.spectra(horizontal, step, periods, damping, context.threads)
+    result.results |= {**_rotd_peaks(context.motion), "rotd_damping": damping}
+    found = {}
+    for name, values in zip(("rotd50", "rotd100"), psa, strict=True):
+        result.arrays[f"psa_{name}"] = Array(
+            values, ("period",), "m/s^2", f"{name.replace('rotd', 'RotD')}, {100 * damping:g} % damping"
+        )
+        found[f"psa_{name}_{100 * damping:g}"] = values
+    return found
+
+
+def _rotd_peaks(motion: Motion) -> dict[str, float]:
+    """PGA over all directions; NaN where only one component is known."""
+    peaks = np.full(2, np.nan) if motion.horizontal is None else directions.peaks(motion.horizontal) / GRAVITY
+    return {"rotd50_pga_g": float(peaks[0]), "rotd100_pga_g": float(peaks[1])}
+
+
+def describe(name: str, r: dict) -> str:
+    """The numbers of one motion in words."""
+    text = (
+        f"{name}: peak {r['pga_g']:.4g} g at {r['pga_time_s']:.2f} s, {100 * r['pgv_m_s']:.3g} cm/s, {100 * r['pgd_m']:.3g} cm; "
+        f"Arias intensity {r['arias_m_s']:.3g} m/s over {r['duration_5_95_s']:.3g} s (5 to 95 %). "
+    )
+    if "rotd100_pga_g" in r:
+        text += f"Over all directions the peak is {r['rotd50_pga_g']:.4g} g (RotD50), {r['rotd100_pga_g']:.4g} g at most (RotD100). "
+    if first := r["primary_impulse"]:
+        text += (
+            f"Primary impulse {abs(first['amplitude_g']):.3g} g over {first['period_s']:.3g} s from {first['start_s']:.2f} s "
+            f"(explains {100 * first['goodness_of_fit']:.0f} % of the motion over its span). "
+        )
+    pulse = r["wavelet_pulse"]
+    kind = "pulse-like" if pulse["pulse_like"] else "not pulse-like"
+    return (
+        text
+        + f"By Baker's classification it is {kind} (indicator {pulse['indicator']:.2f}, period {pulse['period_s']:.2f} s)."
+    )
+
+
+def _spectra_arrays(spectra: core.Spectra) -> dict[str, Array]:
+    dims = ("damping", "period")
+    return {
+        "period": Array(spectra.period, ("period",), "s"),
+        "damping": Array(spectra.damping, ("damping",), "", "damping ratio"),
+        "psa": Array(spectra.psa, dims, "m/s^2", "pseudo-acceleration"),
+        "psv": Array(spectra.psv, dims, "m/s", "pseudo-velocity"),
+        "sd": Array(spectra.sd, dims, "m", "relative displacement"),
+        "sa": Array(spectra.sa, dims, "m/s^2", "absolute acceleration"),
+    }
+
+
+def _readable(members: Iterator[Motion | RecordError], warnings: list[str]) -> Iterator[Motion]:
+    """The motions of a set; a record that cannot be read becomes a warning, and a refusal if it is the only one."""
+    found, wrong = 0, []
+    for member in members:
+        if isinstance(member, RecordError):
+            wrong.append(str(member))
+            warnings += wrong[-1:] if len(wrong) <= 10 else []
+            continue
+        found += 1
+        yield member
+    if len(wrong) > 10:
+        warnings.append(f"and {len(wrong) - 10} more records that cannot be read")
+    if not found:
+        raise Refused(f"none of the {len(wrong)} records can be read; the first: {wrong[0]}")
+
+
+def _run_set(context: Context, options: MotionStudy) -> Result:
+    model, folder = context.deck.motion, context.deck.folder
+    suite = isinstance(model, models.Suite)
+    damping = _damping(options)
+    if isinstance(model, models.Compatible):
+        damping = model.damping
+    rows: dict[str, list] = {
+        n: [] for n in ("name", "pga_g", "pgv_m_s", "pgd_m", "arias_m_s", "cav_m_s", "duration_5_95_s")
+    }
+    components: list[dict[str, float]] = []
+    psa, shown, impulses, squares, warnings = [], [], [], None, []
+    periods = None
+    try:
+        for k, motion in enumerate(_readable(make_members(model, folder, options.count), warnings)):
+            a, step = _series(motion)
+            m = core.measures(a, step)
+            for name, value in (("name", motion.name), ("pga_g", m.pga[0] / GRAVITY), ("pgv_m_s", m.pgv[0]), ("pgd_m", m.pgd[0]),
+                                ("arias_m_s", m.arias[0]), ("cav_m_s", m.cav[0]), ("duration_5_95_s", m.duration[0])):  # fmt: skip
+                rows[name].append(value if name == "name" else float(value))
+            if suite:
+                components.append(_components(motion))
+            if periods is None:
+                periods = _periods(options, step)
+            if k < MOST_SPECTRA:
+                psa.append(core.response_spectra(a, step, periods, [damping], threads=context.threads).psa[0])
+                if not suite:
+                    frequency, amplitude = fourier_spectrum(a, step)
+                    squares = amplitude**2 if squares is None else squares + amplitude**2
+            if k < MOST_IMPULSES:
+                found = primary_impulses(step * np.arange(len(a)), a, 1, None, options.max_period)
+                impulses.append((abs(found[0].amplitude) / GRAVITY, found[0].period) if found else (np.nan, np.nan))
+            if k < SHOWN:
+                shown.append((motion.name, a, step))
+            warnings += motion.notes[:1] if len(warnings) < 10 else []
+            context.progress(k + 1, options.count, "motions")
+    except RecordError as error:
+        raise Refused(str(error)) from None
+    psa, impulses = np.array(psa), np.array(impulses)
+    count = len(rows["name"])
+    result = Result("motion", warnings=warnings)
+    result.results = {
+        "count": count,
+        "damping": damping,
+        **{f"median_{n}": float(np.median(v)) for n, v in rows.items() if n != "name"},
+        **{f"largest_{n}": float(np.max(v)) for n, v in rows.items() if n in ("pga_g", "pgv_m_s")},
+        "median_impulse_amplitude_g": float(np.nanmedian(impulses[:, 0])),
+        "median_impulse_period_s": float(np.nanmedian(impulses[:, 1])),
+        "time_step_s": shown[0][2],
+    }
+    have = {n: [c[n] for c in components] for n in (components[0] if components else ())}
+    result.tables["ensemble"] = TableData(rows | {n: v for n, v in have.items() if np.isfinite(v).any()})
+    result.arrays = {
+        "period": Array(periods, ("period",), "s"),
+        "psa_percentile": Array(
+            np.percentile(psa, PERCENTILES, axis=0), ("percentile", "period"), "m/s^2", "16, 50 and 84 %"
+        ),
+        "psa_mean": Array(psa.mean(axis=0), ("period",), "m/s^2", "mean pseudo-acceleration of the set"),
+        "psa_shown": Array(psa[:SHOWN], ("shown", "period"), "m/s^2"),
+        "impulse_amplitude": Array(impulses[:, 0], ("studied",), "g", "primary impulses"),
+        "impulse_period": Array(impulses[:, 1], ("studied",), "s"),
+        **{f"shown_{k + 1}": Array(a, (f"point_{k + 1}",), "m/s^2", name) for k, (name, a, _) in enumerate(shown)},
+        "shown_step": Array(np.array([s for _, _, s in shown]), ("shown",), "s"),
+    }
+    if squares is not None:
+        result.arrays["frequency"] = Array(frequency, ("frequency",), "Hz")
+        result.arrays["fourier"] = Array(
+            np.sqrt(squares / len(psa)), ("frequency",), "m/s", "root mean square Fourier amplitude"
+        )
+    if isinstance(model, models.Generated):
+        _compare_with_intensity(result, model, context)
+    elif isinstance(model, models.Compatible):
+        known = periods <= (model.longest if model.code == "table" else np.inf)
+        target = np.full_like(periods, np.nan)
+        target[known] = compatible_set(model, folder).target(periods[known])
+        _compare_with_target(result, model, periods, psa, target)
+    else:
+        result.answer = (
+            f"{count} records: median peaks {result['median_pga_g']:.3g} g and {100 * result['median_pgv_m_s']:.3g} cm/s, "
+            f"largest {result['largest_pga_g']:.3g} g; median Arias intensity {result['median_arias_m_s']:.3g} m/s."
+        )
+    for k, (name, a, step) in enumerate(shown):
+        if "AT2" in options.export:
+            result.files[f"motion_{k + 1}.AT2"] = export.at2(name, a, step)
+        if "columns" in options.export:
+            result.files[f"motion_{k + 1}.csv"] = export.columns(name, a, step)
+    return result
+
+
+def _components(motion: Motion) -> dict[str, float]:
+    """Peaks of the components beside the horizontal one in the plane; NaN for those a record lacks."""
+    samples = motion.ground.samples
+    up = float(np.abs(samples[1]).max()) / GRAVITY if len(samples) > 1 else np.nan
+    return {"vertical_pga_g": up, **_rotd_peaks(motion)}
+
+
+def _compare_with_intensity(result: Result, model: models.Generated, context: Context) -> None:
+    """PGA, PGV and Arias of the set beside the medians of its intensity."""
+    made = generated_set(model, context.deck.folder)
+    expected = made.expected()
+    r = result.results
+    r |= {
+        "mmi": model.mmi,
+        "seed": model.seed,
+        "expected_pga_g": expected["pga"] / GRAVITY,
+        "expected_pgv_m_s": expected["pgv"],
+        "expected_arias_m_s": expected["arias"],
+        "pga_over_expected": r["median_pga_g"] * GRAVITY / expected["pga"],
+        "pgv_over_expected": r["median_pgv_m_s"] / expected["pgv"],
+        "arias_over_expected": r["median_arias_m_s"] / expected["arias"],
+    }
+    result.arrays |= {
+        "line": Array(made.lines, ("line",), "Hz"),
+        "line_width": Array(made.widths, ("line",), "Hz"),
+        "line_spectrum": Array(made.spectrum, ("line",), "m/s", "target Fourier amplitude"),
+        "line_amplitude": Array(made.amplitude, ("line",), "m/s^2", "amplitude of the sine"),
+    }
+    ratio = r["pga_over_expected"]
+    result.answer = (
+        f"{r['count']} generated motions of intensity {model.mmi:g}: median peaks {r['median_pga_g']:.3g} g and "
+        f"{100 * r['median_pgv_m_s']:.3g} cm/s, Arias intensity {r['median_arias_m_s']:.3g} m/s. Records of that intensity have "
+        f"medians of {r['expected_pga_g']:.3g} g and {100 * r['expected_pgv_m_s']:.3g} cm/s (Worden et al. 2012), and the "
+        f"spectrum an Arias intensity of {r['expected_arias_m_s']:.3g} m/s: the set is {ratio:.2f} times as strong by PGA."
+    )
+    if not 0.5 <= ratio <= 2.0:
+        result.warnings.append(
+            f'the set\'s PGA is {ratio:.2f} times the median of intensity {model.mmi:g}: scaling = "{model.scaling}" with '
+            f"factor {model.factor:g} does not stand for that intensity (see the documentation of Eq. 6.6)"
+        )
+
+
+def _compare_with_target(
+    result: Result, model: models.Compatible, periods: np.ndarray, psa: np.ndarray, target: np.ndarray
+) -> None:
+    """The set's spectra against the target over its band."""
+    band = (periods >= model.shortest) & (periods <= model.longest)
+    off = np.abs(psa[:, band] / target[band] - 1.0)
+    mean_low = float(np.min(psa.mean(axis=0)[band] / target[band]))
+    result.arrays["target"] = Array(target, ("period",), "m/s^2", "target spectrum")
+    result.results |= {
+        "largest_deviation": float(off.max()),
+        "mean_over_target_least": mean_low,
+        "seed": model.seed,
+        "shortest_s": model.shortest,
+        "longest_s": model.longest,
+    }
+    result.answer = (
+        f"{len(psa)} motions match the spectrum of {model.code} within {100 * off.max():.1f} % from {model.shortest:g} to "
+        f"{model.longest:g} s ({100 * model.damping:g} % damping); their mean is nowhere below {100 * mean_low:.0f} % of it. "
+        f"Median peaks {result['median_pga_g']:.3g} g and {100 * result['median_pgv_m_s']:.3g} cm/s."
+    )

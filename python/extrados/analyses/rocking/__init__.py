@@ -1,0 +1,1 @@
+"""Rocking dynamics and failure domains."""

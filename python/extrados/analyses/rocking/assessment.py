@@ -1,0 +1,125 @@
+"""assessment: the primary impulse of the motion against the failure curve of the arch (thesis 5.4.2, Fig. 5-15)."""
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.criterion import Fit, fit_arch, interpolated
+from extrados.analyses.rocking.tables import Assessment
+from extrados.building.rockers.arch import ArchModel
+from extrados.motions.impulse import primary_impulses
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+
+def run(context: Context, options: Assessment) -> Result:
+    """Verdict and margin by Eq. 5.8, from the regenerated Table 5.3 and from the arch's own failure curve."""
+    model = context.building.rocker().model
+    if not isinstance(model, ArchModel):
+        raise Refused("assessment needs an arch: Eq. 5.8 and Table 5.3 speak of arches")
+    context.warnings += model.warnings + context.motion.notes
+    if context.motion.ground.channels > 1:
+        context.warnings.append("the criterion knows the horizontal motion only: the vertical component is left out")
+    arch = model.arch
+    gamma = model.collapse[0].gamma
+    time, acceleration = context.motion.series()
+    impulses = primary_impulses(time, acceleration, options.impulses, options.min_period, options.max_period)
+    own, own_periods, own_curve = fit_arch(model, context.threads)
+    ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
+    # The table was made with the thesis' impact rule: another rule is judged by the curve of this arch.
+    table = interpolated(ratio, embrace, gamma) if model.rule == "thesis" else None
+    result = Result("assessment")
+    if table is None and model.rule == "thesis":
+        result.warnings.append(
+            f"Table 5.3 covers t/R 0.12 to 0.21 and 140 to 180 deg; for t/R {ratio:.3f} and {embrace:g} deg the failure "
+            "curve fitted to this arch is used alone"
+        )
+    fit = table or own
+    result.results = {
+        "uplift_acceleration_g": gamma,
+        "peak_ground_acceleration_g": context.motion.peak / GRAVITY,
+        "static_verdict": "fails" if context.motion.peak > gamma * GRAVITY else "stands",
+        "coefficients": _coefficients(fit),
+        "coefficients_source": "Table 5.3, regenerated and interpolated" if table else "fitted to this arch",
+        "coefficients_of_this_arch": _coefficients(own),
+        "restitution": model.restitution,
+        "impulses": [],
+    }
+    for k, impulse in enumerate(impulses):
+        needed = float(fit.amplitude(impulse.period, arch.radius))
+        own_needed = float(own.amplitude(impulse.period, arch.radius))
+        amplitude = abs(impulse.amplitude) / GRAVITY
+        result.results["impulses"].append(
+            {
+                "rank": k + 1,
+                "amplitude_g": impulse.amplitude / GRAVITY,
+                "period_s": impulse.period,
+                "start_s": impulse.start,
+                "explained": impulse.explained,
+                "goodness_of_fit": impulse.goodness,
+                "failing_amplitude_g": needed if np.isfinite(needed) else None,
+                "failing_amplitude_own_g": own_needed if np.isfinite(own_needed) else None,
+                "margin": needed / amplitude if np.isfinite(needed) else None,
+                "verdict": "fails" if amplitude >= needed else "stands",
+            }
+        )
+    rows = result.results["impulses"]
+    worst = min(rows, key=lambda r: r["margin"] if r["margin"] is not None else np.inf, default=None)
+    fails = [r for r in rows if r["verdict"] == "fails"]
+    result.results["verdict"] = "fails" if fails else "stands"
+    result.results["margin"] = worst["margin"] if worst else None
+    result.results["primary_impulse"] = (
+        {k: rows[0][k] for k in ("amplitude_g", "period_s", "start_s", "goodness_of_fit")} if rows else None
+    )
+    result.tables["assessment"] = TableData(
+        {name: [np.nan if r[name] is None else r[name] for r in rows] for name in (rows[0] if rows else {})}
+    )
+    periods = np.geomspace(0.12, 1.6, 200) * np.sqrt(arch.radius)
+    result.arrays = {
+        "time": Array(time, ("time",), "s"),
+        "ground": Array(acceleration, ("time",), "m/s^2", "ground acceleration"),
+        "impulse_amplitude": Array(np.array([i.amplitude for i in impulses]), ("impulse",), "m/s^2"),
+        "impulse_period": Array(np.array([i.period for i in impulses]), ("impulse",), "s"),
+        "impulse_start": Array(np.array([i.start for i in impulses]), ("impulse",), "s"),
+        "period": Array(periods, ("period",), "s"),
+        "failing_amplitude": Array(fit.amplitude(periods, arch.radius), ("period",), "g", "Eq. 5.8"),
+        "failing_amplitude_own": Array(
+            own.amplitude(periods, arch.radius), ("period",), "g", "Eq. 5.8 fitted to this arch"
+        ),
+        "computed_period": Array(own_periods * np.sqrt(arch.radius), ("computed",), "s"),
+        "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of this arch, computed"),
+    }
+    result.answer = _answer(result.results, worst)
+    return result
+
+
+def _coefficients(fit: Fit) -> dict[str, float]:
+    return {"C1": fit.c1, "C2": fit.c2, "T_min_s": fit.t_min, "gamma": fit.gamma}
+
+
+def _answer(r: dict, worst: dict | None) -> str:
+    if worst is None:
+        return "The motion holds no impulse in the range of periods asked for: it is too short for it, or zero."
+    first = r["primary_impulse"]
+    text = (
+        f"The primary impulse of the motion is {abs(first['amplitude_g']):.3f} g over {first['period_s']:.3f} s, "
+        f"starting at {first['start_s']:.2f} s. "
+    )
+    which = (
+        "it"
+        if worst["rank"] == 1
+        else f"impulse {worst['rank']} ({abs(worst['amplitude_g']):.3f} g, {worst['period_s']:.3f} s)"
+    )
+    if worst["margin"] is None:
+        text += "All impulses are too short to bring the arch down. "
+    elif r["verdict"] == "fails":
+        text += (
+            f"The arch is predicted to fail: {which} reaches {1 / worst['margin']:.2f} times the failing amplitude. "
+        )
+    else:
+        text += f"The arch is predicted to stand: {which} would have to be {worst['margin']:.2f} times stronger. "
+    also = "also " if r["static_verdict"] == r["verdict"] else ""
+    static = f"{also}predicts failure" if r["static_verdict"] == "fails" else f"{also}predicts that it stands"
+    return (
+        text
+        + f"A static check ({r['peak_ground_acceleration_g']:.3f} g against {r['uplift_acceleration_g']:.3f} g) {static}."
+    )

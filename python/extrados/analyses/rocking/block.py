@@ -1,0 +1,103 @@
+"""rocking of a block on its toes (thesis 6.2, Eqs 6.1 to 6.4)."""
+
+import numpy as np
+
+from extrados.analyses.context import Context
+from extrados.analyses.limit.tilt import geometry_arrays
+from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.tables import Rocking
+from extrados.building.rockers.block import BlockModel
+from extrados.core import rocking as core_rocking
+from extrados.results.model import Array, Result
+from extrados.schema.constants import GRAVITY
+
+
+def run(context: Context, options: Rocking) -> Result:
+    """History, impacts, energies, and the friction that keeps the toe from sliding."""
+    structure, rocker = context.deck.structure, context.building.rocker(options.form == "linear")
+    model = rocker.model
+    context.warnings += model.warnings + context.motion.notes
+    if structure.kind == "column":
+        context.warnings.append(
+            "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
+        )
+    end_time = options.end_time or context.motion.end + 30.0 / float(model.frequency.min())
+    response = run_history(context, options, model.body, end_time, 12, rocker.start_rotation)
+
+    tangential, normal = toe_forces(model, response)
+    friction = np.abs(tangential) / np.maximum(normal, 1e-300)
+    flying = normal <= 0.0
+    c_v = model.restitution
+    result = rocking_result(context, response, "the block", friction[:, None])
+    result.results |= {
+        "restitution": float(c_v[0]),
+        "restitution_to_left": float(c_v[1]),
+        "energy_ratio": float(c_v[0] ** 2 * model.block.toe_inertia[0] / model.block.toe_inertia[1]),
+        "critical_rotation_rad": float(model.alpha[0]),
+        "critical_rotation_left_rad": float(model.alpha[1]),
+        "frequency_parameter_rad_s": float(model.frequency[0]),
+        "uplift_acceleration_g": float(model.uplift.min()),
+        "required_friction": float(friction[~flying].max(initial=0.0)),
+    }
+    if flying.any():
+        first = response.time[flying.argmax()]
+        result.warnings.append(
+            f"from {first:.3f} s on the block would leave the ground for a while: rocking without flight is assumed"
+        )
+    index = snapshot_index(response, options, result.warnings)
+    result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
+    result.answer = (
+        answer(context, response, "The block", "overturns", float(model.uplift.min()))
+        + f" It slides instead where friction is below {result.results['required_friction']:.2f}."
+    )
+    return result
+
+
+def toe_forces(model: BlockModel, response: core_rocking.Response) -> tuple[np.ndarray, np.ndarray]:
+    """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]."""
+    b = model.block
+    side = np.where(response.rotation < 0.0, -1.0, 1.0)
+    i = (side < 0.0).astype(int)
+    moving = response.rotation != 0.0
+    rest = b.alpha[i] - np.abs(response.rotation)
+    rate, acceleration = side * response.rate, side * response.acceleration
+    radius = b.radius[i] * moving
+    # The centre of mass lies at (-side R sin(alpha - q), R cos(alpha - q)) from the toe.
+    x = side * radius * (np.cos(rest) * acceleration + np.sin(rest) * rate**2)
+    y = radius * (np.sin(rest) * acceleration - np.cos(rest) * rate**2)
+    mass = b.mass[0]
+    return mass * (response.ground + x), mass * (GRAVITY + response.vertical + y)
+
+
+def pose(model: BlockModel, rotation: np.ndarray) -> np.ndarray:
+    """x, y [m] and rotation [rad, counter-clockwise] of the centre of mass (n, 3)."""
+    b = model.block
+    left = rotation < 0.0
+    i = left.astype(int)
+    side = np.where(left, -1.0, 1.0)
+    toe = side * b.toes[i]
+    rest = b.alpha[i] - np.abs(rotation)
+    return np.stack([toe - side * b.radius[i] * np.sin(rest), b.radius[i] * np.cos(rest), -rotation], axis=1)
+
+
+def _snapshots(
+    model: BlockModel, response: core_rocking.Response, tangential: np.ndarray, normal: np.ndarray, index: np.ndarray
+) -> dict[str, Array]:
+    """The block and the line of the ground's force at some output times."""
+    rotation = response.rotation[index]
+    b = model.block
+    toe = np.where(rotation < 0.0, -b.toe_left, b.toe_right)
+    # From the toe along the force, as far up as the centre of mass; at rest through the middle of the base.
+    toe = np.where(rotation == 0.0, 0.0, toe)
+    rise = b.centre_height
+    lean = np.clip(tangential[index] / np.maximum(normal[index], 1e-300), -3.0, 3.0)
+    line = np.stack(
+        [np.stack([toe, 0.0 * toe], axis=1), np.stack([toe + lean * rise, 0.0 * toe + rise], axis=1)], axis=1
+    )
+    return {
+        "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
+        "snapshot_pose": Array(
+            pose(model, rotation)[:, None, :], ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"
+        ),
+        "snapshot_thrust": Array(line, ("snapshot", "end", "axis"), "m", "line of the ground's force"),
+    }

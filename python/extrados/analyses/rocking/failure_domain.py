@@ -1,0 +1,291 @@
+"""failure-domain: which pulses bring the arch down (thesis 5.2.3, Figs 5-3 and 5-7).
+
+Above the Mode I curve lie safe pockets, so the curve is the lowest failing amplitude: the map is scanned
+first and each first failing cell refined, never bisected blindly over the whole range.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.batches import sweep
+from extrados.analyses.context import Context
+from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.tables import FailureDomain
+from extrados.analyses.runs import RunsJob, runs_job
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.rocker import Rocker
+from extrados.core.rocking import Body
+from extrados.motions import pulses
+from extrados.motions.motion import Motion
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+NO_HINGING, RECOVERY, MODE_I, MODE_II = 0, 1, 2, 3
+BATCH = 4096
+
+
+#: What the deck calls the duration of each pulse, and how many of it span the natural range of the curve
+SPANS = {"step": ("t_p", 1.0), "sine": ("T_p", 2.4), "half-sine": ("T_p", 4.0), "rectangular": ("t_p", 2.0),
+         "cosine": ("T_p", 2.4), "ricker": ("T_p", 2.4)}  # fmt: skip
+
+
+def unit_pulse(pulse: str, duration: float) -> Motion:
+    """The pulse of 1 m/s^2, first to -x, so that the structure first rocks to +x."""
+    if pulse == "step":
+        return pulses.step_pulse(-1.0, duration)
+    if pulse == "sine":
+        return pulses.sine_pulse(-1.0, duration)
+    return pulses.pulse(pulse, -1.0, duration)
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Lowest failing amplitudes [m/s^2] at each duration (NaN: none below the cap), and the map; pocket: where
+    the first safe pocket above the curve begins (NaN: none).
+
+    codes (durations, amplitudes): 0 no hinging, 1 recovery, 2 Mode I, 3 Mode II.
+    """
+
+    durations: np.ndarray
+    amplitudes: np.ndarray
+    codes: np.ndarray
+    mode_i: np.ndarray
+    mode_ii: np.ndarray
+    pocket: np.ndarray
+
+
+def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
+    """Outcome codes of the map."""
+    return np.where(outcome == 2, np.where(half_cycles == 1, MODE_II, MODE_I), np.minimum(outcome, 1)).astype(int)
+
+
+class Mapper:
+    """Runs pulses of many durations and amplitudes on one structure."""
+
+    def __init__(
+        self,
+        body: Body,
+        pulse: str,
+        durations: Sequence[float],
+        settle: float,
+        threads: int,
+        start_rotation: float = 0.0,
+    ):
+        self.body = body
+        self.motions = [unit_pulse(pulse, t) for t in durations]
+        self.settle = settle
+        self.threads = threads
+        self.start_rotation = start_rotation
+
+    def job(self, index: np.ndarray, amplitude: np.ndarray) -> RunsJob:
+        """Pulses `index` of the given amplitudes [m/s^2]."""
+        ends = np.array([m.end for m in self.motions]) + self.settle
+        return runs_job(
+            [self.body], [m.ground for m in self.motions], 0, index, amplitude, ends[index], self.start_rotation
+        )
+
+    def codes(self, index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]."""
+        job = self.job(index, amplitude)
+        parts = []
+        for first in range(0, len(index), BATCH):
+            rows = job.run(first, min(BATCH, len(index) - first), self.threads)
+            parts.append(codes_of(rows["outcome"], rows["half_cycles"]))
+        return np.concatenate(parts)
+
+
+def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, accuracy: float) -> Curves:
+    """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map."""
+    nd, na = len(durations), len(amplitudes)
+    codes = mapper.codes(np.repeat(np.arange(nd), na), np.tile(amplitudes, nd)).reshape(nd, na)
+    return curves_of(mapper, durations, amplitudes, codes, accuracy)
+
+
+def curves_of(
+    mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, codes: np.ndarray, accuracy: float
+) -> Curves:
+    """The curves of a map that has been run."""
+    grid = np.broadcast_to(amplitudes, codes.shape)
+    refined = [_refine(mapper.codes, codes, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II)]
+    # The pocket is the first safe amplitude above a failing one: the same search with the roles exchanged.
+    risen = np.where((codes < MODE_I) & (np.cumsum(codes >= MODE_I, axis=1) > 0), MODE_I, RECOVERY)
+
+    def safe(index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
+        return np.where(mapper.codes(index, amplitude) < MODE_I, MODE_I, RECOVERY)
+
+    return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, accuracy))
+
+
+def shortest_durations(
+    body: Body,
+    pulse: str,
+    amplitudes: np.ndarray,
+    durations: np.ndarray,
+    settle: float,
+    accuracy: float,
+    threads: int,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Shortest failing duration [s] at each amplitude [m/s^2] in Mode I (or II) and in Mode II; NaN: none."""
+
+    def codes(index: np.ndarray, length: np.ndarray) -> np.ndarray:
+        mapper = Mapper(body, pulse, length.tolist(), settle, threads)
+        return mapper.codes(np.arange(len(length)), amplitudes[index])
+
+    na, nd = len(amplitudes), len(durations)
+    grid = np.broadcast_to(durations, (na, nd))
+    scanned = codes(np.repeat(np.arange(na), nd), grid.ravel()).reshape(na, nd)
+    return tuple(_refine(codes, scanned, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II))
+
+
+def _refine(
+    codes_at: Callable[[np.ndarray, np.ndarray], np.ndarray],
+    codes: np.ndarray,
+    values: np.ndarray,
+    wanted: int,
+    accuracy: float,
+) -> np.ndarray:
+    """Lowest failing value of each row of a scan (codes, values ascending): its first failing cell is scanned
+    again in 8 parts until it is smaller than `accuracy`. `codes_at(rows, values)` runs more pulses."""
+
+    def fails(c: np.ndarray) -> np.ndarray:
+        return c >= MODE_I if wanted == MODE_I else c == MODE_II
+
+    failing = fails(codes)
+    first = np.where(failing.any(axis=1), failing.argmax(axis=1), -1)
+    index = np.flatnonzero(first >= 0)
+    high = values[index, first[index]]
+    low = np.where(first[index] > 0, values[index, np.maximum(first[index] - 1, 0)], 0.0)
+    parts = 8
+    while len(index) and float((high - low).max()) > accuracy:
+        steps = np.arange(1, parts) / parts
+        trial = low[:, None] + (high - low)[:, None] * steps
+        again = fails(codes_at(np.repeat(index, parts - 1), trial.ravel()).reshape(trial.shape))
+        hit = again.any(axis=1)
+        k = again.argmax(axis=1)
+        rows = np.arange(len(index))
+        high = np.where(hit, trial[rows, k], high)
+        before = np.where(k > 0, trial[rows, np.maximum(k - 1, 0)], low)
+        low = np.where(hit, before, trial[:, -1])
+    out = np.full(len(codes), np.nan)
+    out[index] = high
+    return out
+
+
+def natural_durations(time_unit: float, pulse: str, count: int = 40) -> np.ndarray:
+    """Durations that cover the curve of a structure whose natural time is `time_unit` [s] (Eq. 5.7)."""
+    high = SPANS[pulse][1]
+    return np.round(np.linspace(0.1 * high, high, count) * time_unit, 4)
+
+
+def natural_time(model: ArchModel) -> float:
+    """sqrt(R/g), by which the curves of arches scale (Eq. 5.7) [s]."""
+    return float(np.sqrt(model.arch.radius / GRAVITY))
+
+
+def settling_time(model: ArchModel) -> float:
+    """Long enough for the last half cycles after a pulse; runs stop earlier once they are safe."""
+    return 40.0 * natural_time(model)
+
+
+def run(context: Context, options: FailureDomain) -> Result:
+    """Map, Mode I and Mode II curves of pulses on an arch or a block."""
+    model = rocker_of(context, options)
+    # The arch keeps sqrt(R/g); a block has 1/p, and its curves span omega/p from about 1 to 12.
+    unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
+    durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
+    amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
+    mapper = Mapper(model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation)
+    job = mapper.job(np.repeat(np.arange(len(durations)), len(amplitudes)), np.tile(amplitudes, len(durations)))
+    result = Result("failure-domain")
+    swept = sweep(context, "failure-domain", job, len(job.scale), "failure domain")
+    if not swept.complete:
+        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
+        return result
+    codes = codes_of(swept["outcome"], swept["half_cycles"]).reshape(len(durations), len(amplitudes))
+    curves = curves_of(mapper, durations, amplitudes, codes, options.accuracy * GRAVITY)
+    names = {"mode_I": curves.mode_i, "mode_II": curves.mode_ii}
+    gamma = model.uplift
+    result.results = {
+        "pulse": options.pulse,
+        **{
+            name: {"durations_s": durations, "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve]}
+            for name, curve in names.items()
+        },
+        "pocket_begins_g": [None if np.isnan(a) else a / GRAVITY for a in curves.pocket],
+        "uplift_acceleration_g": gamma,
+        "restitution": model.restitution,
+        "natural_time_s": unit if model.what == "arch" else model.time_unit,
+        "safe_pockets": int(
+            (((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()
+        ),
+    }
+    if options.at_amplitudes:
+        at = np.array(options.at_amplitudes)
+        found = shortest_durations(
+            model.body, options.pulse, at, np.linspace(durations.min(), durations.max(), 200), 40.0 * unit,
+            options.accuracy, context.threads,
+        )  # fmt: skip
+        result.results["at_amplitudes"] = {
+            "amplitudes_g": at / GRAVITY,
+            "mode_I_durations_s": [None if np.isnan(t) else t for t in found[0]],
+            "mode_II_durations_s": [None if np.isnan(t) else t for t in found[1]],
+        }
+    columns = {
+        "duration": durations,
+        **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
+        "pocket_begins": curves.pocket / GRAVITY,
+    }
+    if model.what != "arch":
+        # omega/p and a/(g tan alpha), the axes of overturning spectra
+        ratio = 2.0 * np.pi / durations * model.time_unit
+        columns |= {"frequency_ratio": ratio, **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()}}
+        result.results["frequency_ratio"] = ratio
+        result.results["pocket_begins_ratio"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curves.pocket]
+        for name, curve in names.items():
+            result.results[name]["amplitude_ratios"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curve]
+        result.results["mode_names"] = (
+            "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact (mode 1, with "
+            "impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)"
+        )
+    result.tables["failure_domain"] = TableData(
+        columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"}
+    )
+    result.arrays = {
+        "duration": Array(durations, ("duration",), "s", "t_p of step and rectangular pulses, else the period T_p"),
+        "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
+        "outcome": Array(curves.codes, ("duration", "amplitude"), "", "0 no hinging, 1 recovery, 2 Mode I, 3 Mode II"),
+        "mode_I": Array(curves.mode_i / GRAVITY, ("duration",), "g", "lowest amplitude of collapse, of either mode"),
+        "pocket": Array(
+            curves.pocket / GRAVITY, ("duration",), "g", "where the first safe pocket above the curve begins"
+        ),
+        "mode_II": Array(
+            curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"
+        ),
+    }
+    result.answer = _answer(model, options, durations, curves, result.results["safe_pockets"])
+    return result
+
+
+def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves: Curves, pockets: int) -> str:
+    shape = {"step": "step pulses (a_p for t_p, then -a_p/2 for 2 t_p)", "sine": "single sine pulses"}.get(
+        options.pulse, f"{options.pulse} pulses"
+    )
+    if not np.isfinite(curves.mode_i).any():
+        return f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g brings the {model.what} down."
+    governing = np.nanmin(curves.mode_i) / GRAVITY
+    shortest = durations[np.isfinite(curves.mode_i)].min()
+    start = "hinge" if model.what == "arch" else "rock"
+    below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
+    modes = (
+        "Collapse after an impact (Mode I) governs where its curve lies below that of Mode II"
+        if below.any()
+        else "None of them collapses after an impact at a lower amplitude than without (Mode II)"
+    )
+    return (
+        f"Under {shape} the {model.what} starts to {start} at {model.uplift:.3f} g. It comes down from {shortest:.3f} s on "
+        f"(at up to {options.max_amplitude / GRAVITY:g} g); over the durations tried the lowest failing amplitude is {governing:.3f} g. "
+        f"{modes}; "
+        f"{pockets} of {len(durations)} durations have safe pockets above the curve, not to be relied on."
+    )

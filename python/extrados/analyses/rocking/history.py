@@ -1,0 +1,175 @@
+"""What the rocking of blocks and arches share: running the history, storing it, saying it in words."""
+
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.tables import Rocking
+from extrados.core.rocking import Body, Response, history
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+#: Numbers a history may hold in all: output times times the values at each.
+LARGEST = 20_000_000
+ROOM = 20_000
+ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+
+
+def run_history(
+    context: Context, options: Rocking, body: Body, end_time: float, width: int, start_rotation: float = 0.0
+) -> Response:
+    """The response with its history; `width` is the number of values stored at each output time.
+
+    start_rotation > 0 to +x [rad]. Refused where the history would not fit into memory.
+    """
+    if end_time / options.output_step * width > LARGEST:
+        least = end_time * width / LARGEST
+        raise Refused(
+            f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store; "
+            f"the least output_step that fits is {least:.2g} s"
+        )
+    settings: dict[str, Any] = {
+        "tolerance": options.tolerance,
+        "start_side": 1 if start_rotation >= 0.0 else -1,
+        "start_rotation": abs(start_rotation),
+    }
+    room = ROOM
+    while True:
+        response = history(body, context.motion.ground, end_time, options.output_step, room=room, **settings)
+        if response.events_found <= room or response.interrupted:
+            return response
+        room = response.events_found
+
+
+def rocking_result(context: Context, response: Response, of: str, friction: np.ndarray) -> Result:
+    """Results, tables and arrays that every rocking structure has; `of` says whose rotation it is.
+
+    friction (times, joints): coefficient of friction needed.
+    """
+    impacts = [(t, v) for kind, t, v in response.events if kind == "impact"]
+    collapse = response.outcome == "collapse"
+    energy = response.kinetic + response.potential
+    scale = max(float(energy.max(initial=0.0)), abs(response.work), 1e-300)
+    result = Result("rocking", status="interrupted" if response.interrupted else "ok")
+    result.reason = f"interrupted at {response.stop_time:.3f} s" if response.interrupted else ""
+    if response.events_found > len(response.events):
+        result.warnings.append(f"only the first {len(response.events)} of {response.events_found} events are kept")
+    if not response.settled and not response.interrupted:
+        result.warnings.append(
+            f"it still rocks at the end time of {response.stop_time:g} s: the outcome is open, give a longer end_time"
+        )
+    result.results = {
+        "rotation_of": of,
+        "outcome": response.outcome,
+        "settled": response.settled,
+        "collapse_half_cycle": response.half_cycles if collapse else None,
+        "collapse_time_s": response.stop_time if collapse else None,
+        "half_cycles": response.half_cycles,
+        "impacts": response.impacts,
+        "impact_times_s": [t for t, _ in impacts],
+        "peak_rotation_rad": response.peak,
+        "peak_rotation_ratio": response.peak_ratio,
+        "peak_ground_acceleration_g": context.motion.peak / GRAVITY,
+        "energy_supplied_J": response.work,
+        "energy_lost_at_impacts_J": response.loss,
+        "energy_residual_ratio": float(np.abs(energy - response.ledger).max(initial=0.0)) / scale,
+        "steps": response.steps,
+        "rejected_steps": response.rejected,
+    }
+    result.tables["rocking"] = TableData(
+        {
+            "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,
+            "ground_acceleration": response.ground, "vertical_acceleration": response.vertical,
+            "kinetic_energy": response.kinetic, "potential_energy": response.potential,
+            "energy_supplied_less_lost": response.ledger,
+            "required_friction": friction.max(axis=1) if len(friction) else np.zeros(0),
+        },
+        {
+            "time": "s", "rotation": "rad", "rotation_rate": "rad/s", "ground_acceleration": "m/s^2",
+            "vertical_acceleration": "m/s^2", "kinetic_energy": "J", "potential_energy": "J",
+            "energy_supplied_less_lost": "J",
+        },
+    )  # fmt: skip
+    result.tables["rocking_events"] = TableData(
+        {
+            "event": [kind for kind, _, _ in response.events],
+            "time": np.array([t for _, t, _ in response.events]),
+            "value": np.array([v for _, _, v in response.events]),
+        },
+        {"time": "s", "value": "rad at peak and collapse; rad/s before impact; side at uplift"},
+    )
+    result.arrays = {
+        "time": Array(response.time, ("time",), "s", "output times"),
+        "rotation": Array(response.rotation, ("time",), "rad", f"rotation of {of}, positive to +x"),
+        "rate": Array(response.rate, ("time",), "rad/s"),
+        "acceleration": Array(response.acceleration, ("time",), "rad/s^2"),
+        "ground": Array(response.ground, ("time",), "m/s^2", "horizontal ground acceleration"),
+        "vertical": Array(response.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
+        "kinetic": Array(response.kinetic, ("time",), "J"),
+        "potential": Array(response.potential, ("time",), "J"),
+        "ledger": Array(response.ledger, ("time",), "J", "work of the ground less the energy lost at impacts"),
+        "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
+        "required_friction": Array(friction, ("time", "joint"), "", "coefficient of friction needed"),
+    }
+    return result
+
+
+def snapshot_index(response: Response, options: Rocking, warnings: list[str]) -> np.ndarray:
+    """Output times at which the structure is drawn: those asked for, or at up to six of the greatest rotations."""
+    if not len(response.time):
+        return np.zeros(0, dtype=int)
+    end = float(response.time[-1])
+    asked = [t for t in options.thrust_line_times if 0.0 <= t <= end + options.output_step]
+    if len(asked) < len(options.thrust_line_times):
+        warnings.append(f"some thrust_line_times lie outside the run of {end:g} s and are left out")
+    if not asked:
+        peaks = [t for kind, t, _ in response.events if kind in ("peak", "collapse")]
+        size = np.abs(np.interp(peaks, response.time, response.rotation)) if peaks else np.zeros(0)
+        asked = [peaks[k] for k in np.argsort(-size)[:6]] or [0.0]
+    index = np.searchsorted(response.time, np.array(asked) - 1e-9)
+    return np.unique(np.clip(index, 0, len(response.time) - 1))
+
+
+def ordinal(n: int) -> str:
+    """first, second, ..., tenth, 11th, 12th, 21st."""
+    if n <= len(ORDINALS):
+        return ORDINALS[n - 1]
+    ending = "th" if n % 100 in (11, 12, 13) else {1: "st", 2: "nd", 3: "rd"}.get(n % 10, "th")
+    return f"{n}{ending}"
+
+
+def count(n: int, thing: str) -> str:
+    """1 impact, 2 impacts."""
+    return f"{n} {thing}" + ("" if n == 1 else "s")
+
+
+def answer(context: Context, response: Response, who: str, falls: str, uplift: float) -> str:
+    """The outcome in words: `who` is "The arch", `falls` what it does at collapse, `uplift` in g."""
+    pga = context.motion.peak / GRAVITY
+    upward = " (horizontal alone)" if np.any(response.vertical) else ""
+    about = f"peak ground acceleration {pga:.3f} g, rocking starts at {uplift:.3f} g{upward}"
+    times = [t for kind, t, _ in response.events if kind == "impact"]
+    way = "+x" if response.peak > 0 else "-x"
+    if response.outcome == "collapse":
+        if not times:
+            after = "without an impact"
+        elif len(times) == 1:
+            after = f"after one impact at {times[0]:.3f} s"
+        else:
+            after = f"after {count(response.impacts, 'impact')}, the last at {times[-1]:.3f} s"
+        return (
+            f"{who} {falls} to {way} in the {ordinal(response.half_cycles)} half cycle {after} (at "
+            f"{response.stop_time:.2f} s it has turned past recall; {about})."
+        )
+    greatest = (
+        f"greatest rotation {1e3 * abs(response.peak):.3g} mrad to {way}, {100 * response.peak_ratio:.0f} % of the rotation "
+        f"at which gravity would take it down"
+    )
+    rocked = f"{count(response.half_cycles, 'half cycle')}, {count(response.impacts, 'impact')}, {greatest} ({about})."
+    if not response.settled:
+        state = "has not rocked yet" if response.outcome == "no-hinging" else "still rocks"
+        return f"{who} {state} when the run ends at {response.stop_time:.2f} s: the outcome is open. So far {rocked}"
+    if response.outcome == "no-hinging":
+        return f"{who} does not rock: {about}; it moves with the ground as a rigid body."
+    return f"{who} rocks and recovers: {rocked}"

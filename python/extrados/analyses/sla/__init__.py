@@ -1,0 +1,1 @@
+"""Sequentially linear analysis."""

@@ -1,0 +1,343 @@
+"""A wall and the options of its deck made into a model of the core: freedoms, groups, nodal loads."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.sla.tables import Load, Sla
+from extrados.building.errors import BadGeometry
+from extrados.building.mesh.mesh import ElementGroup, Mesh, corner_count, element_areas
+from extrados.building.places import Placed
+from extrados.building.properties import Material
+from extrados.core import sla as core
+
+AXES = {"x": 0, "y": 1}
+POINTS_PER_THREAD = 20_000
+
+
+@dataclass
+class SlaModel:
+    """A wall ready for the core. constant, reference: nodal forces (nodes, 2) [N]; unit: resultant of the
+    reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
+
+    mesh: Mesh
+    freedoms: core.Freedoms
+    groups: list
+    behaviour: core.Behaviour
+    constant: np.ndarray
+    reference: np.ndarray
+    unit: float
+    control: core.Monitor
+    bands: list[np.ndarray]  # crack band of the elements of each plane group [m]
+    point_xy: np.ndarray  # (points, 2) of the plane groups [m]
+
+    def open(self, options: Sla, threads: int) -> core.Model:
+        """The model in the core; Refused names a free node or a bad element."""
+        # Below this many points a thread costs more than it saves; results are the same for any number
+        threads = max(1, min(threads, len(self.point_xy) // POINTS_PER_THREAD))
+        try:
+            return core.Model(
+                self.mesh.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads
+            )
+        except core.Mechanism as error:
+            x, y = self.mesh.xy[error.node]
+            raise Refused(
+                f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
+                f"{error.direction}; add supports"
+            ) from None
+        except core.BadElement as error:
+            raise Refused(str(error)) from None
+
+
+def build(mesh: Mesh, options: Sla, strength: np.ndarray | None = None) -> SlaModel:
+    """Model of a wall; `strength` factors of the tensile strength by element, block after block."""
+    try:
+        return _build(mesh, options, strength)
+    except BadGeometry as error:
+        raise Refused(str(error)) from None
+
+
+def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
+    held, springs = set(), []
+    for i, support in enumerate(mesh.held):
+        for node in mesh.nodes_at(support, f"supports.held[{i}]").tolist():
+            for letter in support.fix:
+                if support.stiffness is None:
+                    held.add((node, AXES[letter]))
+                else:
+                    springs.append((node, AXES[letter], support.stiffness))
+    ties = [
+        [(int(n), AXES[tie.direction], 1.0) for n in mesh.nodes_at(tie, f"ties[{i}]")]
+        for i, tie in enumerate(mesh.ties)
+    ]
+    moved = next((load for load in options.reference if load.kind == "displacement"), None)
+    if moved is not None:
+        tie = []
+        for part in moved.parts:
+            tie += [(int(n), AXES[moved.direction], part.ratio) for n in mesh.nodes_at(part, "displacement")]
+        if all(share == 0.0 for _, _, share in tie):
+            raise BadGeometry("displacement: every ratio is 0, nothing would move")
+        if len({n for n, _, _ in tie}) < len(tie):
+            raise BadGeometry("the parts of the displacement share nodes")
+        ties.append(tie)
+    tied = {(n, d) for tie in ties for n, d, _ in tie}
+    if clash := held & tied:
+        node, direction = min(clash)
+        raise BadGeometry(
+            f"node {node + 1} at x {mesh.xy[node, 0]:g} m, y {mesh.xy[node, 1]:g} m is held and tied in "
+            f"{'xy'[direction]}"
+        )
+    try:
+        freedoms = core.Freedoms.make(len(mesh.xy), sorted(held), ties)
+    except ValueError as error:
+        raise BadGeometry(str(error)) from None
+    if not (freedoms.equation >= 0).any():
+        raise BadGeometry("every node is held: nothing can move")
+
+    groups, bands, points = [], [], []
+    start = 0
+    for group in mesh.groups:
+        count = len(group.connect)
+        factors = np.ones(count) if strength is None else strength[start : start + count]
+        start += count
+        band = crack_band(mesh, group, options)
+        groups.append(_plane(mesh, group, band, factors, options))
+        bands.append(band)
+        points.append(point_positions(mesh.xy, group))
+    for bar in mesh.bars:
+        groups.append(_bar(mesh, bar, options))
+    if springs:
+        node, direction, stiffness = (np.array(column) for column in zip(*springs, strict=True))
+        ground = np.full(len(node), -1)
+        groups.append(
+            core.Springs(
+                np.column_stack([node, ground]), np.column_stack([direction, direction]), stiffness.astype(float)
+            )
+        )
+    for i, x in enumerate(options.section_x):
+        if not mesh.low[0] <= x <= mesh.high[0]:
+            raise BadGeometry(f"section_x[{i}] is {x:g} m, the wall reaches from {mesh.low[0]:g} to {mesh.high[0]:g} m")
+    constant = nodal_forces(mesh, options.constant, "constant")
+    reference = nodal_forces(mesh, options.reference, "reference")
+    if moved is not None:
+        node, direction, share = max(ties[-1], key=lambda term: abs(term[2]))
+        reference[node, direction] = 1.0 / share  # unit force on the common displacement
+        unit = 1.0
+    else:
+        total = float(np.hypot(*reference.sum(axis=0)))
+        unit = total if total > 1e-9 * np.abs(reference).sum() else 0.5 * float(np.abs(reference).sum())
+    if not unit > 0.0:
+        raise BadGeometry("the reference load is zero")
+    if (freedoms.equation[np.abs(reference) > 0] < 0).all():
+        raise BadGeometry("the reference load acts on held nodes only")
+    return SlaModel(
+        mesh, freedoms, groups,
+        core.Behaviour(options.cracking == "isotropic", options.shear_retention, options.crack_closure),
+        constant, reference, unit, _control(mesh, options, reference, unit), bands, np.concatenate(points),
+    )  # fmt: skip
+
+
+def crack_band(mesh: Mesh, group: ElementGroup, options: Sla) -> np.ndarray:
+    """h of each element [m]: given, or sqrt(2 A) of linear and sqrt(A) of quadratic elements."""
+    if options.crack_band is not None:
+        return np.full(len(group.connect), options.crack_band)
+    area = element_areas(mesh.xy, group.kind, group.connect)
+    return np.sqrt(area if group.kind in ("T6", "Q8") else 2.0 * area)
+
+
+def _softening(material: Material, options: Sla, factor: float = 1.0) -> core.Softening | None:
+    if material.tensile_strength is None:
+        return None
+    return core.Softening(
+        material.tensile_strength * factor, material.fracture_energy, material.softening, options.ripple,
+        options.teeth == "exact", options.overshoot,
+    )  # fmt: skip
+
+
+def _crushing(material: Material, options: Sla) -> core.Softening | None:
+    if material.crushing_energy is None:
+        return None
+    return core.Softening(
+        material.compressive_strength, material.crushing_energy, material.crushing, options.ripple,
+        options.teeth == "exact", options.overshoot,
+    )  # fmt: skip
+
+
+def _plane(mesh: Mesh, group: ElementGroup, band: np.ndarray, factors: np.ndarray, options: Sla) -> core.Plane:
+    materials = [mesh.materials[m] for m in group.material]
+    crushing = [None if s else _crushing(m, options) for m, s in zip(materials, group.linear, strict=True)]
+    tension = [
+        None if s else _softening(m, options, float(f))
+        for m, s, f in zip(materials, group.linear, factors, strict=True)
+    ]
+    for law in ("tension", "crushing"):
+        rows = tension if law == "tension" else crushing
+        for k in np.argsort(-band):
+            if rows[k] is not None:
+                limit = core.largest_band(rows[k], materials[k].young)
+                if band[k] >= limit:
+                    energy = "fracture_energy" if law == "tension" else "crushing_energy"
+                    raise BadGeometry(
+                        f"{energy} is too small for the elements: a crack band of {band[k]:.4g} m snaps back, the "
+                        f"largest is {limit:.4g} m; use smaller elements"
+                    )
+    return core.Plane(
+        group.kind, group.connect, group.thickness,
+        np.array([m.young for m in materials]), np.array([m.poisson for m in materials]), band,
+        tension if any(t is not None for t in tension) else None,
+        crushing if any(c is not None for c in crushing) else None,
+        np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
+        group.axis, group.gauss, mesh.selective,
+    )  # fmt: skip
+
+
+def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
+    ends = [int(np.hypot(*(mesh.xy - at).T).argmin()) for at in (bar.start, bar.end)]
+    if ends[0] == ends[1]:
+        raise BadGeometry(f"a bar from {bar.start} to {bar.end} begins and ends at the same node")
+    material = mesh.named[bar.material]
+    length = float(np.hypot(*(mesh.xy[ends[1]] - mesh.xy[ends[0]])))
+    return core.Bars(
+        np.array([ends]), bar.area, material.young, options.crack_band or length,
+        _softening(material, options), _crushing(material, options),
+    )  # fmt: skip
+
+
+def point_positions(xy: np.ndarray, group: ElementGroup) -> np.ndarray:
+    """Integration points (points, 2) [m], as the core orders them; sides are straight."""
+    corners = xy[group.connect[:, : corner_count(group.kind)]]
+    if group.kind == "T3":
+        share = np.full((1, 3), 1.0 / 3.0)
+    elif group.kind == "T6":
+        share = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6.0
+    else:
+        gx, gy = (np.polynomial.legendre.leggauss(n)[0] for n in group.gauss)
+        r, s = (a.ravel() for a in np.meshgrid(gx, gy))
+        share = 0.25 * np.column_stack([(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s), (1 - r) * (1 + s)])
+    return np.einsum("pc,ecx->epx", share, corners).reshape(-1, 2)
+
+
+def nodal_forces(mesh: Mesh, loads: Sequence[Load], word: str) -> np.ndarray:
+    """Consistent nodal forces (nodes, 2) [N]."""
+    force = np.zeros_like(mesh.xy)
+    for i, load in enumerate(loads):
+        what = f"{word}[{i}]"
+        if load.kind == "gravity":
+            heavy = False
+            for group in mesh.groups:
+                density = np.array([m.density for m in mesh.materials])[group.material]
+                heavy |= bool((density > 0).any())
+                per_area = (density * group.thickness)[:, None] * [load.ax, load.ay]
+                force += core.body_force(group.kind, group.gauss, mesh.xy, group.connect, per_area)
+            if not heavy:
+                raise BadGeometry(f"{what}: gravity without weight: give the material a density")
+        elif load.kind == "point":
+            nodes = mesh.nodes_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
+            force[nodes] += np.array([load.fx, load.fy]) / len(nodes)
+        elif load.kind != "displacement":
+            force += _edge_load(mesh, load, what)
+    return force
+
+
+def _edge_load(mesh: Mesh, load: Load, what: str) -> np.ndarray:
+    """Consistent nodal forces of a load along boundary edges; of an edge that reaches out of the place, its part
+    inside is loaded."""
+    edges, thickness = mesh.boundary()
+    begin, end = _covered(mesh, load, edges)
+    if load.edge is not None and load.kind != "spread":
+        letter, axis = ("y", 1) if load.edge in ("left", "right") else ("x", 0)
+        asked, slack = getattr(load, letter), 1e-6 * float(np.max(mesh.high - mesh.low))
+        if asked is not None and (asked[0] < mesh.low[axis] - slack or asked[1] > mesh.high[axis] + slack):
+            raise BadGeometry(
+                f"{what}: {letter} from {asked[0]:g} to {asked[1]:g} m reaches out of the wall, "
+                f"{mesh.low[axis]:g} to {mesh.high[axis]:g} m: a part of the load would be lost"
+            )
+    mine = end > begin
+    if not mine.any():
+        raise BadGeometry(
+            f"{what}: no boundary edge lies on edge {load.edge}, x {load.x}, y {load.y}; a mesh line is missing"
+        )
+    edges, thickness, begin, end = edges[mine], thickness[mine], begin[mine], end[mine]
+    along = mesh.xy[edges[:, 1]] - mesh.xy[edges[:, 0]]
+    length = np.hypot(*along.T)
+    if load.kind == "pressure":
+        normal = np.column_stack([along[:, 1], -along[:, 0]])  # outward, times the length
+        total = -load.value * thickness[:, None] * normal
+    else:
+        covered = float(((end - begin) * length).sum())
+        per = np.array([load.px, load.py]) if load.kind == "line" else np.array([load.fx, load.fy]) / covered
+        total = length[:, None] * per
+    # Integrals of 1, t and t^2 over the part, t from 0 to 1 along the edge, give those of the shape functions
+    one, t, tt = (end - begin), (end**2 - begin**2) / 2, (end**3 - begin**3) / 3
+    quadratic, whole = edges[:, 2] >= 0, (begin == 0.0) & (end == 1.0)
+    first = np.where(quadratic, one - 3 * t + 2 * tt, one - t)
+    second = np.where(quadratic, 2 * tt - t, t)
+    first, second = (np.where(whole, np.where(quadratic, 1 / 6, 0.5), share) for share in (first, second))
+    middle = np.where(whole, 4 / 6, 4 * (t - tt))
+    force = np.zeros_like(mesh.xy)
+    for column, share in ((0, first), (1, second)):
+        np.add.at(force, edges[:, column], share[:, None] * total)
+    if quadratic.any():
+        np.add.at(force, edges[quadratic, 2], middle[quadratic, None] * total[quadratic])
+    return force
+
+
+def _covered(mesh: Mesh, load: Load, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The part of each straight edge within a place, as fractions from its first node; begin >= end where none is."""
+    tolerance = 1e-6 * float(np.max(mesh.high - mesh.low))
+    ranges = [load.x, load.y]
+    if load.edge is not None:
+        axis = 0 if load.edge in ("left", "right") else 1
+        at = float((mesh.low if load.edge in ("left", "bottom") else mesh.high)[axis])
+        low, high = ranges[axis] or (at, at)
+        if low > at + tolerance or high < at - tolerance:
+            return np.ones(len(edges)), np.zeros(len(edges))
+        ranges[axis] = (at, at)
+    begin, end = np.zeros(len(edges)), np.ones(len(edges))
+    for axis, ends in enumerate(ranges):
+        if ends is None:
+            continue
+        a, b = mesh.xy[edges[:, 0], axis], mesh.xy[edges[:, 1], axis]
+        level = np.abs(b - a) <= tolerance
+        step = np.where(level, 1.0, b - a)
+        cuts = np.sort(np.stack([(ends[0] - a) / step, (ends[1] - a) / step]), axis=0)
+        outside = level & ((np.minimum(a, b) < ends[0] - tolerance) | (np.maximum(a, b) > ends[1] + tolerance))
+        # A place that ends at a node, but for rounding, ends there
+        slack = np.where(level, 0.0, tolerance / np.abs(step))
+        cuts = np.where(np.abs(cuts) <= slack, 0.0, np.where(np.abs(cuts - 1.0) <= slack, 1.0, cuts))
+        begin = np.where(level, begin, np.maximum(begin, cuts[0]))
+        end = np.where(level, np.where(outside, -1.0, end), np.minimum(end, cuts[1]))
+    return begin, end
+
+
+def _control(mesh: Mesh, options: Sla, reference: np.ndarray, unit: float) -> core.Monitor:
+    """The control displacement; by default the one on which the reference load does its work."""
+    if not options.control:
+        node, direction = np.nonzero(reference)
+        return core.Monitor(node, direction, reference[node, direction] / unit)
+    parts = []
+    for i, term in enumerate(options.control):
+        nodes = mesh.nodes_at(term, f"control[{i}]")
+        parts.append((nodes, np.full(len(nodes), AXES[term.direction]), np.full(len(nodes), term.weight / len(nodes))))
+    return core.Monitor(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+
+
+def strength_factors(mesh: Mesh, options: Sla, seed: int) -> np.ndarray | None:
+    """Lognormal factors of ft with mean 1 by element, correlated over strength_length; None without scatter."""
+    if options.strength_variation == 0.0:
+        return None
+    centres = np.concatenate([mesh.xy[b.connect[:, : corner_count(b.kind)]].mean(axis=1) for b in mesh.groups])
+    rng = np.random.default_rng(seed)
+    sigma = np.sqrt(np.log1p(options.strength_variation**2))
+    length = options.strength_length
+    if length is None or length <= mesh.size:
+        field = rng.standard_normal(len(centres))
+    else:
+        # Spectral representation of a Gaussian correlation exp(-r^2 / length^2)
+        waves = 400
+        number = rng.normal(0.0, np.sqrt(2.0) / length, (waves, 2))
+        phase = rng.uniform(0.0, 2.0 * np.pi, waves)
+        field = np.sqrt(2.0 / waves) * np.cos(centres @ number.T + phase).sum(axis=1)
+    return np.exp(sigma * field - 0.5 * sigma**2)

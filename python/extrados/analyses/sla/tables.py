@@ -1,0 +1,147 @@
+"""The deck tables of sequentially linear analysis."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, field_validator, model_validator
+
+from extrados.analyses.table import BuildingAnalysis
+from extrados.building.mesh.options import MeshOptions
+from extrados.building.places import Placed, Range
+from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import Acceleration, Force, Length, LineForce, Stress
+from extrados.schema.table import Table, key
+
+
+class Part(Placed):
+    """Nodes of a prescribed displacement."""
+
+    ratio: float = key(1.0, "their share of the displacement", ge=-1e3, le=1e3)
+
+
+class Load(Table):
+    """One load; which keys it takes depends on its kind."""
+
+    kind: Literal["gravity", "pressure", "line", "point", "spread", "displacement"] = key(
+        about="self-weight; pressure or force per length on boundary edges; force on the nearest node, or on all "
+        "nodes of a place in equal parts; force spread evenly along an edge; displacement with ratios"
+    )
+    edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
+    x: Range | None = key(None, "x of the place, or [from, to]")
+    y: Range | None = key(None, "y of the place, or [from, to]")
+    ax: Acceleration = key(0.0, "of gravity: acceleration to +x")
+    ay: Acceleration = key(-GRAVITY, "of gravity: acceleration to +y")
+    value: Stress = key(0.0, "of pressure: positive pushes onto the wall")
+    px: LineForce = key(0.0, "of line: force per length to +x")
+    py: LineForce = key(0.0, "of line: force per length to +y")
+    fx: Force = key(0.0, "of point and spread: force to +x")
+    fy: Force = key(0.0, "of point and spread: force to +y")
+    direction: Literal["x", "y"] = key("x", "of displacement")
+    parts: list[Part] = key([], "of displacement: places and their ratios; they move as one", max_length=50)
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Load":
+        own = {
+            "gravity": {"ax", "ay"},
+            "pressure": {"edge", "x", "y", "value"},
+            "line": {"edge", "x", "y", "px", "py"},
+            "point": {"edge", "x", "y", "fx", "fy"},
+            "spread": {"edge", "x", "y", "fx", "fy"},
+            "displacement": {"direction", "parts"},
+        }[self.kind]
+        strange = self.model_fields_set - own - {"kind"}
+        if strange:
+            raise ValueError(f"{self.kind} takes {', '.join(sorted(own))}, not {', '.join(sorted(strange))}")
+        if self.kind == "displacement":
+            if not self.parts:
+                raise ValueError("displacement needs parts = [{edge = ..., ratio = ...}, ...]")
+        elif self.kind != "gravity" and self.edge is None and self.x is None and self.y is None:
+            raise ValueError(f"the place of the {self.kind} load is missing: expected edge, x or y")
+        return self
+
+
+class Watch(Placed):
+    """A displacement that is followed: the mean of the place's nodes times `weight`."""
+
+    direction: Literal["x", "y"] = key("x", "direction of the displacement")
+    weight: float = key(1.0, "share in the sum, not 0")
+
+    @field_validator("weight")
+    @classmethod
+    def _counts(cls, weight: float) -> float:
+        if weight == 0.0:
+            raise ValueError("a weight of 0 follows nothing: leave the term out")
+        return weight
+
+
+class Sla(BuildingAnalysis):
+    """Sequentially linear analysis: cracks event by event under constant loads A and growing loads lambda B."""
+
+    kind: Literal["sla"]
+    view: ClassVar = "mesh"
+    uses: ClassVar = (
+        "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
+        "material.compressive_strength",
+    )  # fmt: skip
+    starter: ClassVar = {
+        "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
+        "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
+        "target_displacement": '"2 mm"',
+    }
+    constant: list[Load] = key([], "loads A, there from the start", max_length=100)
+    reference: list[Load] = key(about="loads B that lambda multiplies", min_length=1, max_length=100)
+    constant_damage: bool = key(
+        True, "bring A from 0 to 1 with damage before B; without it B acts on the undamaged wall", source="thesis 4.3.1"
+    )
+    directions: list[Literal["+", "-"]] = key(
+        ["+"], "senses of B, each from the same start", min_length=1, max_length=2
+    )
+    control: list[Watch] = key(
+        [], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50
+    )
+    mesh: MeshOptions = key(MeshOptions(), "elements, [analysis.mesh]")
+    events: int = key(5000, "most events", ge=1, le=10_000_000)
+    target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
+    stop_fraction: float = key(0.0, "stop where the load falls below this part of its peak", ge=0, lt=1)
+    mechanism_ratio: float = key(1e4, "stop where the compliance has grown by this factor", ge=10, le=1e12)
+    teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
+    ripple: float = key(0.1, "half-width p of the teeth over the strength", source="thesis 4.2", ge=0.005, le=0.5)
+    overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
+    crack_band: Length | None = key(
+        None, "crack band width h; default sqrt(2 A) of linear and sqrt(A) of quadratic elements", gt=0
+    )
+    cracking: Literal["orthotropic", "isotropic"] = key("orthotropic", "fixed cracks, or one damage", source="Eq. 4.10")
+    shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
+        None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
+    )
+    crack_closure: bool = key(False, "cracks that close regain their stiffness")
+    algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
+    states: list[Annotated[int, Field(ge=1)]] = key(
+        [], "events whose state is kept (the peak and the last are anyway)", max_length=200
+    )
+    probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
+    section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections", max_length=10)
+    seeds: list[int] = key([], "repeat with these seeds of random mesh and strength: a scatter band", max_length=200)
+    strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
+    strength_length: Length | None = key(None, "correlation length of the strength; default one element", gt=0)
+    strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
+    resume_from: str | None = key(None, "results folder of an earlier run of the same wall to go on from")
+    resume_event: int | None = key(None, "go on before this event of that run; default its last", ge=1)
+
+    @field_validator("directions")
+    @classmethod
+    def _each_once(cls, directions: list[str]) -> list[str]:
+        if len(set(directions)) < len(directions):
+            raise ValueError(f"each sense may stand once, not {directions}")
+        return sorted(directions)  # "+" first: the second curve, where there is one, is to -
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Sla":
+        if any(load.kind == "displacement" for load in self.constant):
+            raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
+        if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
+            raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
+        if len(set(self.seeds)) < len(self.seeds):
+            raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
+        if self.shear_retention is not None and self.cracking == "isotropic":
+            raise ValueError("isotropic cracking has no shear retention")
+        return self

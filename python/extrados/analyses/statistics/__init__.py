@@ -1,0 +1,1 @@
+"""Statistics of rocking over many motions."""

@@ -1,0 +1,457 @@
+"""fragility: probability of uplift and collapse over many motions (thesis 6.3, Figs 6-7, 6-8, 6-10)."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.stats import norm, qmc
+
+from extrados.analyses.batches import Swept, sweep
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
+from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.statistics.summaries import Lognormal, NoFit, bootstrap, fit_lognormal, wilson
+from extrados.analyses.statistics.tables import UNCERTAIN, Fragility
+from extrados.building.rockers.rocker import Rocker, make_rocker
+from extrados.core import rocking as core_rocking
+from extrados.core.errors import Cancelled, status_code
+from extrados.core.rocking import Body, Ground
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+FAILED, COLLAPSE = -1, 2
+#: Intensity -> (name in the results, unit of a level in SI, unit of the column)
+INTENSITIES = {
+    "pga": ("PGA", GRAVITY, "g"),
+    "pga-ratio": ("PGA/(g tan alpha)", 1.0, ""),
+    "pgv-ratio": ("p PGV/(g tan alpha)", 1.0, ""),
+    "sa": ("SA", GRAVITY, "g"),
+    "arias": ("Arias intensity", 1.0, "m/s"),
+    "scale": ("factor", 1.0, ""),
+}
+
+
+@dataclass(frozen=True)
+class EnsembleJob:
+    """Member k is motion k // L at level k % L, L the number of levels; without levels motions stay as they are.
+
+    measure: what is scaled to the level, in SI; a level 1 means `unit` of it. bodies and starts hold one entry,
+    or one for each motion.
+    """
+
+    source: Source
+    bodies: list[Body]
+    starts: np.ndarray
+    measure: str
+    unit: float
+    levels: np.ndarray | None
+    sa: tuple[float, float] | None
+    settle: float
+    tolerance: float
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        per_motion = 1 if self.levels is None else len(self.levels)
+        member = np.arange(first, first + count)
+        low, high = first // per_motion, (first + count - 1) // per_motion + 1
+        found = self.source.grounds(low, high - low, threads)
+        usable = [i for i, ground in enumerate(found) if not isinstance(ground, str)]
+        place = np.full(len(found), -1)
+        place[usable] = np.arange(len(usable))
+        grounds: list[Ground] = [found[i] for i in usable]
+        motion = member // per_motion - low
+        reason = np.array([ground if isinstance(ground, str) else "" for ground in found])[motion]
+        rows = {
+            "outcome": np.full(count, FAILED, np.int8), "half_cycles": np.zeros(count, np.int32),
+            **{n: np.full(count, np.nan) for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias")},
+        }  # fmt: skip
+        if grounds:
+            own = measures(grounds, self.sa, threads)
+            good = np.flatnonzero(place[motion] >= 0)
+            index = place[motion[good]]
+            scale = np.ones(len(good))
+            if self.levels is not None:
+                wanted = self.levels[member[good] % per_motion] * self.unit
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    scale = wanted if self.measure == "scale" else wanted / own[self.measure][index]
+                if self.measure == "arias":
+                    scale = np.sqrt(scale)
+            level_ok = np.isfinite(scale)
+            reason = np.where(
+                np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason
+            )
+            good, index, scale = good[level_ok], index[level_ok], scale[level_ok]
+            body = member[good] // per_motion if len(self.bodies) > 1 else np.zeros(len(good), int)
+            used, body = np.unique(body, return_inverse=True)
+            e = core_rocking.ensemble(
+                [self.bodies[b] for b in used], grounds, body, index, scale,
+                np.array([g.end for g in grounds])[index] + self.settle,
+                start_rotation=self.starts[used][body], tolerance=self.tolerance, threads=threads,
+            )  # fmt: skip
+            if e.interrupted:
+                raise Cancelled(status_code("cancelled"), "ensemble interrupted")
+            rows["outcome"][good] = e.outcome
+            rows["half_cycles"][good] = e.half_cycles
+            for name in ("peak", "peak_ratio", "stop_time"):
+                rows[name][good] = getattr(e, name)
+            rows["scale"][good] = scale
+            for name, power in (("pga", 1), ("pgv", 1), ("arias", 2)):
+                rows[name][good] = own[name][index] * np.abs(scale) ** power
+            if e.failed:
+                texts = np.full(count, "", dtype=object)
+                texts[good[list(e.failed)]] = list(e.failed.values())
+                reason = np.where(texts == "", reason, texts.astype(str))
+        return {**rows, "reason": reason}
+
+
+def sampled_models(context: Context, options: Fragility, base: Rocker, count: int) -> list[Rocker]:
+    """One model for each motion with lognormal factors of mean 1 on the uncertain keys, by a scrambled Sobol sequence."""
+    structure = context.deck.structure
+    known = UNCERTAIN.get(base.what, ())
+    for name in options.uncertain:
+        if name not in known or (name != "restitution" and getattr(structure, name) is None):
+            raise Refused(f"uncertain.{name} does not belong to this {base.what}; it has {', '.join(known) or 'none'}")
+    names = sorted(options.uncertain)
+    draws = qmc.Sobol(len(names), scramble=True, seed=options.seed or 0).random_base2(
+        max(1, int(np.ceil(np.log2(count))))
+    )[:count]
+    spread = np.sqrt(np.log1p(np.array([options.uncertain[n] for n in names]) ** 2))
+    factors = np.exp(spread * norm.ppf(np.clip(draws, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
+    made = []
+    linear = options.form == "linear"
+    for row in factors:
+        update: dict[str, Any] = {}
+        for name, factor in zip(names, row, strict=True):
+            if name != "restitution":
+                update[name] = getattr(structure, name) * float(factor)
+        changed = context.building.having(structure=structure.model_copy(update=update))
+        if "restitution" in names:
+            c_v = make_rocker(changed, linear).restitution * float(row[names.index("restitution")])
+            joints = changed.joints.model_copy(update={"restitution": min(1.0, c_v), "energy_ratio": None})
+            changed = changed.having(joints=joints)
+        made.append(make_rocker(changed, linear))
+    return made
+
+
+def run(context: Context, options: Fragility) -> Result:
+    """Histograms, probabilities, curves; see the deck reference."""
+    base = rocker_of(context, options)
+    result = Result("fragility")
+    if options.durations is None:
+        job, count, motions = _job(context, options, base, None)
+        swept = sweep(context, "fragility", job, count, "fragility")
+        _describe(context, options, base, job, swept, motions, result)
+    else:
+        parts = []
+        for duration in options.durations:
+            job, count, motions = _job(context, options, base, duration)
+            swept = sweep(context, "fragility", job, count, f"fragility, {duration:g} s")
+            parts.append((duration, swept))
+            if not swept.complete:
+                break
+        _describe_durations(options, base, parts, result)
+    return result
+
+
+def _job(context: Context, options: Fragility, base: Rocker, duration: float | None) -> tuple[EnsembleJob, int, int]:
+    source, available = source_of(context, options.seed, duration)
+    motions = options.count or available or 1000
+    if available is not None and motions > available and not options.uncertain:
+        raise Refused(
+            f"count is {motions}, but the deck has {available} motion{'s' if available > 1 else ''}: expected at most {available}"
+        )
+    models = sampled_models(context, options, base, motions) if options.uncertain else [base]
+    levels = np.array(options.levels) if options.levels else None
+    measure, unit = options.intensity, INTENSITIES[options.intensity][1]
+    if measure == "pga-ratio":
+        measure, unit = "pga", base.uplift * GRAVITY
+    elif measure == "pgv-ratio":
+        measure, unit = "pgv", base.uplift * GRAVITY * base.time_unit
+    sa = (options.sa_period, options.sa_damping) if options.levels and options.sa_period else None
+    settle = 40.0 * base.time_unit if options.settle is None else options.settle
+    job = EnsembleJob(
+        source, [m.body for m in models], np.array([m.start_rotation for m in models]), measure, unit, levels, sa, settle,
+        options.tolerance,
+    )  # fmt: skip
+    return job, motions * (1 if levels is None else len(levels)), motions
+
+
+def shares(swept: Swept, confidence: float, initial: float) -> dict[str, Any]:
+    """Probabilities with Wilson intervals and the moments of the peak rotation; overturned members count as 1."""
+    ok = swept["outcome"] != FAILED
+    n = int(ok.sum())
+    collapsed = int((swept["outcome"] == COLLAPSE).sum())
+    # With a start off rest every member rocks: uplift then means that it rose beyond its start.
+    lifted = (
+        int((ok & (swept["outcome"] > 0)).sum())
+        if initial == 0.0
+        else int((ok & (swept["peak_ratio"] > abs(initial) * (1 + 1e-9))).sum())
+    )
+    ratio = np.minimum(swept["peak_ratio"][ok], 1.0)
+    low, high = wilson(collapsed, n, confidence)
+    up_low, up_high = wilson(lifted, n, confidence)
+    return {
+        "count": n,
+        "failed": int((~ok).sum()),
+        "collapsed": collapsed,
+        "collapse_probability": collapsed / n if n else None,
+        "confidence_interval": [float(low), float(high)],
+        "uplifted": lifted,
+        "uplift_probability": lifted / n if n else None,
+        "uplift_confidence_interval": [float(up_low), float(up_high)],
+        "mean_peak_rotation_ratio": float(ratio.mean()) if n else None,
+        "deviation_peak_rotation_ratio": float(ratio.std(ddof=1)) if n > 1 else None,
+        "median_peak_rotation_ratio": float(np.median(ratio)) if n else None,
+    }
+
+
+def _describe(
+    context: Context,
+    options: Fragility,
+    base: Rocker,
+    job: EnsembleJob,
+    swept: Swept,
+    motions: int,
+    result: Result,
+) -> None:
+    _stopped(swept, result)
+    if not len(swept.members):
+        result.answer = "No member is finished."
+        return
+    initial = base.start_rotation / base.critical[0]
+    r = shares(swept, options.confidence, initial)
+    per_motion = 1 if job.levels is None else len(job.levels)
+    ok = swept["outcome"] != FAILED
+    r |= {
+        "confidence": options.confidence,
+        "restitution": base.restitution,
+        "uplift_acceleration_g": base.uplift,
+        "critical_rotation_rad": base.critical[0],
+        "initial_rotation_ratio": initial,
+        "motions": motions,
+        "median_pga_g": float(np.nanmedian(swept["pga"])) / GRAVITY if ok.any() else None,
+        "median_pgv_m_s": float(np.nanmedian(swept["pgv"])) if ok.any() else None,
+        "median_arias_m_s": float(np.nanmedian(swept["arias"])) if ok.any() else None,
+    }
+    if isinstance(job.source, GeneratedSource):
+        expected = job.source.made.expected()
+        r |= {"expected_pga_g": expected["pga"] / GRAVITY, "expected_pgv_m_s": expected["pgv"]}
+        ratio = r["median_pga_g"] / r["expected_pga_g"]
+        if job.levels is None and not 0.5 <= ratio <= 2.0:
+            result.warnings.append(
+                f"the median peak acceleration of the motions, {r['median_pga_g']:.2f} g, is {ratio:.1f} times the median observed "
+                f"at this intensity ({r['expected_pga_g']:.2f} g, Worden et al. 2012)"
+            )
+    failures = swept.members[~ok]
+    told: set[str] = set()  # a motion that fails at one level fails at all
+    for k in failures:
+        name = (
+            job.source.names[k // per_motion % len(job.source.names)]
+            if isinstance(job.source, ListSource)
+            else f"motion {k // per_motion + 1}"
+        )
+        if name in told:
+            continue
+        told.add(name)
+        if len(told) <= 5:
+            result.warnings.append(f"{name} has no result: {swept['reason'][np.searchsorted(swept.members, k)]}")
+    if len(told) > 5:
+        result.warnings.append(f"{len(failures)} members in all have no result, see ensemble.csv")
+    result.results = r
+    _tables(job, swept, per_motion, options, result)
+    edges = np.linspace(0.0, 1.0, options.bins + 1)
+    upright = ok & (swept["outcome"] != COLLAPSE)
+    result.arrays |= {
+        "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
+        "bin_count": Array(
+            np.histogram(np.minimum(swept["peak_ratio"][upright], 1.0), edges)[0], ("bin",), "", "members that stay up"
+        ),
+    }
+    if job.levels is not None:
+        _curves(options, base, job, swept, motions, result)
+    else:
+        p, (low, high) = r["collapse_probability"], r["confidence_interval"]
+        result.answer = (
+            f"Of {r['count']} motions {r['collapsed']} bring the {base.what} down: probability of collapse {100 * p:.1f} % "
+            f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
+            f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
+            f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
+        ) if p is not None else "No motion could be run."  # fmt: skip
+
+
+def _stopped(swept: Swept, result: Result) -> None:
+    if swept.interrupted:
+        result.status, result.reason = "interrupted", swept.stopped
+    elif swept.stopped:
+        result.status, result.reason = "failed", swept.stopped
+
+
+def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility, result: Result) -> None:
+    columns: dict[str, Any] = {"member": swept.members + 1, "motion": swept.members // per_motion + 1}
+    units = {"pga": "g", "pgv": "m/s", "arias": "m/s", "peak_rotation": "rad", "stop_time": "s"}
+    if job.levels is not None:
+        columns["level"] = job.levels[swept.members % per_motion]
+        units["level"] = INTENSITIES[options.intensity][2]
+    words = np.array([*core_rocking.OUTCOMES, "failed"])
+    columns |= {
+        "scale": swept["scale"], "pga": swept["pga"] / GRAVITY, "pgv": swept["pgv"], "arias": swept["arias"],
+        "outcome": words[swept["outcome"]], "half_cycles": swept["half_cycles"], "peak_rotation": swept["peak"],
+        "peak_ratio": swept["peak_ratio"], "stop_time": swept["stop_time"],
+    }  # fmt: skip
+    if np.any(swept["reason"] != ""):
+        columns["reason"] = swept["reason"]
+    result.tables["ensemble"] = TableData(columns, units)
+    result.arrays |= {
+        "outcome": Array(swept["outcome"], ("member",), "", "-1 failed, 0 at rest, 1 recovery, 2 collapse"),
+        "peak_ratio": Array(swept["peak_ratio"], ("member",), "", "greatest rotation over the critical one"),
+        "pga": Array(swept["pga"] / GRAVITY, ("member",), "g"),
+        "pgv": Array(swept["pgv"], ("member",), "m/s"),
+    }
+
+
+def _curves(options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, motions: int, result: Result) -> None:
+    """Stripes, lognormal curves, two stages, incremental curves with their resurrections."""
+    levels, order = job.levels, np.argsort(job.levels, kind="stable")
+    n = len(levels)
+    outcome = np.full(motions * n, FAILED)
+    ratio = np.full(motions * n, np.nan)
+    outcome[swept.members] = swept["outcome"]
+    ratio[swept.members] = swept["peak_ratio"]
+    outcome, ratio = outcome.reshape(motions, n)[:, order], ratio.reshape(motions, n)[:, order]
+    levels = levels[order]
+    valid, over, up = outcome != FAILED, outcome == COLLAPSE, outcome >= 1
+    count, hits, lifted = valid.sum(axis=0), over.sum(axis=0), (up & valid).sum(axis=0)
+    low, high = wilson(hits, count, options.confidence)
+    up_low, up_high = wilson(lifted, count, options.confidence)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        table = {"level": levels, "count": count, "uplifted": lifted, "collapsed": hits,
+                 "collapse_probability": hits / count, "lower": low, "upper": high,
+                 "uplift_probability": lifted / count, "uplift_lower": up_low, "uplift_upper": up_high}  # fmt: skip
+    name, _, unit = INTENSITIES[options.intensity]
+    result.tables["fragility"] = TableData(table, {"level": unit})
+    grid = np.geomspace(levels[0] / 1.5, levels[-1] * 1.5, 200)
+    curves = {"grid": Array(grid, ("grid",), unit, name)}
+    r = result.results
+    r["intensity"] = name
+    fits: dict[str, Lognormal | None] = {}
+    for stage, stage_hits, stage_count, text in (
+        ("", hits, count, "collapse"), ("uplift_", lifted, count, "uplift"), ("overturning_given_uplift_", hits, lifted, "collapse after uplift"),
+    ):  # fmt: skip
+        try:
+            fits[stage] = fit = fit_lognormal(levels, stage_hits, stage_count)
+            r |= {f"{stage}median": fit.median, f"{stage}dispersion": fit.dispersion, f"{stage}deviance": fit.deviance,
+                  f"{stage}degrees_of_freedom": fit.freedom, f"{stage}goodness_p_value": fit.p_value}  # fmt: skip
+            curves[f"{stage}curve"] = Array(fit.probability(grid), ("grid",), "", f"fitted probability of {text}")
+        except NoFit as error:
+            fits[stage] = None
+            r |= {f"{stage}median": None, f"{stage}dispersion": None}
+            result.warnings.append(f"no curve of {text}: {error}")
+    if fits["uplift_"] and fits["overturning_given_uplift_"]:
+        product = fits["uplift_"].probability(grid) * fits["overturning_given_uplift_"].probability(grid)
+        curves["two_stage_curve"] = Array(product, ("grid",), "", "P(uplift) P(collapse | uplift)")
+    if options.bootstrap and fits[""] is not None:
+        median, spread, lower, upper = bootstrap(
+            levels, over, valid, options.bootstrap, options.confidence, options.seed or 0, grid
+        )
+        r |= {"median_interval": [float(x) for x in median], "dispersion_interval": [float(x) for x in spread]}
+        curves |= {"curve_lower": Array(lower, ("grid",)), "curve_upper": Array(upper, ("grid",))}
+    # Incremental dynamic analysis: first level that brings each motion's structure down, and levels above that do not.
+    whole = valid.all(axis=1)
+    fell = over.any(axis=1)
+    first = np.where(fell, levels[over.argmax(axis=1)], np.nan)
+    later = (np.arange(n) > over.argmax(axis=1)[:, None]) & fell[:, None]
+    risen = later & valid & ~over
+    r |= {
+        "motions_that_collapse": int(fell.sum()),
+        "resurrections": int(risen.any(axis=1).sum()),
+        "first_collapse_median": float(np.exp(np.mean(np.log(first[fell])))) if fell.all() and whole.all() else None,
+        "first_collapse_dispersion": float(np.std(np.log(first[fell]), ddof=1))
+        if fell.all() and whole.all() and motions > 1
+        else None,
+    }
+    result.tables["incremental"] = TableData(
+        {"motion": np.arange(motions) + 1, "first_collapse": first, "resurrected_levels": risen.sum(axis=1)},
+        {"first_collapse": unit},
+    )
+    shown = min(motions, 200)
+    result.arrays |= {
+        **{
+            f"stripe_{k}": Array(np.asarray(v, float), ("stripe",), unit if k == "level" else "")
+            for k, v in table.items()
+        },
+        **curves,
+        "incremental_ratio": Array(ratio[:shown], ("shown", "stripe"), "", "peak rotation ratio of the first motions"),
+        "incremental_risen": Array(
+            risen[:shown].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"
+        ),
+    }
+    fit = fits[""]
+    said = (
+        f"fitted median {fit.median:.4g}{' ' + unit if unit else ''}, dispersion {fit.dispersion:.3f}"
+        if fit
+        else "no curve could be fitted"
+    )
+    if fit and "median_interval" in r and np.isfinite(r["median_interval"][0]):
+        said += f" (median between {r['median_interval'][0]:.4g} and {r['median_interval'][1]:.4g} at {100 * options.confidence:g} %)"
+    if fit and fit.freedom > 0 and fit.p_value < 0.01:
+        result.warnings.append(
+            f"the lognormal curve fits badly (deviance {fit.deviance:.1f} at {fit.freedom} degrees of freedom, p = {fit.p_value:.2g})"
+        )
+    done = int(whole.sum())
+    whose = (
+        f"{motions} motions"
+        if done == motions
+        else f"{done} of {motions} motions (the rest has no result at some level)"
+    )
+    result.answer = (
+        f"{whose} at {n} levels of {name}: {said}. "
+        f"Collapse runs from {100 * np.nanmin(table['collapse_probability']):.1f} % at the lowest to {100 * table['collapse_probability'][-1]:.1f} % at the "
+        f"highest level. {r['resurrections']} motions leave the {base.what} standing at a level above one that overturns it."
+    )
+
+
+def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[float, Swept]], result: Result) -> None:
+    """Mean and deviation of the peak rotation against the duration (Fig. 6-8)."""
+    _stopped(parts[-1][1], result)
+    initial = base.start_rotation / base.critical[0]
+    parts = [(d, s) for d, s in parts if len(s.members)]
+    rows = [shares(s, options.confidence, initial) for _, s in parts]
+    durations = np.array([d for d, _ in parts])
+    keys = ("mean_peak_rotation_ratio", "deviation_peak_rotation_ratio", "collapse_probability", "uplift_probability")
+    values = {k: np.array([np.nan if row[k] is None else row[k] for row in rows], dtype=float) for k in keys}
+    total = {k: sum(row[k] for row in rows) for k in ("count", "failed", "collapsed", "uplifted")}
+    result.results = {
+        "durations_s": durations, **values,
+        "confidence_interval": [row["confidence_interval"] for row in rows],
+        **total, "restitution": base.restitution, "critical_rotation_rad": base.critical[0], "initial_rotation_ratio": initial,
+        "median_pga_g": [float(np.nanmedian(s["pga"])) / GRAVITY for _, s in parts],
+    }  # fmt: skip
+    intervals = np.array([row["confidence_interval"] for row in rows]).reshape(-1, 2)
+    result.tables["durations"] = TableData(
+        {
+            "duration": durations,
+            "count": np.array([row["count"] for row in rows]),
+            **values,
+            "lower": intervals[:, 0],
+            "upper": intervals[:, 1],
+        },
+        {"duration": "s"},
+    )
+    result.tables["ensemble"] = TableData(
+        {
+            "duration": np.concatenate([np.full(len(s.members), d) for d, s in parts]),
+            "motion": np.concatenate([s.members + 1 for _, s in parts]),
+            **{n: np.concatenate([s[n] for _, s in parts]) for n in ("outcome", "peak_ratio", "pga")},
+        },
+        {"duration": "s", "pga": "m/s^2"},
+    )
+    result.arrays = {
+        "duration": Array(durations, ("duration",), "s", "t_d"),
+        **{k: Array(v, ("duration",)) for k, v in values.items()},
+        "lower": Array(intervals[:, 0], ("duration",), "", "interval of the collapse probability"),
+        "upper": Array(intervals[:, 1], ("duration",)),
+    }
+    text = "; ".join(
+        f"{d:g} s: {100 * row['collapse_probability']:.1f} % collapse, mean rotation {row['mean_peak_rotation_ratio']:.2f}"
+        for d, row in zip(durations, rows, strict=True) if row["count"]
+    )  # fmt: skip
+    result.answer = f"Over the duration of the motions ({rows[0]['count'] if rows else 0} each), {text} of the critical rotation (collapse counted as 1)."

@@ -1,0 +1,67 @@
+"""harmonic-map: a block or an arch under harmonic motion over frequency and amplitude (after Spanos and Koh 1984)."""
+
+import numpy as np
+
+from extrados.analyses.batches import sweep
+from extrados.analyses.context import Context
+from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.runs import runs_job
+from extrados.analyses.statistics.tables import HarmonicMap
+from extrados.motions import pulses
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+
+def run(context: Context, options: HarmonicMap) -> Result:
+    """At rest, rocking with its greatest rotation, or overturned, for each frequency and amplitude."""
+    model = rocker_of(context, options)
+    p = 1.0 / model.time_unit
+    frequency = np.array(options.frequencies) if options.frequencies else np.linspace(1.0, 12.0, 40) * p / (2.0 * np.pi)
+    cap = options.max_amplitude or 6.0 * model.uplift * GRAVITY
+    amplitude = np.linspace(0.0, cap, options.amplitudes + 1)[1:]
+    grounds = [pulses.harmonic(1.0, f, options.cycles / f).ground for f in frequency]
+    motion = np.repeat(np.arange(len(frequency)), len(amplitude))
+    job = runs_job(
+        [model.body], grounds, 0, motion, np.tile(amplitude, len(frequency)), np.array([g.end for g in grounds])[motion],
+        model.start_rotation,
+    )  # fmt: skip
+    swept = sweep(context, "harmonic-map", job, len(motion), "harmonic map")
+    result = Result("harmonic-map")
+    if not swept.complete:
+        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
+        return result
+    shape = (len(frequency), len(amplitude))
+    outcome = swept["outcome"].reshape(shape)
+    over = outcome == 2
+    ratio = np.where(over, np.nan, swept["peak_ratio"].reshape(shape))
+    lowest = np.where(over.any(axis=1), amplitude[over.argmax(axis=1)], np.nan) / GRAVITY
+    pockets = int(((~over) & (amplitude / GRAVITY > lowest[:, None])).sum())
+    result.results = {
+        "cycles": options.cycles, "uplift_acceleration_g": model.uplift, "frequencies_Hz": frequency,
+        "frequency_ratios": 2.0 * np.pi * frequency / p, "lowest_overturning_amplitude_g": [None if np.isnan(a) else a for a in lowest],
+        "safe_pocket_cells": pockets, "restitution": model.restitution,
+    }  # fmt: skip
+    result.tables["harmonic_map"] = TableData(
+        {
+            "frequency": np.repeat(frequency, len(amplitude)), "amplitude": np.tile(amplitude, len(frequency)) / GRAVITY,
+            "outcome": outcome.ravel(), "peak_ratio": ratio.ravel(), "half_cycles": swept["half_cycles"],
+        },
+        {"frequency": "Hz", "amplitude": "g"},
+    )  # fmt: skip
+    result.arrays = {
+        "frequency": Array(frequency, ("frequency",), "Hz"),
+        "amplitude": Array(amplitude / GRAVITY, ("amplitude",), "g"),
+        "outcome": Array(outcome, ("frequency", "amplitude"), "", "0 at rest, 1 recovery, 2 collapse"),
+        "peak_ratio": Array(ratio, ("frequency", "amplitude"), "", "greatest rotation over the critical one"),
+        "lowest": Array(lowest, ("frequency",), "g", "lowest overturning amplitude"),
+    }
+    if np.isfinite(lowest).any():
+        k = int(np.nanargmin(lowest))
+        result.answer = (
+            f"Under {options.cycles} cycles the {model.what} rocks from {model.uplift:.3f} g on; the lowest amplitude that brings "
+            f"it down is {lowest[k]:.3f} g, at {frequency[k]:.3f} Hz (omega/p = {2 * np.pi * frequency[k] / p:.2f}); "
+            f"{pockets} cells of the map lie above a failing amplitude and are safe."
+        )
+    else:
+        result.answer = f"No harmonic motion of the map, up to {cap / GRAVITY:.3g} g, brings the {model.what} down in {options.cycles} cycles."
+    return result

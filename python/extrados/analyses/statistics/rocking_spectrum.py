@@ -1,0 +1,99 @@
+"""rocking-spectrum: greatest rotation under a motion over 2 pi/p and alpha (Makris and Konstantinidis 2003).
+
+Of rectangles, or, where the deck has an arch, of arches of its shape in other sizes.
+"""
+
+import numpy as np
+
+from extrados.analyses.batches import sweep
+from extrados.analyses.context import Context
+from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.runs import runs_job
+from extrados.analyses.statistics.tables import RockingSpectrum
+from extrados.building.rockers.rocker import make_rocker
+from extrados.core.rocking import Body, block_body
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+
+def block_of(period: float, alpha: float, restitution: str | float, linear: bool) -> Body:
+    """The rectangle of frequency parameter p = 2 pi/period [rad/s] and slenderness alpha [rad]; its mass does not matter."""
+    p = 2.0 * np.pi / period
+    radius = 0.75 * GRAVITY / p**2
+    c_v = max(0.0, 1.0 - 1.5 * np.sin(alpha) ** 2) if isinstance(restitution, str) else float(restitution)
+    half, height = radius * np.sin(alpha), radius * np.cos(alpha)
+    return block_body(1.0, radius**2 / 3.0, height, half, half, (c_v, c_v), linear)
+
+
+def run(context: Context, options: RockingSpectrum) -> Result:
+    """Rotation spectra; what overturns has no rotation, its place is marked."""
+    motion = context.motion
+    context.warnings += motion.notes
+    periods = np.array(options.periods) if options.periods else np.linspace(0.2, 8.0, 60)
+    structure = context.deck.structure
+    if structure is not None and structure.kind == "arch":
+        family, sizes, bodies = _arches(context, options, periods)
+    else:
+        alphas = np.radians(options.slenderness)
+        bodies = [
+            block_of(t, a, context.building.joints.restitution, options.form == "linear")
+            for a in alphas
+            for t in periods
+        ]
+        family = [f"alpha {a:g} deg" for a in options.slenderness]
+        sizes = 0.75 * GRAVITY * (periods / (2.0 * np.pi)) ** 2
+    n = len(bodies)
+    settle = np.tile(periods, len(family)) * 6.0
+    job = runs_job(bodies, [motion.ground], np.arange(n), 0, 1.0, motion.end + settle)
+    swept = sweep(context, "rocking-spectrum", job, n, "rocking spectrum")
+    result = Result("rocking-spectrum")
+    if not swept.complete:
+        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
+        return result
+    shape = (len(family), len(periods))
+    overturned = swept["outcome"].reshape(shape) == 2
+    ratio = np.where(overturned, np.nan, swept["peak_ratio"].reshape(shape))
+    rotation = np.where(overturned, np.nan, np.abs(swept["peak"].reshape(shape)))
+    longest = [float(periods[row].max()) if row.any() else None for row in overturned]
+    result.results = {
+        "family": family,
+        "overturned": overturned.sum(axis=1),
+        "longest_overturning_period_s": longest,
+        "size_m": sizes,
+        "peak_ground_acceleration_g": motion.peak / GRAVITY,
+    }
+    result.tables["rocking_spectrum"] = TableData(
+        {
+            "family": np.repeat(family, len(periods)), "period": np.tile(periods, len(family)), "size": np.tile(sizes, len(family)),
+            "peak_rotation": rotation.ravel(), "peak_ratio": ratio.ravel(), "overturned": overturned.ravel().astype(int),
+        },
+        {"period": "s", "size": "m", "peak_rotation": "rad"},
+    )  # fmt: skip
+    result.arrays = {
+        "period": Array(periods, ("period",), "s", "2 pi/p, or 2 pi times the natural time of an arch"),
+        "size": Array(sizes, ("period",), "m", "half-diagonal of the block, radius of the arch"),
+        "peak_ratio": Array(
+            ratio, ("family", "period"), "", "greatest rotation over the critical one; NaN where overturned"
+        ),
+        "overturned": Array(overturned.astype(np.int8), ("family", "period")),
+    }
+    words = []
+    for name, row, last in zip(family, overturned, longest, strict=True):
+        size = "" if last is None else f", up to {last:.3g} s ({sizes[periods == last][0]:.3g} m)"
+        words.append(f"{name}: {int(row.sum())} of {len(periods)} overturn{size}")
+    result.answer = f"Peak ground acceleration {motion.peak / GRAVITY:.3f} g. " + "; ".join(words) + "."
+    return result
+
+
+def _arches(
+    context: Context, options: RockingSpectrum, periods: np.ndarray
+) -> tuple[list[str], np.ndarray, list[Body]]:
+    """The deck's arch in the sizes whose natural time is period / 2 pi: it grows with the root of the size (Eq. 5.7)."""
+    structure = context.deck.structure
+    base = rocker_of(context, options)
+    factors = (periods / (2.0 * np.pi * base.time_unit)) ** 2
+    bodies = []
+    for factor in factors.tolist():
+        update = {"radius": structure.radius * factor, "thickness": structure.thickness * factor}
+        bodies.append(make_rocker(context.building.having(structure=structure.model_copy(update=update))).body)
+    return ["arches of this shape"], structure.radius * factors, bodies

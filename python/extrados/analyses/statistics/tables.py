@@ -1,0 +1,106 @@
+"""Analysis kinds of the rocking statistics: fragility, resonance, spectra, code checks."""
+
+from typing import ClassVar, Literal
+
+from pydantic import model_validator
+
+from extrados.analyses.rocking.tables import RockingTable
+from extrados.schema.quantities import Acceleration, Frequency, Time
+from extrados.schema.table import key
+
+UNCERTAIN = {
+    "block": ("width", "height", "centre_height", "toe_right", "toe_left", "restitution"),
+    "arch": ("radius", "thickness", "restitution"),
+}
+
+
+class Fragility(RockingTable):
+    """Probability of uplift and collapse over many motions; with `levels` also over an intensity measure."""
+
+    kind: Literal["fragility"]
+    needs_motion: ClassVar = True
+    starter_motion: ClassVar = "generated"
+    count: int | None = key(None, "number of motions; default 1000, or the whole suite", ge=1, le=10_000_000)
+    seed: int | None = key(None, "replaces the seed of a generated set; also draws uncertain values", ge=0, le=2**62)
+    durations: list[Time] | None = key(
+        None, "repeat for these t_d of a generated set", source="thesis Fig. 6-8", min_length=1, max_length=100
+    )
+    intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
+        "pga", "measure of the levels: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) [g], Arias intensity "
+        "[m/s], or the factor itself", source="Dimitrakopoulos and Paraskeva 2015",
+    )  # fmt: skip
+    levels: list[float] | None = key(None, "intensities to which every motion is scaled", min_length=1, max_length=500)
+    sa_period: Time | None = key(None, "period of SA", gt=0)
+    sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
+    uncertain: dict[str, float] = key(
+        {}, "coefficients of variation of width, height, thickness, restitution, ..., sampled by a Sobol sequence"
+    )
+    confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
+    bootstrap: int = key(500, "draws for the band of the fitted curve", ge=0, le=100_000)
+    bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
+    settle: Time | None = key(None, "time after the motion; default 40 natural time units", ge=0)
+    tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
+
+    @model_validator(mode="after")
+    def _sensible(self) -> "Fragility":
+        if self.levels is not None and min(self.levels) <= 0.0:
+            raise ValueError("levels must be above zero")
+        if self.levels is not None and self.durations is not None:
+            raise ValueError("give levels or durations, not both")
+        if self.levels is not None and (self.intensity == "sa") != (self.sa_period is not None):
+            raise ValueError('intensity = "sa" and sa_period go together')
+        known = sorted({name for names in UNCERTAIN.values() for name in names})
+        for name, value in self.uncertain.items():
+            if name not in known:
+                raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(known)}")
+            if not 0.0 < value <= 0.5:
+                raise ValueError(
+                    f"uncertain.{name} is {value:g}, expected a coefficient of variation above 0, at most 0.5"
+                )
+        return self
+
+
+class Resonance(RockingTable):
+    """The motion under a cap that feeds most energy to a block, and the least cap that can overturn it."""
+
+    kind: Literal["resonance"]
+    cap: Acceleration | None = key(
+        None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5"
+    )
+    half_cycles: int = key(40, "at most so many", ge=1, le=400)
+    impulse_amplitude: Acceleration | None = key(
+        None, "amplitude of the impulses of Fig. 6-4; default half of uplift", gt=0, source="thesis 6.2.3"
+    )
+
+
+class RockingSpectrum(RockingTable):
+    """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha, or of the deck's arch in all sizes."""
+
+    kind: Literal["rocking-spectrum"]
+    view: ClassVar = ""
+    needs_motion: ClassVar = True
+    periods: list[Time] | None = key(
+        None,
+        "2 pi/p (for arches 2 pi times their natural time); default 60 values from 0.2 to 8 s",
+        min_length=1,
+        max_length=5000,
+    )
+    slenderness: list[float] = key([10.0, 15.0, 20.0, 25.0], "alpha in degrees", min_length=1, max_length=50)
+
+    @model_validator(mode="after")
+    def _angles(self) -> "RockingSpectrum":
+        if not all(0.0 < a < 45.0 for a in self.slenderness):
+            raise ValueError("slenderness is alpha in degrees, expected above 0 and below 45")
+        return self
+
+
+class HarmonicMap(RockingTable):
+    """Response to harmonic ground motion over frequency and amplitude: at rest, rocking (how far), overturned."""
+
+    kind: Literal["harmonic-map"]
+    frequencies: list[Frequency] | None = key(
+        None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000
+    )
+    max_amplitude: Acceleration | None = key(None, "default 6 times uplift", gt=0)
+    amplitudes: int = key(48, "number of amplitudes", ge=2, le=1000)
+    cycles: int = key(30, "cycles of the motion", ge=2, le=1000, source="Spanos and Koh 1984")

@@ -1,0 +1,39 @@
+"""The base of the analysis tables."""
+
+from typing import ClassVar
+
+from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.schema.table import Table, key, override_of
+
+MaterialOverride = override_of(Material)
+JointsOverride = override_of(Joints)
+SupportsOverride = override_of(Supports)
+InitialOverride = override_of(Initial)
+#: The tables of a building that an analysis may override for itself
+OVERRIDES = ("material", "joints", "supports", "initial")
+
+
+class Analysis(Table):
+    """Base of the analysis kinds.
+
+    view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
+    it takes, None any that has the view. uses: properties of the building that its answer rests on, which every
+    answer tells. starter_motion: the motion kind of the deck that `new` writes.
+    """
+
+    kind: str
+    view: ClassVar[str] = ""
+    structures: ClassVar[tuple[str, ...] | None] = None
+    uses: ClassVar[tuple[str, ...]] = ()
+    needs_motion: ClassVar[bool] = False
+    starter_motion: ClassVar[str] = "step-pulse"
+
+
+class BuildingAnalysis(Analysis):
+    """Base of the analyses of a building: they may override its properties for themselves."""
+
+    view: ClassVar[str] = "blocks"
+    material: MaterialOverride | None = key(None, "values of [material] for this analysis alone")
+    joints: JointsOverride | None = key(None, "values of [joints] for this analysis alone")
+    supports: SupportsOverride | None = key(None, "values of [supports] for this analysis alone")
+    initial: InitialOverride | None = key(None, "values of [initial] for this analysis alone")

@@ -1,0 +1,152 @@
+"""A building as every strategy sees it: geometry and properties said once, and the views made of them."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from extrados.building.errors import BadGeometry, NoView
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
+from extrados.building.mesh.mesh import Mesh
+from extrados.building.mesh.options import MeshOptions
+from extrados.building.properties import (
+    NO_SLIDING,
+    NO_SLIDING_COEFFICIENT,
+    Initial,
+    Joints,
+    JointType,
+    Material,
+    Supports,
+)
+from extrados.building.structure import Structure
+from extrados.schema.table import Table
+
+if TYPE_CHECKING:
+    from extrados.building.rockers.rocker import Rocker
+
+
+@dataclass(frozen=True)
+class Building:
+    """Geometry, material, joints, supports and the state at the start.
+
+    The views are made when first asked for and kept, also for buildings made from this one by `having`, as long as
+    nothing that they depend on has changed. They raise BadGeometry with the part and the bound where they cannot
+    be made, and NoView with the reason where such a building has none.
+    """
+
+    structure: Structure | None
+    material: Material = field(default_factory=Material)
+    materials: dict[str, Material] = field(default_factory=dict)
+    joints: Joints = field(default_factory=Joints)
+    supports: Supports = field(default_factory=Supports)
+    initial: Initial = field(default_factory=Initial)
+    folder: Path = field(default_factory=Path.cwd)
+    _views: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def having(self, **tables: Table) -> "Building":
+        """The same building with other tables: structure, material, joints, supports, initial."""
+        return replace(self, **tables)
+
+    def blocks(self) -> Assembly:
+        """Stones and joints."""
+        return self._view(
+            "blocks", (self.structure, self.material.density),
+            lambda: self._structure().assembly(self.material.density, self.folder),
+        )  # fmt: skip
+
+    def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
+        """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches
+        what falls."""
+        worn = self.joints.worn_corners
+        return self._view(
+            "rigid", (self.structure, self.material.density, worn, groups, floor),
+            lambda: rigid_bodies(self.blocks(), groups, worn, floor),
+        )  # fmt: skip
+
+    def rocker(self, linear: bool = False) -> "Rocker":
+        """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations."""
+        from extrados.building.rockers.rocker import make_rocker
+
+        tables = (self.structure, self.material, self.joints, self.initial.rotation_ratio, linear)
+        return self._view("rocker", tables, lambda: make_rocker(self, linear))
+
+    def friction(self) -> float | np.ndarray | None:
+        """Coefficient of friction of the joints, one for each where they differ; None excludes sliding."""
+        if all(t.friction is None for t in self.joints.types):
+            return self.joints.coefficient
+        return self.joint_property("friction")
+
+    def joint_property(self, name: str) -> np.ndarray:
+        """Friction, cohesion, tension or normal_stiffness of every joint (NaN where no value is given).
+
+        BadGeometry where [[joints.types]] names a joint that is not there, or one twice.
+        """
+        assembly = self.blocks()
+
+        def number(value: float | str | None) -> float:
+            return np.nan if value is None else NO_SLIDING_COEFFICIENT if value == NO_SLIDING else float(value)
+
+        values = np.full(len(assembly.a), number(getattr(self.joints, name)))
+        for joints, table in self._typed_joints(assembly):
+            given = getattr(table, name)
+            if given is not None:
+                values[joints] = number(given)
+        return values
+
+    def _typed_joints(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, JointType]]:
+        """The joints that each of [[joints.types]] speaks of."""
+        index = {name: j for j, name in enumerate(assembly.joint_names)}
+        named: dict[str, int] = {}
+        for k, kind in enumerate(self.joints.types, start=1):
+            for name in kind.joints:
+                if name in named:
+                    raise BadGeometry(f"joint '{name}' is named twice, in joints.types {named[name]} and {k}")
+                named[name] = k
+                if name == "ground":
+                    yield np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)), kind
+                elif name in index:
+                    yield np.array([index[name]]), kind
+                else:
+                    known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
+                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and ground")
+
+    def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
+        """Finite elements; `seed` replaces that of a random pattern."""
+        options = options or MeshOptions()
+        tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
+        return self._view("mesh", tables, lambda: self._mesh(options, seed))
+
+    def _mesh(self, options: MeshOptions, seed: int | None) -> Mesh:
+        match self._structure().kind:
+            case "panel":
+                from extrados.building.mesh.panel import make_panel
+
+                return make_panel(self, options, seed)
+            case "mesh":
+                from extrados.building.mesh.file import read_mesh
+
+                return read_mesh(self, options)
+        raise NoView(f"a structure of kind '{self.structure.kind}' has no mesh yet")
+
+    def _structure(self) -> Structure:
+        if self.structure is None:
+            raise NoView("the deck has no [structure]")
+        return self.structure
+
+    def _view(self, name: str, depends: tuple, make: Any) -> Any:
+        key = (name, str(self.folder), *(_fingerprint(part) for part in depends))
+        if key not in self._views:
+            self._views[key] = make()
+        return self._views[key]
+
+
+def _fingerprint(part: Any) -> Any:
+    """What a view depends on, as something a dictionary can hold."""
+    if isinstance(part, Table):
+        return part.model_dump_json()
+    if isinstance(part, tuple):
+        return tuple(_fingerprint(p) for p in part)
+    return part.tobytes() if isinstance(part, np.ndarray) else part

@@ -1,0 +1,1 @@
+"""Polygons, blocks and joints, contacts, rigid bodies."""

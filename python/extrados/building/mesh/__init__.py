@@ -1,0 +1,1 @@
+"""Finite-element meshes of walls and of stones."""

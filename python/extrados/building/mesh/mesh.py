@@ -1,0 +1,190 @@
+"""A finite-element mesh: nodes, elements by group, boundary edges, and the nodes that a place in a deck means."""
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from extrados.building.errors import BadGeometry
+from extrados.building.mesh.options import MeshOptions
+from extrados.building.places import Placed
+from extrados.building.properties import Held, Material
+from extrados.building.templates.walls import Bar, Region, Tie
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+
+EDGES = {"T3": (0, 1, 2), "T6": (0, 1, 2), "Q4": (0, 1, 2, 3), "Q8": (0, 1, 2, 3)}
+
+
+@dataclass(frozen=True)
+class ElementGroup:
+    """Elements of one kind and one integration rule."""
+
+    kind: str
+    connect: np.ndarray  # (elements, nodes) 0-based
+    gauss: tuple[int, int]
+    thickness: np.ndarray  # (elements) [m]
+    material: np.ndarray  # (elements) index into Mesh.materials
+    linear: np.ndarray  # (elements) bool
+    axis: np.ndarray  # (elements) [rad], NaN where cracks choose
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """xy (nodes, 2) [m]; size: typical element size [m]; held, ties and bars by the places where they act;
+    named: further materials by name, for bars."""
+
+    xy: np.ndarray
+    groups: list[ElementGroup]
+    materials: list[Material]
+    size: float
+    held: list[Held]
+    ties: list[Tie] = field(default_factory=list)
+    bars: list[Bar] = field(default_factory=list)
+    named: dict[str, Material] = field(default_factory=dict)
+    selective: bool = False
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def low(self) -> np.ndarray:
+        return self.xy.min(axis=0)
+
+    @property
+    def high(self) -> np.ndarray:
+        return self.xy.max(axis=0)
+
+    def nodes_at(self, place: Placed, what: str) -> np.ndarray:
+        """The nodes (0-based) a place means; BadGeometry where there are none."""
+        tolerance = 1e-6 * float(np.max(self.high - self.low))
+        inside = np.ones(len(self.xy), dtype=bool)
+        if place.edge is not None:
+            axis, end = {
+                "left": (0, self.low), "right": (0, self.high), "bottom": (1, self.low), "top": (1, self.high),
+            }[place.edge]  # fmt: skip
+            inside &= np.abs(self.xy[:, axis] - end[axis]) <= tolerance
+        single = all(r is not None and r[0] == r[1] for r in (place.x, place.y))
+        if single and place.edge is None:
+            distance = np.hypot(*(self.xy - [place.x[0], place.y[0]]).T)
+            nearest = int(distance.argmin())
+            if distance[nearest] > 1.5 * self.size:
+                raise BadGeometry(
+                    f"{what}: no node near x {place.x[0]:g} m, y {place.y[0]:g} m; the nearest is at "
+                    f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
+                )
+            return np.array([nearest])
+        for axis, ends in enumerate((place.x, place.y)):
+            if ends is not None:
+                inside &= (self.xy[:, axis] >= ends[0] - tolerance) & (self.xy[:, axis] <= ends[1] + tolerance)
+        found = np.flatnonzero(inside)
+        if not len(found):
+            raise BadGeometry(
+                f"{what}: no node lies on edge {place.edge}, x {place.x}, y {place.y}; a mesh line is missing"
+            )
+        return found
+
+    def boundary(self) -> tuple[np.ndarray, np.ndarray]:
+        """Boundary edges (edges, 3): from, to, middle node or -1, counter-clockwise; and their thickness [m]."""
+        rows, thick = [], []
+        for group in self.groups:
+            n = len(EDGES[group.kind])
+            for i in range(n):
+                middle = group.connect[:, n + i] if group.kind in ("T6", "Q8") else np.full(len(group.connect), -1)
+                rows.append(np.column_stack([group.connect[:, i], group.connect[:, (i + 1) % n], middle]))
+                thick.append(group.thickness)
+        edges, thickness = np.concatenate(rows), np.concatenate(thick)
+        ends = np.sort(edges[:, :2], axis=1)
+        _, first, count = np.unique(ends, axis=0, return_index=True, return_counts=True)
+        alone = np.sort(first[count == 1])
+        return edges[alone], thickness[alone]
+
+    def elements(self) -> int:
+        return sum(len(b.connect) for b in self.groups)
+
+
+def corner_count(kind: str) -> int:
+    """Corners of an element kind."""
+    return len(EDGES[kind])
+
+
+def element_areas(xy: np.ndarray, kind: str, connect: np.ndarray) -> np.ndarray:
+    """Areas [m^2] by the corners; negative where an element is inverted."""
+    c = xy[connect[:, : corner_count(kind)]]
+    x, y = c[..., 0], c[..., 1]
+    return 0.5 * np.sum(x * np.roll(y, -1, axis=1) - np.roll(x, -1, axis=1) * y, axis=1)
+
+
+def add_middles(xy: np.ndarray, kind: str, connect: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes and elements with a node in the middle of each side (T3 to T6, Q4 to Q8)."""
+    n = corner_count(kind)
+    sides = np.concatenate([np.column_stack([connect[:, i], connect[:, (i + 1) % n]]) for i in range(n)])
+    ends, number = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
+    middles = 0.5 * (xy[ends[:, 0]] + xy[ends[:, 1]])
+    number = number.reshape(n, len(connect)).T + len(xy)
+    return np.concatenate([xy, middles]), np.column_stack([connect, number])
+
+
+def build_mesh(
+    building: "Building", options: MeshOptions, xy: np.ndarray, kind: str, connect: np.ndarray, size: float
+) -> Mesh:
+    """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
+    wall = building.structure
+    if not len(connect):
+        raise BadGeometry("the mesh has no elements")
+    used, renumbered = np.unique(connect, return_inverse=True)
+    xy, connect = xy[used], renumbered.reshape(connect.shape)
+    area = element_areas(xy, kind, connect)
+    scale = float(np.median(np.abs(area)))
+    bad = np.flatnonzero(~(area > 1e-9 * scale))
+    if len(bad):
+        c = xy[connect[bad[0], : corner_count(kind)]].mean(axis=0)
+        what = "inverted" if area[bad[0]] < -1e-9 * scale else "without area"
+        raise BadGeometry(f"element {bad[0] + 1} at x {c[0]:g} m, y {c[1]:g} m is {what}; {len(bad)} such elements")
+    same = np.sort(connect, axis=1)
+    _, counts = np.unique(same, axis=0, return_counts=True)
+    if counts.max() > 1:
+        raise BadGeometry(f"{int((counts - 1).sum())} elements stand twice in the mesh")
+
+    names = list(building.materials)
+    materials = [building.material, *building.materials.values()]
+    count = len(connect)
+    centre = xy[connect[:, : corner_count(kind)]].mean(axis=1)
+    thickness, material = np.full(count, wall.thickness), np.zeros(count, dtype=int)
+    linear, axis = np.zeros(count, dtype=bool), np.full(count, np.nan)
+    default = (3, 3) if kind == "Q8" else (2, 2)
+    rule = np.tile(default, (count, 1))
+    warnings = []
+    for i, region in enumerate(wall.regions):
+        inside = _inside(region, centre, xy)
+        if not inside.any():
+            warnings.append(f"region {i + 1} holds no element")
+        if region.material is not None:
+            material[inside] = 1 + names.index(region.material)
+        if region.thickness is not None:
+            thickness[inside] = region.thickness
+        if region.gauss is not None:
+            rule[inside] = region.gauss
+        if region.crack_normal is not None:
+            axis[inside] = np.radians(region.crack_normal)
+        linear[inside] |= region.linear
+    groups = []
+    for gauss in np.unique(rule, axis=0):
+        mine = (rule == gauss).all(axis=1)
+        groups.append(
+            ElementGroup(kind, connect[mine], (int(gauss[0]), int(gauss[1])), thickness[mine], material[mine], linear[mine],
+                  axis[mine])
+        )  # fmt: skip
+    held = building.supports.held or [Held(edge="bottom")]
+    return Mesh(
+        xy, groups, materials, size, held, wall.ties, wall.bars, building.materials, options.selective, warnings
+    )
+
+
+def _inside(region: Region, centre: np.ndarray, xy: np.ndarray) -> np.ndarray:
+    inside = np.ones(len(centre), dtype=bool)
+    for axis, ends in enumerate((region.x, region.y)):
+        if ends is not None:
+            inside &= (centre[:, axis] > ends[0]) & (centre[:, axis] < ends[1])
+    if region.edge is not None:
+        raise BadGeometry("a region is given by x and y, not by an edge")
+    return inside

@@ -1,0 +1,40 @@
+"""Places on a wall: edges and ranges of x and y."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from extrados.schema.quantities import parse
+from extrados.schema.table import Table, key
+
+
+def _range(value: Any) -> Any:
+    """A place along an axis: one length, or [from, to]."""
+    ends = value if isinstance(value, list) else [value, value]
+    if len(ends) != 2:
+        raise ValueError("expected one length, or two as [from, to]")
+    out = []
+    for end in ends:
+        if isinstance(end, bool) or not isinstance(end, int | float | str):
+            raise ValueError("expected a length such as 1.2 or '20 mm', or two as [from, to]")
+        out.append(parse(end, "m") if isinstance(end, str) else float(end))
+    if out[0] > out[1]:
+        raise ValueError(f"the range runs backward: from {out[0]:g} m to {out[1]:g} m")
+    return out
+
+
+Range = Annotated[list[float], BeforeValidator(_range), Field(json_schema_extra={"unit": "m"})]
+
+
+class Placed(Table):
+    """Something on the nodes of an edge, within ranges of x and y, or (x and y single) on the nearest node."""
+
+    edge: Literal["left", "right", "bottom", "top"] | None = key(None, "an outer edge")
+    x: Range | None = key(None, "x of the place, or [from, to]")
+    y: Range | None = key(None, "y of the place, or [from, to]")
+
+    @model_validator(mode="after")
+    def _somewhere(self) -> "Placed":
+        if self.edge is None and self.x is None and self.y is None:
+            raise ValueError("the place is missing: expected edge, x or y")
+        return self

@@ -1,0 +1,145 @@
+"""What a building is besides its geometry: [material], [joints], [supports], [initial], said once for every strategy."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from extrados.building.places import Placed
+from extrados.schema.quantities import Angle, Density, Energy, Length, Stiffness, Stress, Time
+from extrados.schema.table import Table, key
+
+#: Coefficient of friction that excludes sliding
+NO_SLIDING = "no-sliding"
+#: What stands for it where a coefficient must be a number: beside joints that slide, and in discrete elements
+NO_SLIDING_COEFFICIENT = 1e3
+
+
+class Material(Table):
+    """The stone or the homogenised masonry: density, elastic constants, and the strengths of what may crack or crush."""
+
+    density: Density = key(2000.0, "density", ge=0, le=30000)
+    young: Stress = key(10e9, "modulus of elasticity, E0", source="thesis 7.3", gt=0)
+    poisson: float = key(0.2, "Poisson's ratio", ge=0, lt=0.5)
+    tensile_strength: Stress | None = key(None, "tensile strength, ft; without it nothing cracks", gt=0)
+    fracture_energy: Energy | None = key(None, "energy of a crack per area, Gf", gt=0)
+    softening: Literal["linear", "exponential", "hordijk"] = key(
+        "linear", "how the stress falls after the strength", source="thesis Fig. 4-1"
+    )
+    compressive_strength: Stress | None = key(None, "compressive strength; without it nothing crushes", gt=0)
+    crushing_energy: Energy | None = key(
+        None, "energy of crushing per area, Gc; sequentially linear analysis crushes only with it", gt=0
+    )
+    crushing: Literal["linear", "exponential", "hordijk"] = key("linear", "softening in compression")
+    lateral_reduction: bool = key(
+        False, "reduce ft under lateral compression, s1/ft - s2/fc <= 1; needs compressive_strength"
+    )
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Material":
+        if (self.tensile_strength is None) != (self.fracture_energy is None):
+            raise ValueError("tensile_strength and fracture_energy go together: one of them is missing")
+        if self.crushing_energy is not None and self.compressive_strength is None:
+            raise ValueError("crushing_energy needs compressive_strength")
+        if self.lateral_reduction and self.compressive_strength is None:
+            raise ValueError("lateral_reduction needs compressive_strength")
+        return self
+
+
+class JointType(Table):
+    """Some joints that differ from the others."""
+
+    joints: list[str] = key(
+        about='names of joints; "ground" means all joints to the ground', min_length=1, max_length=10000
+    )
+    friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] | None = key(None, "coefficient of friction")
+    normal_stiffness: Stiffness | None = key(None, "normal stiffness per area", gt=0)
+    cohesion: Stress | None = key(None, "cohesion of the mortar, lost at the first failure", ge=0)
+    tension: Stress | None = key(None, "tensile strength of the mortar, lost at the first failure", ge=0)
+
+
+class Joints(Table):
+    """The joints between the stones, and those on the ground."""
+
+    friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] = key(
+        0.7, 'coefficient of friction; "no-sliding" excludes sliding (Heyman\'s assumption)', source="thesis 3.2, 7.3"
+    )
+    cohesion: Stress = key(0.0, "cohesion of mortar, lost at the first failure", ge=0)
+    tension: Stress = key(0.0, "tensile strength of mortar, lost at the first failure", ge=0)
+    normal_stiffness: Stiffness | None = key(
+        None, "normal stiffness per area; default E over the length of stone that a joint stands for",
+        source="thesis Eq. 7.10", gt=0,
+    )  # fmt: skip
+    shear_stiffness: Stiffness | None = key(
+        None, "shear stiffness per area; default shear_ratio times the normal", gt=0
+    )
+    shear_ratio: float = key(1.0, "shear over normal stiffness", gt=0, le=10)
+    stiffness_rule: Literal["consistent", "thesis"] = key(
+        "consistent", "default stiffness: E/L, or E B/L as the thesis prints it", source="thesis Eqs 7.10-7.12"
+    )
+    damping: Literal["edge", "corner", "rotation"] = key(
+        "edge", "impact frequency that is damped critically", source="thesis Eqs 7.13, 7.17-7.20"
+    )
+    damping_ratio: float = key(1.0, "fraction of critical damping at that frequency", ge=0, le=100)
+    beta: Annotated[float, Field(ge=0, le=10)] | None = key(
+        None, "stiffness-proportional damping in s, instead of the rule"
+    )
+    restitution: Literal["thesis", "energy-safe"] | Annotated[float, Field(ge=0, le=1)] = key(
+        "thesis",
+        "impact of rocking: the thesis' momentum balance (of a block: Housner's), the energy-safe projection, or the "
+        "ratio c_v of the rates after and before an impact (0 to 1)",
+        source="thesis Eqs 5.3, 6.2, 6.3, B.3",
+    )
+    energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
+        None, "instead of restitution: c_E, the kinetic energy after over that before an impact of a block",
+        source="thesis Eq. 6.2",
+    )  # fmt: skip
+    worn_corners: Length = key(0.0, "radius to which the corners of the stones are worn", ge=0)
+    types: list[JointType] = key([], "joints that differ, [[joints.types]]", max_length=1000)
+
+    @model_validator(mode="after")
+    def _one_impact(self) -> "Joints":
+        if self.energy_ratio is not None and "restitution" in self.model_fields_set:
+            raise ValueError("give restitution or energy_ratio, not both")
+        return self
+
+    @property
+    def coefficient(self) -> float | None:
+        """Coefficient of friction; None excludes sliding."""
+        return None if self.friction == NO_SLIDING else float(self.friction)
+
+
+class Held(Placed):
+    """Nodes of a finite-element mesh that are held."""
+
+    fix: Literal["x", "y", "xy"] = key("xy", "directions that are held")
+    stiffness: Annotated[float, Field(gt=0)] | None = key(None, "spring in N/m at each node instead of a rigid support")
+
+
+class Supports(Table):
+    """What the building stands on. Stones stand on the joints to the ground that the structure has."""
+
+    stiffness: Stiffness | None = key(None, "stiffness of the ground per area, in series with the joints on it", gt=0)
+    held: list[Held] = key(
+        [], "held nodes of finite-element meshes, [[supports.held]]; default the bottom edge, or the joints on the ground",
+        max_length=1000,
+    )  # fmt: skip
+
+
+class Movement(Table):
+    """A support that gives way, slowly, starting and ending at rest."""
+
+    joint: str = key(about="name of a joint on the support")
+    dx: Length = key(0.0, "to the right")
+    dy: Length = key(0.0, "upward; negative is a settlement")
+    turn: Angle = key(0.0, "counter-clockwise, about the middle of the support")
+    start: Time = key(0.0, "when it starts", ge=0)
+    duration: Time = key(1.0, "how long it takes", gt=0)
+
+
+class Initial(Table):
+    """The state from which dynamics start."""
+
+    rotation_ratio: float = key(
+        0.0, "rotation over the critical one of that side; positive to +x", source="thesis 6.2.2", gt=-1, lt=1
+    )
+    movements: list[Movement] = key([], "supports that move, [[initial.movements]]", max_length=100)

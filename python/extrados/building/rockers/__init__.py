@@ -1,0 +1,1 @@
+"""Buildings as structures of one degree of freedom that rock."""

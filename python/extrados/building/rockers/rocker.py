@@ -1,0 +1,64 @@
+"""What analyses need to know of any rocking structure, block, arch or mechanism."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from extrados.building.errors import NoView
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.block import BlockModel, block_model
+from extrados.building.templates.arch import ArchAssembly
+from extrados.core.rocking import Body
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+
+MONOLITHS = ("block", "column")
+
+
+@dataclass(frozen=True)
+class Rocker:
+    """A building ready for the rocking core.
+
+    model: what it was made from. uplift: horizontal acceleration at which it starts to rock [g]; critical: rotation
+    of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
+    arch [m]; start_rotation [rad], > 0 to +x.
+    """
+
+    what: str
+    model: BlockModel | ArchModel
+    body: Body
+    uplift: float
+    critical: tuple[float, float]
+    restitution: float
+    time_unit: float
+    length: float
+    start_rotation: float = 0.0
+    warnings: tuple[str, ...] = ()
+
+
+def make_rocker(building: "Building", linear: bool = False) -> Rocker:
+    """The building as one rocking mechanism; NoView says why there is none."""
+    structure, ratio = building.structure, building.initial.rotation_ratio
+    if structure is not None and structure.kind in MONOLITHS:
+        block = block_model(building, linear)
+        alpha = block.alpha
+        return Rocker(
+            structure.kind, block, block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])),
+            float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
+            ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
+        )  # fmt: skip
+    made = building.blocks()
+    if linear:
+        raise NoView('form = "linear" is known of blocks and columns only')
+    if isinstance(made, ArchAssembly):
+        arch = ArchModel(made, building.joints.restitution)
+        limits = arch.limits
+        # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
+        unit = float(np.sqrt(limits.mass * limits.critical / limits.gravity_moment))
+        return Rocker(
+            "arch", arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
+            made.radius, ratio * limits.critical, tuple(arch.warnings),
+        )  # fmt: skip
+    raise NoView(f"a structure of kind '{structure.kind}' has no rocking mechanism yet")

@@ -1,0 +1,25 @@
+"""The base of the structure kinds: geometry as a deck table, and the makers of what strategies look at."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from extrados.building.errors import NoView
+from extrados.schema.table import Table
+
+if TYPE_CHECKING:
+    from extrados.building.geometry.assembly import Assembly
+
+
+class Structure(Table):
+    """Base of the structure kinds. `lacks`: views that the kind cannot have, with the reason in words."""
+
+    kind: str
+    lacks: ClassVar[Mapping[str, str]] = {}
+
+    def assembly(self, density: float, folder: Path) -> "Assembly":
+        """Stones and joints, of a density [kg/m^3]; `folder` is where its files are looked for.
+
+        Raises BadGeometry with the part and the bound, NoView where the kind has no stones.
+        """
+        raise NoView(self.lacks["blocks"])

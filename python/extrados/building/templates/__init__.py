@@ -1,0 +1,1 @@
+"""The kinds of [structure]: each table beside its maker."""

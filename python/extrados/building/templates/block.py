@@ -1,0 +1,140 @@
+"""The rigid block on two toes (thesis 6.2, Fig. 6-1)."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import ClassVar, Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.structure import Structure
+from extrados.schema.quantities import Inertia, Length, Mass
+from extrados.schema.table import key
+
+_BODY = ("mass", "inertia", "centre_height", "toe_right", "toe_left")
+SIZES = {"width", "height", "depth", *_BODY}
+
+
+@dataclass(frozen=True)
+class BlockAssembly(Assembly):
+    """One block on the ground; the origin lies on the ground below its centre of mass, x to the right, y up.
+
+    centre_height, toe_right, toe_left [m]: height of the centre of mass and its distances from the toes.
+    """
+
+    centre_height: float
+    toe_right: float
+    toe_left: float
+
+    @property
+    def toes(self) -> np.ndarray:
+        """Distance of the toe about which it rocks to +x, and to -x [m]."""
+        return np.array([self.toe_right, self.toe_left])
+
+    @property
+    def radius(self) -> np.ndarray:
+        """R, from the toe to the centre of mass, rocking to +x and to -x [m]."""
+        return np.hypot(self.toes, self.centre_height)
+
+    @property
+    def alpha(self) -> np.ndarray:
+        """theta_cr, rocking to +x and to -x [rad]."""
+        return np.arctan2(self.toes, self.centre_height)
+
+    @property
+    def toe_inertia(self) -> np.ndarray:
+        """Moment of inertia about the toe, rocking to +x and to -x [kg m^2]."""
+        return self.inertia[0] + self.mass[0] * self.radius**2
+
+
+def monolith(assembly: Assembly) -> BlockAssembly:
+    """A stack of blocks taken as one rigid body that rocks on the ends of its base."""
+    mass = float(assembly.mass.sum())
+    centre = assembly.mass @ assembly.centroid / mass
+    arm = assembly.centroid - centre
+    inertia = float(assembly.inertia.sum() + assembly.mass @ (arm**2).sum(axis=1))
+    vertices = np.concatenate(assembly.outlines)
+    ground, top = vertices[:, 1].min(), vertices[:, 1].max()
+    base, head = (
+        vertices[np.isclose(vertices[:, 1], y, atol=1e-9 * (top - ground)), 0] - centre[0] for y in (ground, top)
+    )
+    height = float(top - ground)
+    made = make_block(
+        depth=assembly.depth, mass=mass, inertia=inertia, centre_height=float(centre[1] - ground),
+        toe_right=float(base.max()), toe_left=float(-base.min()),
+    )  # fmt: skip
+    outline = np.array([[base.min(), 0.0], [base.max(), 0.0], [head.max(), height], [head.min(), height]])
+    return replace(made, outlines=[outline])
+
+
+def make_block(
+    width: float | None = None,
+    height: float | None = None,
+    depth: float = 1.0,
+    density: float = 2000.0,
+    *,
+    mass: float | None = None,
+    inertia: float | None = None,
+    centre_height: float | None = None,
+    toe_right: float | None = None,
+    toe_left: float | None = None,
+) -> BlockAssembly:
+    """A rectangle by width and height [m] and density [kg/m^3], or a body by mass [kg], inertia [kg m^2], height
+    of its centre and distances of its toes [m], drawn as a rectangle on its toes of twice that height."""
+    if width is not None:
+        mass = density * width * height * depth
+        inertia = mass * (width**2 + height**2) / 12.0
+        centre_height, toe_right, toe_left = 0.5 * height, 0.5 * width, 0.5 * width
+    toe_left = toe_right if toe_left is None else toe_left
+    if not min(mass, inertia, centre_height, toe_right, toe_left) > 0.0:
+        raise ValueError("mass, inertia, height of the centre and toes of a block must be above zero")
+    top = 2.0 * centre_height
+    return BlockAssembly(
+        outlines=[np.array([[-toe_left, 0.0], [toe_right, 0.0], [toe_right, top], [-toe_left, top]])],
+        mass=np.array([float(mass)]),
+        centroid=np.array([[0.0, centre_height]]),
+        inertia=np.array([float(inertia)]),
+        p=np.array([[-toe_left, 0.0]]),
+        q=np.array([[toe_right, 0.0]]),
+        a=np.array([0]),
+        b=np.array([GROUND]),
+        depth=depth,
+        block_names=["block"],
+        joint_names=["base"],
+        centre_height=float(centre_height),
+        toe_right=float(toe_right),
+        toe_left=float(toe_left),
+    )
+
+
+class Block(Structure):
+    """Rigid block that rocks on its two toes: a rectangle, or a body given by mass, inertia, centre and toes."""
+
+    kind: Literal["block"]
+    starter: ClassVar = {"width": "1.0", "height": "4.0"}
+    width: Length | None = key(None, "full width B of a rectangle", gt=0)
+    height: Length | None = key(None, "full height H of a rectangle", gt=0)
+    depth: Length = key(1.0, "depth out of plane", gt=0)
+    mass: Mass | None = key(None, "mass of a body that is no rectangle", gt=0)
+    inertia: Inertia | None = key(None, "its moment of inertia about the centre of mass", gt=0)
+    centre_height: Length | None = key(None, "height of its centre of mass above the toes", gt=0)
+    toe_right: Length | None = key(None, "horizontal distance of the right toe from the centre of mass", gt=0)
+    toe_left: Length | None = key(None, "the same of the left toe; default as the right one", gt=0)
+
+    @model_validator(mode="after")
+    def _complete(self) -> "Block":
+        body = [name for name in _BODY if getattr(self, name) is not None]
+        if self.width is not None or self.height is not None:
+            if body:
+                raise ValueError(
+                    f"width and height describe a rectangle, {', '.join(body)} another body: give one of the two"
+                )
+            if self.width is None or self.height is None:
+                raise ValueError("a rectangle needs width and height")
+        elif missing := [name for name in _BODY[:-1] if getattr(self, name) is None]:
+            raise ValueError(f"give width and height, or {', '.join(_BODY[:-1])} ({', '.join(missing)} missing)")
+        return self
+
+    def assembly(self, density: float, folder: Path) -> BlockAssembly:
+        return make_block(density=density, **self.model_dump(include=SIZES))

@@ -1,0 +1,142 @@
+"""Columns of drums and walls of units in running bond: stones by the row."""
+
+from pathlib import Path
+from typing import ClassVar, Literal
+
+import numpy as np
+from pydantic import model_validator
+
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.polygons import properties
+from extrados.building.structure import Structure
+from extrados.schema.quantities import Length
+from extrados.schema.table import key
+
+
+def _assembly(
+    outlines: list[np.ndarray], names: list[str], joints: list[tuple[str, np.ndarray, np.ndarray, int, int]],
+    density: float, depth: float,
+) -> Assembly:  # fmt: skip
+    """Blocks of straight outlines and their joints (name, p, q, block above or right, block below or left)."""
+    mass, centroid, inertia = zip(*(properties(o) for o in outlines), strict=True)
+    weight = density * depth
+    label, p, q, a, b = zip(*joints, strict=True)
+    return Assembly(
+        outlines=outlines, mass=np.array(mass) * weight, centroid=np.array(centroid), inertia=np.array(inertia) * weight,
+        p=np.array(p), q=np.array(q), a=np.array(a), b=np.array(b), depth=depth, block_names=names,
+        joint_names=list(label),
+    )  # fmt: skip
+
+
+def make_column(
+    width: float, heights: list[float], top_width: float | None = None, density: float = 2000.0, depth: float = 1.0
+) -> Assembly:
+    """Drums of the given heights [m] on the ground, from `width` at the base to `top_width` [m]."""
+    levels = np.concatenate([[0.0], np.cumsum(heights)])
+    half = 0.5 * np.interp(levels, [0.0, levels[-1]], [width, width if top_width is None else top_width])
+    n = len(heights)
+    outlines = [
+        np.array(
+            [[-half[i], levels[i]], [half[i], levels[i]], [half[i + 1], levels[i + 1]], [-half[i + 1], levels[i + 1]]]
+        )
+        for i in range(n)
+    ]
+    joints = [
+        (
+            "base" if i == 0 else f"joint {i}", np.array([-half[i], levels[i]]), np.array([half[i], levels[i]]), i,
+            i - 1 if i else GROUND,
+        )
+        for i in range(n)
+    ]  # fmt: skip
+    return _assembly(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
+
+
+def make_brickwork(
+    unit_length: float, unit_height: float, units: int, courses: int, density: float = 1800.0, depth: float = 0.25
+) -> Assembly:
+    """Running bond: every other course begins and ends with half a unit; sizes in m."""
+    rows = []
+    for c in range(courses):
+        ends = np.arange(units + 1.0) if c % 2 == 0 else np.concatenate([[0.0], np.arange(units) + 0.5, [units]])
+        rows.append(ends * unit_length)
+    outlines, names, joints = [], [], []
+    below: list[int] = []
+    for c, ends in enumerate(rows):
+        low, high = c * unit_height, (c + 1) * unit_height
+        row = []
+        for k in range(len(ends) - 1):
+            left, right = ends[k], ends[k + 1]
+            row.append(len(outlines))
+            names.append(f"unit {k + 1} of course {c + 1}")
+            outlines.append(np.array([[left, low], [right, low], [right, high], [left, high]]))
+            if k:
+                joints.append(
+                    (
+                        f"head joint {k} of course {c + 1}",
+                        np.array([left, low]),
+                        np.array([left, high]),
+                        row[k],
+                        row[k - 1],
+                    )
+                )
+            if c == 0:
+                joints.append((f"base of unit {k + 1}", np.array([left, low]), np.array([right, low]), row[k], GROUND))
+                continue
+            for m in below:
+                one, two = max(left, outlines[m][0, 0]), min(right, outlines[m][1, 0])
+                if two - one > 1e-9 * unit_length:
+                    joints.append(
+                        (
+                            f"bed joint of {names[row[k]]} on {names[m]}", np.array([one, low]), np.array([two, low]),
+                            row[k], m,
+                        )
+                    )  # fmt: skip
+        below = row
+    return _assembly(outlines, names, joints, density, depth)
+
+
+class Column(Structure):
+    """Blocks or drums stacked on the ground, tapered where asked for; dry joints between them."""
+
+    kind: Literal["column"]
+    starter: ClassVar = {"height": "4.0"}
+    width: Length = key(about="width at the base", gt=0)
+    height: Length | None = key(None, "total height, shared equally by the drums", gt=0)
+    drums: int = key(1, "number of equal drums", ge=1, le=2000)
+    heights: list[Length] = key([], "heights of the drums from below, instead of height and drums", max_length=2000)
+    top_width: Length | None = key(None, "width at the top; default as at the base", gt=0)
+    depth: Length = key(1.0, "depth out of plane", gt=0)
+
+    @model_validator(mode="after")
+    def _one_height(self) -> "Column":
+        if (self.height is None) == (not self.heights):
+            raise ValueError("give height (and drums), or heights, one of the two")
+        if self.heights and self.drums != 1:
+            raise ValueError("heights already tells the number of drums")
+        if any(h <= 0.0 for h in self.heights):
+            raise ValueError("every one of heights must be above zero")
+        return self
+
+    def assembly(self, density: float, folder: Path) -> Assembly:
+        heights = self.heights or [self.height / self.drums] * self.drums
+        return make_column(self.width, heights, self.top_width, density, self.depth)
+
+
+class Brickwork(Structure):
+    """Wall of equal units in running bond on the ground, loaded in its plane; half units close every other course."""
+
+    kind: Literal["brickwork"]
+    unit_length: Length = key(about="length of a unit", gt=0)
+    unit_height: Length = key(about="height of a unit", gt=0)
+    units: int = key(about="units in a course", ge=1, le=500)
+    courses: int = key(about="number of courses", ge=1, le=500)
+    depth: Length = key(0.25, "thickness of the wall", gt=0)
+
+    @model_validator(mode="after")
+    def _not_too_many(self) -> "Brickwork":
+        if self.units * self.courses > 20000:
+            raise ValueError(f"{self.units * self.courses} units are too many, expected at most 20000")
+        return self
+
+    def assembly(self, density: float, folder: Path) -> Assembly:
+        return make_brickwork(self.unit_length, self.unit_height, self.units, self.courses, density, self.depth)

@@ -1,0 +1,105 @@
+"""The one list of kinds: what may stand in [structure], [motion] and [[analysis]], and where its parts live.
+
+Only names stand here: a command loads no more than the kinds that its deck asks for.
+"""
+
+import importlib
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class AnalysisKind:
+    """Where the parts of an analysis live, each "module:name" within the package.
+
+    table: its deck table. driver: run(context, options) -> Result. figures: draws a stored analysis,
+    (run, name, folder) -> [(figure, caption)]. example: a deck with known answers, below cases/.
+    """
+
+    table: str
+    driver: str
+    figures: str
+    example: str
+
+
+STRUCTURES: dict[str, str] = {
+    "arch": "building.templates.arch:Arch",
+    "block": "building.templates.block:Block",
+    "vault": "building.templates.vault:Vault",
+    "aisled-vault": "building.templates.aisled_vault:AisledVault",
+    "pointed-arch": "building.templates.arches:PointedArch",
+    "elliptical-arch": "building.templates.arches:EllipticalArch",
+    "blocks": "building.templates.blocks:Blocks",
+    "panel": "building.templates.walls:Panel",
+    "mesh": "building.templates.walls:MeshFile",
+    "column": "building.templates.masonry:Column",
+    "brickwork": "building.templates.masonry:Brickwork",
+}
+MOTIONS: dict[str, str] = {
+    "constant": "motions.tables:Constant",
+    "step-pulse": "motions.tables:StepPulse",
+    "sine-pulse": "motions.tables:SinePulse",
+    "harmonic": "motions.tables:Harmonic",
+    "pulse": "motions.tables:Pulse",
+    "velocity-pulse": "motions.tables:VelocityPulse",
+    "record": "motions.tables:Record",
+    "suite": "motions.tables:Suite",
+    "generated": "motions.tables:Generated",
+    "compatible": "motions.tables:Compatible",
+}
+
+
+def _analysis(room: str, table: str, driver: str, figures: str, example: str) -> AnalysisKind:
+    return AnalysisKind(
+        f"analyses.{room}.tables:{table}", f"analyses.{room}.{driver}:run", f"plots.{figures}", f"{example}.toml"
+    )
+
+
+ANALYSES: dict[str, AnalysisKind] = {
+    "tilt": _analysis("limit", "Tilt", "tilt", "limit:draw_tilt", "limit/oppenheim"),
+    "thrust": _analysis("limit", "Thrust", "thrust", "limit:draw_thrust", "vault/dejong-a"),
+    "sweep": _analysis("limit", "Sweep", "sweep", "limit:draw_sweep", "vault/vezelay-sweep"),
+    "survey": _analysis("limit", "Survey", "survey", "limit:draw_survey", "limit/survey"),
+    "supports": _analysis("limit", "Supports", "supports", "limit:draw_supports", "limit/oppenheim"),
+    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit:draw_moving_load", "limit/oppenheim"),
+    "rocking": _analysis("rocking", "Rocking", "rocking", "arch:draw_rocking", "arch/oppenheim"),
+    "failure-domain": _analysis(
+        "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"
+    ),
+    "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "arch/readme"),
+    "fragility": _analysis(
+        "statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility/pga-curve"
+    ),
+    "resonance": _analysis("statistics", "Resonance", "resonance", "statistics:draw_resonance", "rocking/resonance"),
+    "rocking-spectrum": _analysis(
+        "statistics", "RockingSpectrum", "rocking_spectrum", "statistics:draw_rocking_spectrum", "rocking/el-centro-block"
+    ),
+    "harmonic-map": _analysis(
+        "statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "rocking/el-centro-block"
+    ),
+    "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "rocking/el-centro-block"),
+    "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
+    "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
+    "sla": _analysis("sla", "Sla", "sla", "sla:draw_sla", "sla/beam"),
+    "dem": _analysis("dem", "Dem", "dem", "dem:draw_dem", "dem/oppenheim"),
+    "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
+    "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "dem/rocking-block"),
+}  # fmt: skip
+
+#: Section of a deck -> its kinds, each with the place of its table
+TABLES: dict[str, dict[str, str]] = {
+    "structure": STRUCTURES,
+    "motion": MOTIONS,
+    "analysis": {kind: parts.table for kind, parts in ANALYSES.items()},
+}
+
+
+def load(place: str) -> Any:
+    """What stands at "module:name" within the package."""
+    module, name = place.split(":")
+    return getattr(importlib.import_module(f"extrados.{module}"), name)
+
+
+def table(section: str, kind: str) -> Any:
+    """The deck table of a kind; KeyError where there is none."""
+    return load(TABLES[section][kind])

@@ -1,0 +1,1 @@
+"""The words of decks and results: tables, keys, quantities with units."""

@@ -1,0 +1,40 @@
+"""The base of every deck table."""
+
+from typing import Any, ClassVar
+
+from pydantic import BaseModel, ConfigDict, Field, create_model
+
+
+class Table(BaseModel):
+    """A TOML table: unknown keys, wrong types, NaN and infinity are refused.
+
+    `starter`: TOML values of keys in the decks that `new` writes, of optional keys too.
+    """
+
+    starter: ClassVar[dict[str, str]] = {}
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+
+
+class Motion(Table):
+    """Base of the motion kinds."""
+
+    kind: str
+
+
+def key(default: Any = ..., about: str = "", *, source: str = "", **limits: Any) -> Any:
+    """A deck key: default, one-sentence meaning, source of the formula behind it, bounds."""
+    extra = {"source": source} if source else None
+    return Field(default, description=about, json_schema_extra=extra, **limits)
+
+
+def override_of(model: type[Table]) -> type[Table]:
+    """The table by which an analysis replaces values of a building's table for itself: every key optional.
+
+    Rules over several keys are those of `model`, which the two together must meet.
+    """
+    fields: dict[str, Any] = {}
+    for name, field in model.model_fields.items():
+        asked = field._copy()
+        asked.default, asked.default_factory = None, None
+        fields[name] = (field.annotation | None, asked)
+    return create_model(f"{model.__name__}Override", __base__=Table, __doc__=model.__doc__, **fields)

@@ -1,1 +1,0 @@
-"""A deck's structure made into blocks and joints, or into a mesh."""
