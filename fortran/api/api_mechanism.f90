@@ -44,7 +44,8 @@ contains
       !f2py threadsafe
       table = 0.0_c_double
       facts = 0.0_c_double
-      call linkage_new(mass, centroid, inertia, joined, point, row, driver, real(sense, c_double), mechanism, rest, status)
+      call linkage_new(mass, centroid, inertia, joined, point, row, driver, real(sense, c_double), mechanism, rest, &
+         status)
       if (status == status_ok) call table_new(mechanism, rest, int(side), made, found, status)
       facts = [made%critical, made%limit, found%lock, found%m, found%dv, found%dh, found%misfit, found%energy]
       if (status == status_ok) call table_pack(made, table)
@@ -107,7 +108,8 @@ contains
       first = 0.0_c_double
       second = 0.0_c_double
       reached = 0
-      call linkage_new(mass, centroid, inertia, joined, point, row, driver, real(sense, c_double), mechanism, rest, status)
+      call linkage_new(mass, centroid, inertia, joined, point, row, driver, real(sense, c_double), mechanism, rest, &
+         status)
       if (status == status_ok) call linkage_path(mechanism, rest, q, place, first, second, reached, status)
    end subroutine follow
 

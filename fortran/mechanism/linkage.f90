@@ -76,7 +76,7 @@ contains
       real(wp), intent(in) :: inertia(:)      !! (parts) about the centroids [kg m^2]
       integer(c_int), intent(in) :: side(:, :)  !! (2, hinges) parts that a hinge joins, 0 = ground
       real(wp), intent(in) :: point(:, :)     !! (2, hinges) [m]
-      integer(c_int), intent(in) :: row(:, :)  !! (2, 3 parts - 1) hinge (1-based) and axis (1, 2) of the independent equations
+      integer(c_int), intent(in) :: row(:, :)  !! (2, 3 parts - 1) hinge and axis, from 1, of the independent equations
       integer(c_int), intent(in) :: driver    !! the part whose rotation is q
       real(wp), intent(in) :: sense           !! +1 or -1, see linkage
       type(linkage), intent(out) :: made

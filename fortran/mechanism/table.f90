@@ -26,11 +26,14 @@ module mechanism_table
 
    real(wp), parameter :: reach = 1.6_wp  !! greatest rotation that is looked at [rad]
    integer, parameter :: scan = 400
+   !> Where the first panel stops being continued below rest: only trial steps of the integrator get there
+   real(wp), parameter :: lowest = -2.0_wp
    !> How far table and kinematics may differ, see table_facts
    real(wp), parameter :: agreement = 1.0e-9_wp
 
    type :: side_table
-      real(wp) :: critical = 0.0_wp  !! q of unstable equilibrium, or of the lock where gravity resists up to there [rad]
+      !> q of unstable equilibrium, or of the lock where gravity resists up to there [rad]
+      real(wp) :: critical = 0.0_wp
       real(wp) :: limit = 0.0_wp     !! q taken as collapse [rad]
       real(wp) :: last = 0.0_wp       !! last q of the table [rad]
       real(wp) :: scale = 1.0_wp     !! L [rad]
@@ -104,7 +107,8 @@ contains
                return
             end if
             here = next
-            call linkage_coefficients(mechanism, here, value(mass, k), exact(k), value(gravity_moment, k), value(drive, k), v)
+            call linkage_coefficients(mechanism, here, value(mass, k), exact(k), value(gravity_moment, k), &
+               value(drive, k), v)
             per_w = 2.0_wp * table%scale * (1.0_wp - w)
             value(:, k) = value(:, k) * [per_w**2, per_w, real(side, wp) * per_w]
          end do
@@ -352,7 +356,7 @@ contains
       real(wp) :: t, value(3), slope, dw
       integer :: k
 
-      t = 2.0_wp * (w * self%per_panel - real(i - 1, wp)) - 1.0_wp
+      t = max(lowest, 2.0_wp * (w * self%per_panel - real(i - 1, wp)) - 1.0_wp)
       value = self%coefficient(:, degree, i)
       slope = 0.0_wp
       do k = degree - 1, 0, -1

@@ -11,7 +11,8 @@ from extrados.core.errors import CoreError
 from extrados.core.mechanism import Coefficients, Table, table_body
 from extrados.core.rocking import Body
 from extrados.limit.answer import why_not
-from extrados.limit.linkage import CannotRock, Linkage, linkage
+from extrados.limit.impact import MOST_BLOCKS, energy_kept
+from extrados.limit.linkage import CannotRock, Linkage, laden, linkage
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
 from extrados.motions.motion import GRAVITY
@@ -21,6 +22,8 @@ SIDES = (1, -1)
 WORD = {1: "+x", -1: "-x"}
 #: Relative: capacity by limit analysis and by the work of the tables at rest.
 SAME = 1e-6
+#: Share of the kinetic energy that a blow may leave beyond what the next mechanism takes, without a warning.
+LOST = 0.2
 #: Of the size: joints that part and then overlap by more than this touch again.
 OVERLAP = 1e-9
 #: Rotations up to the critical one at which hinges are looked at.
@@ -47,9 +50,10 @@ class HingeForces:
 class MechanismModel:
     """An assembly that rocks by its collapse mechanisms to +x and to -x; pairs are (to +x, to -x).
 
-    rule: "energy-safe", the projection of the velocities before impact on the next mechanism, or a number whose
-    square is the share of the kinetic energy that an impact keeps (c_v where both sides are alike). Joints do
-    not slide and stone does not crush. Refused says why a section does not rock.
+    rule: "energy-safe", the projection of the velocities before impact on the next mechanism, and rest where it is
+    below zero; "inelastic", which gives the next mechanism all energy that the blow would leave if hinges could open
+    anywhere; or a number whose square is the share of the kinetic energy that an impact keeps (c_v where both sides
+    are alike). Joints do not slide and stone does not crush. Refused says why a section does not rock.
     """
 
     assembly: Assembly
@@ -121,62 +125,65 @@ class MechanismModel:
 
     @cached_property
     def _fields(self) -> tuple[np.ndarray, np.ndarray]:
-        """Velocities (blocks, 3) at rest per unit rate, of both sides."""
-        fields = []
-        for one in self.linkages:
-            first = core_mechanism.follow(one, [0.0])[1][0]
-            field = np.zeros((len(one.part), 3))
-            moving = one.part > 0
-            k = one.part[moving] - 1
-            arm = self.assembly.centroid[moving] - one.centroid[k]
-            field[moving] = first[k]
-            field[moving, 0] -= first[k, 2] * arm[:, 1]
-            field[moving, 1] += first[k, 2] * arm[:, 0]
-            fields.append(field)
-        return fields[0], fields[1]
+        """Velocities (blocks, 3) at rest per unit rate of the blocks with their fill, of both sides."""
+        _, centroid, _ = laden(self.assembly)
+        right, left = (one.velocities(centroid, core_mechanism.follow(one, [0.0])[1][0]) for one in self.linkages)
+        return right, left
 
     @cached_property
     def projections(self) -> tuple[float, float]:
         """Rate over rate of the impacts that start rocking to +x and to -x by workless impulses; may be negative."""
+        mass, _, inertia = laden(self.assembly)
         right, left = self._fields
-        mass, inertia = self._impact_masses
-        if self.assembly.fill is not None:
-            right, left = (np.concatenate([field, self._at_fill(field)]) for field in (right, left))
         return (
             core_mechanism.restitution(mass, inertia, left, right),
             core_mechanism.restitution(mass, inertia, right, left),
         )
 
-    @property
-    def _impact_masses(self) -> tuple[np.ndarray, np.ndarray]:
-        a = self.assembly
-        if a.fill is None:
-            return a.mass, a.inertia
-        return np.concatenate([a.mass, a.fill[:, 0]]), np.concatenate([a.inertia, np.zeros(len(a.mass))])
-
-    def _at_fill(self, field: np.ndarray) -> np.ndarray:
-        """Velocities of the fill that rides on the blocks."""
-        arm = self.assembly.fill[:, 1:] - self.assembly.centroid
-        return np.column_stack([field[:, 0] - field[:, 2] * arm[:, 1], field[:, 1] + field[:, 2] * arm[:, 0], field[:, 2]])
+    @cached_property
+    def energy_kept(self) -> tuple[float, float] | None:
+        """Share of the kinetic energy that the impacts that start rocking to +x and to -x would leave if hinges could
+        open anywhere (limit.impact); None for too many blocks. Above what the projection leaves, the blow sets more
+        than the two mechanisms in motion, and what follows an impact is beyond a model of one coordinate.
+        """
+        if len(self.assembly.mass) > MOST_BLOCKS:
+            return None
+        right, left = self._fields
+        return energy_kept(self.assembly, -left), energy_kept(self.assembly, -right)
 
     @cached_property
     def restitution(self) -> tuple[float, float]:
         """Rate after over rate before, of the impacts that start rocking to +x and to -x."""
-        if isinstance(self.rule, str):
-            if self.rule != "energy-safe":
-                raise Refused(f'the impact rule "{self.rule}" is not known for this section: "energy-safe", or a number')
-            return max(self.projections[0], 0.0), max(self.projections[1], 0.0)
+        if self.rule == "energy-safe":
+            return max(0.0, self.projections[0]), max(0.0, self.projections[1])
         ratio = float(np.sqrt(self.tables[1].mass / self.tables[0].mass))
+        if self.rule == "inelastic":
+            if self.energy_kept is None:
+                raise Refused(f'the impact rule "inelastic" is for at most {MOST_BLOCKS} blocks; give a number')
+            right, left = np.sqrt(self.energy_kept)
+            return float(right) * ratio, float(left) / ratio
+        if isinstance(self.rule, str):
+            raise Refused(f'the impact rule "{self.rule}" is not known here: "energy-safe", "inelastic", or a number')
         return float(self.rule) * ratio, float(self.rule) / ratio
 
     @cached_property
     def warnings(self) -> list[str]:
         """What is doubtful: impacts that end the rocking, hinges that close again before the balance."""
         found = []
-        if isinstance(self.rule, str) and max(self.projections) <= 0.0:
+        kept = (
+            self.restitution[0] ** 2 * self.tables[0].mass / self.tables[1].mass,
+            self.restitution[1] ** 2 * self.tables[1].mass / self.tables[0].mass,
+        )
+        if self.rule == "energy-safe" and max(self.projections) <= 0.0:
             found.append(
-                f"the blows of one mechanism do not open the other (c_v = {self.projections[0]:.3f} to +x, "
+                f"the blow of one mechanism does not open the other (c_v = {self.projections[0]:.3f} to +x, "
                 f"{self.projections[1]:.3f} to -x): the structure comes to rest at every impact"
+            )
+        if self.energy_kept is not None and max(self.energy_kept) > max(kept) + LOST:
+            found.append(
+                f"an impact keeps {100 * max(kept):.0f} % of the kinetic energy in the mechanism of the other side, but "
+                f"would leave {100 * max(self.energy_kept):.0f} % if hinges could open anywhere: the blow moves the "
+                'section otherwise, and peaks after an impact are underestimated (restitution = "inelastic" keeps all of it)'
             )
         for side, one, table, (_, mechanism) in zip(SIDES, self.linkages, self.tables, self.collapse, strict=True):
             closing = self._closing(one, table, mechanism)
@@ -247,7 +254,9 @@ class MechanismModel:
         the ground [m/s^2]. All (states). The forces inside the parts are statically indeterminate.
         """
         a = self.assembly
-        given = [np.atleast_1d(np.asarray(x, dtype=float)) for x in (rotation, rate, acceleration, horizontal, vertical)]
+        given = [
+            np.atleast_1d(np.asarray(x, dtype=float)) for x in (rotation, rate, acceleration, horizontal, vertical)
+        ]
         rotation = given[0]
         normal, shear = np.full((2, len(rotation), len(a.a)), np.nan)
         miss = np.zeros(len(rotation))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados import _core
-from extrados.core.calls import integers, real
+from extrados.core.calls import real
 from extrados.core.errors import check
 from extrados.core.rocking import Body
 

@@ -61,6 +61,16 @@ class Linkage:
         out[..., moving, 2] = place[..., k, 2]
         return out
 
+    def velocities(self, points: np.ndarray, first: np.ndarray) -> np.ndarray:
+        """Velocities (blocks, 3) at rest of points [m] of the blocks, and spins, from those of the parts (parts, 3)."""
+        out = np.zeros((len(self.part), 3))
+        moving = self.part > 0
+        k = self.part[moving] - 1
+        arm = points[moving] - self.centroid[k]
+        out[moving] = first[k]
+        out[moving, :2] += first[k, 2, None] * np.column_stack([-arm[:, 1], arm[:, 0]])
+        return out
+
 
 def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     """The parts and hinges of a mechanism that rocks to +x (side 1) or -x (-1).
@@ -111,18 +121,26 @@ def _listed(names: list[str], joints: list[int]) -> str:
     return ", ".join(names[j] for j in joints[:4]) + more
 
 
+def laden(assembly: Assembly) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mass [kg], centroid (blocks, 2) [m] and inertia [kg m^2] of the blocks with the fill that rides on them."""
+    if assembly.fill is None:
+        return assembly.mass, assembly.centroid, assembly.inertia
+    fill, place = assembly.fill[:, 0], assembly.fill[:, 1:]
+    mass = assembly.mass + fill
+    centroid = (assembly.mass[:, None] * assembly.centroid + fill[:, None] * place) / mass[:, None]
+    apart = ((place - assembly.centroid) ** 2).sum(axis=1)
+    return mass, centroid, assembly.inertia + assembly.mass * fill / mass * apart
+
+
 def _mass(assembly: Assembly, part: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mass, centroid and inertia of each part; fill rides on its block as a mass at a point."""
+    """Mass, centroid and inertia of each part, fill included."""
+    blocks = laden(assembly)
     mass, centroid, inertia = np.zeros(count), np.zeros((count, 2)), np.zeros(count)
-    fill = np.zeros((0, 3)) if assembly.fill is None else assembly.fill
     for k in range(count):
-        here = part == k + 1
-        m, at, spin = assembly.mass[here], assembly.centroid[here], assembly.inertia[here].sum()
-        if len(fill):
-            m, at = np.concatenate([m, fill[here, 0]]), np.concatenate([at, fill[here, 1:]])
+        m, at, spin = (values[part == k + 1] for values in blocks)
         mass[k] = m.sum()
         centroid[k] = m @ at / mass[k]
-        inertia[k] = spin + m @ ((at - centroid[k]) ** 2).sum(axis=1)
+        inertia[k] = spin.sum() + m @ ((at - centroid[k]) ** 2).sum(axis=1)
     return mass, centroid, inertia
 
 
@@ -153,9 +171,7 @@ def _jacobian(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size:
     return rows.reshape(2 * len(joined), -1)
 
 
-def _independent(
-    centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float, driver: int
-) -> np.ndarray:
+def _independent(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float, driver: int) -> np.ndarray:
     """Hinge and axis, from 1, of the equations that with the prescribed rotation of the driver fix the motion."""
     rows = _jacobian(centroid, joined, point, size)
     first = np.zeros(rows.shape[1])
@@ -179,9 +195,7 @@ def _independent(
     return np.column_stack([kept_rows // 2 + 1, kept_rows % 2 + 1])
 
 
-def _same_motion(
-    made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: np.ndarray, fastest: float
-) -> None:
+def _same_motion(made: Linkage, assembly: Assembly, mechanism: Mechanism, spin: np.ndarray, fastest: float) -> None:
     """CannotRock where the hinges move the parts otherwise than the mechanism found: it must part a joint to move."""
     rows = _jacobian(made.centroid, made.joined, made.point, assembly.size)
     moving = made.part > 0
