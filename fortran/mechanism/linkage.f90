@@ -155,11 +155,11 @@ contains
       right = 0.0_wp
       right(n) = self%sense
       call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
-      state%first = reshape(right, [3, self%parts])
+      state%first(:, :) = reshape(right, [3, self%parts])
       state%first(1:2, :) = state%first(1:2, :) * self%size
       call bending(self, state, right)
       call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
-      state%second = reshape(right, [3, self%parts])
+      state%second(:, :) = reshape(right, [3, self%parts])
       state%second(1:2, :) = state%second(1:2, :) * self%size
       state%closed = .true.
    end subroutine solve

@@ -255,7 +255,7 @@ contains
       real(wp), intent(in) :: angle(:)            !! (degree + 1)
       real(wp), intent(in) :: value(:, :)         !! (3, degree + 1)
       real(wp), intent(out) :: polynomial(:, 0:)  !! (3, 0:degree) coefficients of the powers of t
-      real(wp) :: chebyshev(0:degree, 0:degree), weight
+      real(wp) :: chebyshev(0:degree, 0:degree), weight, wave(3)
       integer :: j, k
 
       ! Powers of t in each Chebyshev polynomial
@@ -269,8 +269,12 @@ contains
       polynomial = 0.0_wp
       do j = 0, degree
          weight = merge(1.0_wp, 2.0_wp, j == 0) / real(degree + 1, wp)
+         wave = 0.0_wp
+         do k = 1, degree + 1
+            wave = wave + value(:, k) * cos(real(j, wp) * angle(k))
+         end do
          do k = 0, degree
-            polynomial(:, k) = polynomial(:, k) + weight * chebyshev(k, j) * matmul(value, cos(real(j, wp) * angle))
+            polynomial(:, k) = polynomial(:, k) + weight * chebyshev(k, j) * wave
          end do
       end do
    end subroutine fit
@@ -430,8 +434,8 @@ contains
       status = merge(status_ok, status_out_of_memory, stat == 0)
       if (stat /= 0) return
       table%per_panel = real(panels, wp) / share(table, table%last)
-      table%coefficient = reshape(list(5:4 + n), [3, degree + 1, panels])
-      table%start = list(5 + n:table_numbers)
+      table%coefficient(:, :, :) = reshape(list(5:4 + n), [3, degree + 1, panels])
+      table%start(:) = list(5 + n:table_numbers)
    end subroutine table_unpack
 
 end module mechanism_table
