@@ -121,9 +121,7 @@ def test_hinge_forces_are_those_of_the_dynamic_thrust_line() -> None:
 @pytest.mark.parametrize("toes", [(0.5, 0.5), (0.3, 0.7)])
 def test_a_block_is_the_block(toes) -> None:
     """Also with unequal toes: coefficients, Housner's impact of both sides, and a response."""
-    block = make_block(
-        depth=1.0, mass=2000.0, inertia=2800.0, centre_height=2.0, toe_right=toes[0], toe_left=toes[1]
-    )
+    block = make_block(depth=1.0, mass=2000.0, inertia=2800.0, centre_height=2.0, toe_right=toes[0], toe_left=toes[1])
     ours, theirs = MechanismModel(block), BlockModel(block)
     assert ours.critical == pytest.approx(theirs.alpha, rel=1e-12)
     assert ours.uplift == pytest.approx(theirs.uplift, rel=1e-12)
