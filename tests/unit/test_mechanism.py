@@ -206,7 +206,7 @@ def test_an_impact_never_creates_energy() -> None:
         tried += 1
         kept = np.square(m.projections) * np.array([first.mass / second.mass, second.mass / first.mass])
         assert kept.max() <= 1.0
-        right, left = m._fields
+        right, left = m.fields
         assert kept[0] <= energy_kept(section, -left) + 1e-9 or m.projections[0] < 0.0
         assert kept[1] <= energy_kept(section, -right) + 1e-9 or m.projections[1] < 0.0
         # the same mass product ties the two impacts together

@@ -124,7 +124,7 @@ class MechanismModel:
         return 0.75 * GRAVITY * self.time_unit**2
 
     @cached_property
-    def _fields(self) -> tuple[np.ndarray, np.ndarray]:
+    def fields(self) -> tuple[np.ndarray, np.ndarray]:
         """Velocities (blocks, 3) at rest per unit rate of the blocks with their fill, of both sides."""
         _, centroid, _ = laden(self.assembly)
         right, left = (one.velocities(centroid, core_mechanism.follow(one, [0.0])[1][0]) for one in self.linkages)
@@ -134,7 +134,7 @@ class MechanismModel:
     def projections(self) -> tuple[float, float]:
         """Rate over rate of the impacts that start rocking to +x and to -x by workless impulses; may be negative."""
         mass, _, inertia = laden(self.assembly)
-        right, left = self._fields
+        right, left = self.fields
         return (
             core_mechanism.restitution(mass, inertia, left, right),
             core_mechanism.restitution(mass, inertia, right, left),
@@ -148,7 +148,7 @@ class MechanismModel:
         """
         if len(self.assembly.mass) > MOST_BLOCKS:
             return None
-        right, left = self._fields
+        right, left = self.fields
         return energy_kept(self.assembly, -left), energy_kept(self.assembly, -right)
 
     @cached_property
@@ -199,8 +199,7 @@ class MechanismModel:
         """First rotation up to the critical one at which a joint that opened closes again, and its name."""
         a = self.assembly
         q = np.linspace(0.0, table.critical, LOOKS + 1)[1:] * (1.0 - 1e-9)
-        place, first, _ = core_mechanism.follow(one, [0.0])
-        turn = np.append(0.0, first[0, :, 2])
+        turn = np.append(0.0, core_mechanism.follow(one, [0.0])[1][0, :, 2])
         opening = turn[one.joined[:, 0]] - turn[one.joined[:, 1]]
         place, _, _ = core_mechanism.follow(one, q)
         turned = np.concatenate([np.zeros((len(q), 1)), place[:, :, 2]], axis=1)
