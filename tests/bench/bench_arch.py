@@ -4,7 +4,7 @@ import math
 import time
 
 import numpy as np
-from tests.bench.timing import seconds
+from timing import seconds
 
 from extrados.analyses.arch_model import ArchModel
 from extrados.analyses.failure_domain import Mapper, failure_curves, settling_time

@@ -6,7 +6,7 @@ import time
 import numpy as np
 from scipy import sparse
 from scipy.optimize import linprog
-from tests.bench.timing import seconds
+from timing import seconds
 
 from extrados.analyses.run import Context, run_analyses
 from extrados.decks.reader import make_deck

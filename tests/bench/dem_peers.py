@@ -123,7 +123,7 @@ def lmgc90(bodies: dem.Bodies, ground: Ground, end: float, dt: float, follow: in
 
 
 if __name__ == "__main__":  # LMGC90 keeps one simulation in a process, and may end it
-    from tests.bench.bench_dem import CASES
+    from bench_dem import CASES
 
     name, end, dt = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
     case = CASES[name]
