@@ -74,7 +74,9 @@ want="$("$python" -V) $(cat pyproject.toml meson.build meson.options tools/setup
 if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$want" ]; then
   echo "making .venv and building (about two minutes) ..."
   .venv/bin/python -m pip --version >/dev/null 2>&1 || "$python" -m venv --clear .venv
-  .venv/bin/python -m pip install -q --disable-pip-version-check "meson-python>=0.18" "meson>=1.4" ninja "numpy>=2.1"
+  needed=$("$python" -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"])')
+  # shellcheck disable=SC2086
+  .venv/bin/python -m pip install -q --disable-pip-version-check $needed
   PATH="$PWD/.venv/bin:$PATH" .venv/bin/python -m pip install -q --disable-pip-version-check \
     --no-build-isolation --config-settings=setup-args=-Dwerror=$strict -e ".[dev]"
   echo "$want" > "$stamp"
