@@ -19,6 +19,7 @@ def install() -> dict[str, str]:
         wanted = tomllib.load(stream)["project"]["optional-dependencies"]["bench"]
     lacking = {}
     for requirement in wanted:
+        print(f"peer {requirement}", flush=True)
         command = [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", requirement]
         run = subprocess.run(command, capture_output=True, text=True, check=False)
         if run.returncode:
