@@ -41,6 +41,19 @@ def lower_bounds(project: dict) -> list[str]:
     return [f"{name}=={version}" for name, version in sorted(pins.items())]
 
 
+def others(python: Path, pins: list[str]) -> list[str]:
+    """What that environment holds in another version than it should; what it lacks altogether is not told."""
+    code = "import importlib.metadata as m; [print(d.name + '==' + d.version) for d in m.distributions()]"
+    listed = subprocess.run([python, "-c", code], check=True, capture_output=True, text=True).stdout.split()
+
+    def plain(pin: str) -> tuple[str, str]:
+        name, version = pin.split("==")
+        return re.sub(r"[-_.]+", "-", name).lower(), re.sub(r"(\.0)+$", "", version)
+
+    wanted = dict(map(plain, [*pins, f"pip=={PIP}"]))
+    return [pin for pin in listed if wanted.get(plain(pin)[0], plain(pin)[1]) != plain(pin)[1]]
+
+
 def copy_sources() -> None:
     """The sources as they stand, also what is not committed; environment and build of an earlier run stay."""
     listed = subprocess.run(
@@ -73,6 +86,9 @@ def main() -> int:
     env = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "VIRTUAL_ENV", "MAKEFLAGS")}
     env |= {"PIP_CONSTRAINT": str(constraints), "PATH": f"{python.parent}{os.pathsep}{os.environ['PATH']}"}
     subprocess.run(["sh", "tools/setup.sh"], cwd=ROOM, env=env, check=True)
+    if wrong := others(python, pins):
+        print(f"not the oldest after all: {', '.join(wrong)}", file=sys.stderr)
+        return 1
     return subprocess.run([python, "-m", "pytest", "-q", *TESTS], cwd=ROOM, env=env, check=False).returncode
 
 

@@ -25,7 +25,7 @@ def main() -> int:
     failed = []
     for name in wanted:
         print(f"\n== {name}", flush=True)
-        if code := subprocess.run([sys.executable, str(rooms[name])], check=False).returncode:
+        if code := subprocess.run([sys.executable, "-u", str(rooms[name])], check=False).returncode:
             failed.append(f"{name} (exit code {code})")
     print()
     for requirement, why in lacking.items():
