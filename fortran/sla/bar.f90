@@ -1,10 +1,10 @@
 !> Bars of two nodes with saw-tooth softening, and linear springs.
 module sla_bar
    use common_kinds, only : wp
+   use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, &
-      linear_bound, &
-      code_tension, code_compression
+      linear_bound
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -191,6 +191,7 @@ contains
       integer :: e
       if (store) then
          values = 0.0_wp
+         values(5:7:2, :) = 1.0_wp   ! a bar has one direction: the second is whole
          values(4, :) = real(self%tooth(1, :), wp)
          values(6, :) = real(self%tooth(2, :), wp)
       else

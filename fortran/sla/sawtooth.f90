@@ -7,14 +7,14 @@
 !> Hordijk's law, in which it is explicit.
 module sla_sawtooth
    use common_kinds, only : wp
+   use common_lists, only : law_linear => sla_law_linear, law_exponential => sla_law_exponential, &
+      law_hordijk => sla_law_hordijk
    use common_status, only : status_ok, status_invalid_argument, status_snap_back, status_too_many_steps
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: softening, softening_new, make_teeth, largest_band
-   public :: law_linear, law_exponential, law_hordijk
 
-   integer(c_int), parameter :: law_linear = 1, law_exponential = 2, law_hordijk = 3
    !> Hordijk (1991): (1 + (c1 x)^3) exp(-c2 x) - x (1 + c1^3) exp(-c2), x = crack strain / ultimate
    real(wp), parameter :: c1 = 3.0_wp, c2 = 6.93_wp
    real(wp), parameter :: hordijk_area = 5.136_wp   !! ultimate opening times ft over Gf

@@ -5,27 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados import _core
-from extrados.core.calls import long_call, real
+from extrados.core import lists
+from extrados.core.calls import long_call, real, room_for, thread_count
 from extrados.core.errors import check
 
-ENVELOPES = {"arctangent": 1, "trapezoid": 2, "jennings": 3, "saragoni-hart": 4}
-SPACINGS = {"log": 1, "uniform": 2}
-SCALINGS = {"thesis": 1, "fourier": 2, "energy": 3}
+ENVELOPES = lists.numbers("envelope")
+SPACINGS = lists.numbers("spacing")
+SCALINGS = lists.numbers("scaling")
 #: Points on the shortest oscillator period: sampled peaks are at most 1.2 % below the true ones.
 POINTS_PER_CYCLE = 20
-MOST_VALUES = 250_000_000
 _I64 = 2**63 - 1
-
-
-def _size(*lengths: int) -> None:
-    if np.prod([float(n) for n in lengths]) > MOST_VALUES:
-        raise ValueError(f"{' x '.join(map(str, lengths))} values are more than {MOST_VALUES:,}: use smaller batches")
-
-
-def _threads(threads: int) -> int:
-    if threads < 1:
-        raise ValueError(f"threads is {threads}, expected at least 1")
-    return int(threads)
 
 
 def _step(step: float) -> float:
@@ -95,11 +84,11 @@ def generate(lines, amplitude, window, step: float, seed: int, first: int, count
     lines, window = real("lines", lines, (None,)), real("window", window, (None,))
     if not (-_I64 <= seed <= _I64 and first >= 0 and count >= 1):
         raise ValueError(f"seed {seed}, first {first} or count {count} is out of range")
-    _size(window.size, count)
-    _size(window.size, 2 * lines.size)
+    room_for(window.size, count)
+    room_for(window.size, 2 * lines.size)
     motions, status = long_call(
         _core.api_motion.generate, lines, real("amplitude", amplitude, lines.shape), _step(step), window,
-        int(seed), int(first), int(count), _threads(threads),
+        int(seed), int(first), int(count), thread_count(threads),
     )  # fmt: skip
     check(status, "generated motions")
     return motions.T
@@ -140,9 +129,9 @@ def response_spectra(
         raise ValueError("response spectra need a period, and dampings from 0 to below 1")
     if periods.min() * 4096 < points_per_cycle * _step(step):
         raise ValueError(f"period {periods.min():g} s is too short for a time step of {step:g} s")
-    _size(3, periods.size, dampings.size, batch.shape[1])
+    room_for(3, periods.size, dampings.size, batch.shape[1])
     peak, status = long_call(
-        _core.api_motion.spectra, batch, _step(step), periods, dampings, int(points_per_cycle), _threads(threads)
+        _core.api_motion.spectra, batch, _step(step), periods, dampings, int(points_per_cycle), thread_count(threads)
     )
     check(status, "response spectra")
     peak = np.moveaxis(peak, (0, 1, 2, 3), (0, 3, 2, 1))
@@ -187,7 +176,7 @@ class Measures:
 
 def measures(motions, step: float, threads: int = 1) -> Measures:
     """Measures of one motion (points) or several (count, points) [m/s^2]; exact for straight lines between samples."""
-    value, status = long_call(_core.api_motion.motion_measure, _batch(motions), _step(step), _threads(threads))
+    value, status = long_call(_core.api_motion.motion_measure, _batch(motions), _step(step), thread_count(threads))
     check(status, "intensity measures")
     return Measures(*value)
 
