@@ -371,7 +371,7 @@ contains
    end subroutine loads
 
    !> A batch of events
-   subroutine run(handle, room, stop, refuse_overload, monitors, entries, first, freedom, share, &
+   subroutine run(handle, room, limits, refuse_overload, monitors, entries, first, freedom, share, &
                   counts, reals, integers, monitored, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
@@ -380,7 +380,7 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: room
       !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first; see stop_rules
-      real(c_double), intent(in) :: stop(4)
+      real(c_double), intent(in) :: limits(4)
       integer(c_int), intent(in) :: refuse_overload
       integer(c_int), intent(in) :: monitors
       integer(c_int), intent(in) :: entries
@@ -424,7 +424,7 @@ contains
          fate = status_bad_index
          if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > 2)) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
-         rules = stop_rules(stop(1), stop(2), stop(3), stop(4), refuse_overload /= 0)
+         rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0)
          fate = status_out_of_memory
          allocate (equation(entries), weight(entries), log%reals(9, room), log%integers(4, room), &
             log%monitors(monitors, room), stat=info)

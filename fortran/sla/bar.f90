@@ -62,6 +62,7 @@ contains
       group%elements = n
       group%points = n
       group%freedoms = 4
+      group%directions = 1
       group%options = options
       group%teeth = teeth
       allocate (group%gradient(4, n), group%volume(n), group%young(n), group%table(n), group%crush_table(n), &
@@ -191,7 +192,6 @@ contains
       integer :: e
       if (store) then
          values = 0.0_wp
-         values(5:7:2, :) = 1.0_wp   ! a bar has one direction: the second is whole
          values(4, :) = real(self%tooth(1, :), wp)
          values(6, :) = real(self%tooth(2, :), wp)
       else

@@ -69,6 +69,7 @@ module sla_group
    type, abstract, extends(element_group) :: point_group
       integer :: points = 0                !! of the group
       integer :: offset = 0                !! points of the groups before it
+      integer :: directions = 2            !! crack directions of a point; a bar has one
       type(material_options) :: options
    contains
       procedure(scan_interface), deferred :: scan

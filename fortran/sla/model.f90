@@ -306,8 +306,15 @@ contains
       status = status_invalid_argument
       if (.not. store) then
          if (.not. all(abs(values) <= most_damage)) return
-         if (any(values(4:7, :) < 1.0_wp) .or. any(values(8:11, :) < 0.0_wp)) return
-         if (any(abs(values(3:, :) - anint(values(3:, :))) > 0.0_wp)) return
+         if (any(values(4:11, :) < 0.0_wp) .or. any(abs(values(3:, :) - anint(values(3:, :))) > 0.0_wp)) return
+         do g = 1, size(made%holders)
+            select type (group => made%holders(g)%group)
+            class is (point_group)   ! teeth count from 1
+               if (any(values(4:6:2, group%offset + 1:group%offset + group%points) < 1.0_wp)) return
+               if (group%directions < 2) cycle
+               if (any(values(5:7:2, group%offset + 1:group%offset + group%points) < 1.0_wp)) return
+            end select
+         end do
       end if
       do g = 1, size(made%holders)
          select type (group => made%holders(g)%group)

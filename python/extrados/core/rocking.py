@@ -36,7 +36,8 @@ def arch_body(mechanism: FourHinge, restitution: float) -> Body:
     """The symmetric arch; restitution c_v in [0, 1]."""
     if not 0.0 <= restitution <= 1.0:
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
-    hinge, mass, centroid, inertia = mechanism.links()
+    hinge, (mass, x, y, inertia) = mechanism.links()
+    centroid = np.vstack([x, y])
     return Body(lists.number("rocking_body", "arch"), np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]))
 
 
