@@ -24,6 +24,7 @@ lint: setup
 	@.venv/bin/ruff check python tests tools
 	@.venv/bin/ruff format --check python tests tools
 	@.venv/bin/fortitude check fortran tests/fortran
+	@.venv/bin/mypy
 
 format: setup
 	@.venv/bin/ruff check --fix python tests tools

@@ -227,7 +227,8 @@ contains
    subroutine closed_contacts(it, bodies, values, found)
       type(model), intent(in) :: it
       integer(c_int), intent(out) :: bodies(:, :)   !! (2, room)
-      real(wp), intent(out) :: values(:, :)         !! (6, room) x, y [m], force on the second body x, y, normal, shear [N]
+      !> (6, room) x, y [m], force on the second body x, y, normal, shear [N]
+      real(wp), intent(out) :: values(:, :)
       integer, intent(out) :: found
       type(overlap) :: now
       integer :: k, i

@@ -3,8 +3,8 @@
 !> Equations are renumbered once into the order of the factor, so that vectors need no permutation after.
 module sla_model
    use common_kinds, only : wp
-   use common_status, only : status_ok, status_bad_index, status_out_of_memory, status_invalid_argument, status_too_large, &
-      status_not_positive_definite
+   use common_status, only : status_ok, status_bad_index, status_out_of_memory, status_invalid_argument, &
+      status_too_large, status_not_positive_definite
    use sla_assembly, only : build_pattern, assemble
    use sla_c_bindings, only : extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, &
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
@@ -14,7 +14,8 @@ module sla_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
    implicit none
    private
-   public :: model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve, model_damage
+   public :: model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
+   public :: model_damage
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp

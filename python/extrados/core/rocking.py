@@ -38,7 +38,10 @@ def arch_body(mechanism: FourHinge, restitution: float) -> Body:
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
     hinge, (mass, x, y, inertia) = mechanism.links()
     centroid = np.vstack([x, y])
-    return Body(lists.number("rocking_body", "arch"), np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]))
+    return Body(
+        lists.number("rocking_body", "arch"),
+        np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]),
+    )
 
 
 def block_body(
@@ -166,21 +169,32 @@ def history(
     state = state[:, :points]
     if not (np.isfinite(state).all() and np.isfinite(measures).all()):
         check(status_code("not_finite"), "rocking response")
+    peak, peak_ratio, stop_time, work, loss = (float(x) for x in measures)
+    rotation, rate, acceleration, shaking, vertical, kinetic, potential, ledger = state
     return Response(
-        OUTCOMES[outcome],
-        half_cycles,
-        impacts,
-        *(float(x) for x in measures[:3]),
-        steps,
-        rejected,
-        times[:points],
-        *state,
-        [(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)],
-        events,
-        float(measures[3]),
-        float(measures[4]),
-        bool(settled),
-        interrupted,
+        outcome=OUTCOMES[outcome],
+        half_cycles=half_cycles,
+        impacts=impacts,
+        peak=peak,
+        peak_ratio=peak_ratio,
+        stop_time=stop_time,
+        steps=steps,
+        rejected=rejected,
+        time=times[:points],
+        rotation=rotation,
+        rate=rate,
+        acceleration=acceleration,
+        ground=shaking,
+        vertical=vertical,
+        kinetic=kinetic,
+        potential=potential,
+        ledger=ledger,
+        events=[(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)],
+        events_found=events,
+        work=work,
+        loss=loss,
+        settled=bool(settled),
+        interrupted=interrupted,
     )
 
 

@@ -11,7 +11,19 @@ from extrados.core.calls import indices, integers, long_call, real, room_for, th
 from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
-    ELEMENTS, EVENTS, LAWS, STOPS, Bars, Behaviour, Events, Freedoms, Monitor, Plane, Softening, Springs, Stop,
+    ELEMENTS,
+    EVENTS,
+    LAWS,
+    STOPS,
+    Bars,
+    Behaviour,
+    Events,
+    Freedoms,
+    Monitor,
+    Plane,
+    Softening,
+    Springs,
+    Stop,
 )  # fmt: skip
 
 __all__ = [
@@ -160,7 +172,7 @@ class Model(Owner):
         numbers = []
         for law in (group.tension, group.compression):
             one_for_all = law is None or isinstance(law, Softening)
-            each = [law] * count if one_for_all else list(law)  # type: ignore[arg-type, list-item]
+            each = [law] * count if one_for_all else list(law)  # type: ignore[arg-type]
             if len(each) != count:
                 raise ValueError(f"{len(each)} softening laws for {count} elements")
             number = np.zeros(count, dtype=np.int32)
@@ -174,11 +186,11 @@ class Model(Owner):
             bad, status = _core.api_sla.tables(self.handle, rows)
             if bad:
                 kind, modulus, strength, energy, width = rows[:5, bad - 1]
-                law = next(word for word, number in LAWS.items() if number == int(kind))
-                largest = largest_band(Softening(strength, energy, law), modulus)
+                name = next(word for word, number in LAWS.items() if number == int(kind))
+                largest = largest_band(Softening(strength, energy, name), modulus)
                 check(
                     status,
-                    f"teeth of a {law} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: "
+                    f"teeth of a {name} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: "
                     f"band {width:g} m, the largest is {largest:g} m",
                 )
             check(status, "softening laws")
@@ -275,10 +287,13 @@ class Model(Owner):
         if not interrupted:
             check(status, "events")
         count, checks, solutions, factors, reason = (int(k) for k in counts)
-        reals, ints = reals[:, :count].copy(), ints[:, :count]
+        reals, ints = reals[:, :count].copy(), ints[:, :count].copy()
+        load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual = reals
         return Events(
-            *reals, ints[0] - 1, ints[1].copy(), ints[2].copy(), ints[3].astype(bool), watched[:, :count].T.copy(),
-            STOPS[reason], (checks, solutions, factors), interrupted, float(cracked),
+            load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual,
+            point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
+            monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
+            interrupted=interrupted, crack_total=float(cracked),
         )  # fmt: skip
 
     def displacement(self, load: float) -> np.ndarray:
