@@ -11,7 +11,7 @@ run: setup
 
 test: setup
 	@$(PYTHON) -m pytest -q
-	@$(PYTHON) tools/fortran_tests.py
+	@$(PYTHON) tools/native_tests.py
 
 verify: setup  ## long validation; writes docs/verification.md
 	@$(PYTHON) -m pytest -q -m ""
