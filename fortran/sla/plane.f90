@@ -136,7 +136,7 @@ contains
       end do
    end subroutine plane_group_new
 
-   !> Stiffness and strengths of a point from its damage
+   !> Stiffness (thesis Eqs 4.9 to 4.11) and strengths of a point from its damage
    pure subroutine refresh(self, p)
       class(plane_group), intent(inout) :: self
       integer, intent(in) :: p

@@ -41,8 +41,8 @@ contains
       if (abs(set%item(1)%radius - sqrt(1.25_wp)) > 1e-15_wp) error stop 'radius'
       if (abs(set%size - sqrt(2.0_wp)) > 1e-14_wp) error stop 'size of the smallest mobile part'
       if (.not. set%item(2)%fixed .or. set%item(2)%inverse_mass > 0.0_wp) error stop 'a support that moves'
-      if (abs(set%edges(2)%tx) > 0.0_wp .or. abs(set%edges(2)%ty - 1.0_wp) > 0.0_wp .or. set%edges(4)%next /= 1) &
-         error stop 'edges'
+      if (abs(set%edges(2)%tx) > 0.0_wp .or. abs(set%edges(2)%ty - 1.0_wp) > 0.0_wp) error stop 'a tangent'
+      if (set%edges(4)%next /= 1) error stop 'a part does not close'
       call body_set_new(reshape([1.0_wp, 0.5_wp], [2, 1]), [mass], [inertia], [1_c_int], [1_c_int, 5_c_int], &
          box(:, [4, 3, 2, 1]), outer, set, status)
       if (status /= status_bad_geometry) error stop 'a clockwise part is taken'
@@ -176,10 +176,12 @@ contains
       type(overlap) :: now
       law = dry
       law%tension = 1.5_wp * law%normal_stiffness * open
+      law%cohesion = 2.0_wp * law%tension   ! or the shear criterion would end the bond first
       call scene([open, open], a, b, pair, now)
       pair%point%bonded = .true.
       call act(law, 0.0_wp, 0.0_wp, now, a, b, pair)
       call near(b%fy, -2.0_wp * law%normal_stiffness * open, 'mortar in tension')
+      if (.not. all(pair%point%bonded)) error stop 'mortar fails below its strength'
       now%gap = 2.0_wp * open
       b%fy = 0.0_wp
       call act(law, 0.0_wp, 0.0_wp, now, a, b, pair)

@@ -13,8 +13,9 @@ program test_rocking
    use rocking_rocker, only : rocker
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none (type, external)
-   real(wp), parameter :: arch_values(21) = [-9.07_wp, 1.80_wp, -5.97_wp, 8.94_wp, 2.1_wp, 10.54_wp, 10.54_wp, 2.10_wp, &
-      11.3_wp, 12.1_wp, 17.9_wp, -8.3_wp, 5.6_wp, -2.1_wp, 9.7_wp, 7.4_wp, 6.9_wp, 31.0_wp, 43.0_wp, 59.0_wp, 0.9_wp]
+   real(wp), parameter :: arch_values(21) = [-9.07_wp, 1.80_wp, -5.97_wp, 8.94_wp, 2.1_wp, 10.54_wp, 10.54_wp, &
+      2.10_wp, 11.3_wp, 12.1_wp, 17.9_wp, -8.3_wp, 5.6_wp, -2.1_wp, 9.7_wp, 7.4_wp, 6.9_wp, 31.0_wp, 43.0_wp, &
+      59.0_wp, 0.9_wp]
    real(wp), parameter :: block_values(8) = [0.0_wp, 1000.0_wp, 1500.0_wp, 2.0_wp, 0.5_wp, 0.4_wp, 0.9_wp, 0.8_wp]
    type(arch_rocker) :: arch
    type(block_rocker) :: stone
