@@ -41,11 +41,14 @@ static void rules(void) {
   assert(second != first);
   assert(extrados_handle_take(first, EXTRADOS_handle_dem, 0, &object) == EXTRADOS_closed_handle);
 
-  /* Closed for later: gone for all others at once, destroyed as the call leaves. */
+  /* Closed for later: gone for all others at once, destroyed as the last call leaves. */
+  assert(extrados_handle_take(second, EXTRADOS_handle_dem, 0, &object) == EXTRADOS_ok);
   assert(extrados_handle_take(second, EXTRADOS_handle_dem, 0, &object) == EXTRADOS_ok);
   assert(extrados_handle_close(second, 1) == EXTRADOS_ok && destroyed[1] == 0);
   assert(extrados_handle_take(second, EXTRADOS_handle_dem, 0, &object) == EXTRADOS_closed_handle);
   assert(extrados_handle_new(EXTRADOS_handle_dem, &destroyed[2], destroy, &third) == EXTRADOS_ok && third != second);
+  extrados_handle_leave(second);
+  assert(destroyed[1] == 0);
   extrados_handle_leave(second);
   assert(destroyed[1] == 1 && destroyed[2] == 0);
   assert(extrados_handle_close(third, 1) == EXTRADOS_ok && destroyed[2] == 1 && extrados_handle_count() == 0);
