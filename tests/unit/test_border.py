@@ -108,6 +108,9 @@ ABUSES = {
     "body force to nowhere": ("sla.body_force('Q4', (2, 2), xy, [[0, 1, 2, 9]], [[0.0, 1.0]])", "IndexError"),
     "ensemble of a body that is not there": ("rocking.ensemble([block], [one], [1], [0], 1.0, 1.0)", "IndexError"),
     "ensemble of a motion that is not there": ("rocking.ensemble([block], [one], [0], [-1], 1.0, 1.0)", "IndexError"),
+    "ensemble of nothing": ("rocking.ensemble([block], [one], [], [], 1.0, 1.0)", "ValueError"),
+    "start to no side": ("rocking.history(block, one, 1.0, 0.1, start_side=0)", "ValueError"),
+    "start the wrong way": ("rocking.history(block, one, 1.0, 0.1, start_rotation=-0.1)", "ValueError"),
     "ensemble of unlike lengths": ("rocking.ensemble([block], [one], [0, 0], [0], 1.0, 1.0)", "ValueError"),
     "body without parameters": ("rocking.history(rocking.Body(2, np.ones(2)), one, 1.0, 0.1)", "CoreError"),
     "body of no kind": ("rocking.history(rocking.Body(77, np.ones(9)), one, 1.0, 0.1)", "CoreError"),
@@ -250,6 +253,23 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
         thread.join(0.05)
     _core.api_support.set_cancel(0)
     assert _core.api_support.handle_count() == before - 1
+
+
+def test_an_error_is_not_hidden_by_an_object_in_use() -> None:
+    before = _core.api_support.handle_count()
+    model, motions = long_run()
+    thread = threading.Thread(target=_core.api_dem.run, args=(model.handle, motions.handle, 1, 1.0, np.zeros(1)))
+    thread.start()
+    while status_list()[_core.api_dem.summary(model.handle)[2]][0] != "busy":
+        pass
+    with pytest.raises(KeyboardInterrupt), model, motions:
+        raise KeyboardInterrupt
+    assert model.closed and motions.closed
+    while thread.is_alive():
+        _core.api_support.set_cancel(1)
+        thread.join(0.05)
+    _core.api_support.set_cancel(0)
+    assert _core.api_support.handle_count() == before
 
 
 def test_runs_of_one_model_do_not_know_of_each_other() -> None:

@@ -51,7 +51,10 @@ class Owner:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.close()
+        if error is None:
+            self.close()
+        else:
+            self._release()  # a call that was left behind may still use it, and must not hide the error
 
     def _refuse(self) -> NoReturn:
         raise TypeError(f"a {self.what} lives in the core and cannot be copied or pickled: build another one")

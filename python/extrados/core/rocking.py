@@ -139,11 +139,17 @@ def history(
     start_rate: float = 0.0,
     room: int = 20000,
 ) -> Response:
-    """Rock `body` under `ground` times `scale` until collapse or `end_time` [s]."""
+    """Rock `body` under `ground` times `scale` until collapse or `end_time` [s].
+
+    It starts with `start_rotation` >= 0 [rad] and `start_rate` [rad/s] to the side `start_side`, 1 to +x or -1. `room`:
+    events kept.
+    """
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0):
         raise ValueError("end time, output step and tolerance must be positive")
     if not np.isfinite(scale):
         raise ValueError(f"scale is {scale}, expected a number")
+    if start_side not in (1, -1) or not start_rotation >= 0.0:
+        raise ValueError(f"start is {start_rotation} rad to side {start_side}, expected 0 or more to side 1 or -1")
     if not 0 <= room <= 10**7:
         raise ValueError(f"room is {room}, expected 0 to 10,000,000 events")
     room_for(8, int(min(end_time / output_step, 1e12)))
@@ -235,6 +241,8 @@ def ensemble(
     outcome and peak are known then, the number of impacts is not.
     """
     n = len(np.asarray(run_body))
+    if not n:
+        raise ValueError("an ensemble needs a run")
     with np.errstate(invalid="ignore"):
         values = {
             name: real(name, np.broadcast_to(np.asarray(value, dtype=float), (n,)), (n,))
