@@ -137,7 +137,7 @@ contains
       integer(c_int), intent(in) :: table(elements)           !! row of tension teeth, 0 none
       integer(c_int), intent(in) :: crush_table(elements)     !! row of compression teeth, 0 none
       real(c_double), intent(in) :: lateral(elements)         !! strength that reduces ft, 0 none [Pa]
-      integer(c_int), intent(in) :: axis(elements)            !! 1: one crack direction given beforehand
+      integer(c_int), intent(in) :: axis(elements)            !! 1: one crack direction given, 2: also the shear is kept
       real(c_double), intent(in) :: axis_angle(elements)      !! of its normal [rad]
       integer(c_int), intent(in) :: tables
       real(c_double), intent(in) :: rows(8, tables)           !! kind, E, ft, Gf, h, p, exact, overshoot

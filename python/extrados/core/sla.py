@@ -195,7 +195,8 @@ class Plane:
     connect (elements, nodes) 0-based; thickness [m], young [Pa], nu, band [m]; tension and compression
     softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
     strength that reduces the tensile one (0 none); `axis` angle of the only crack normal allowed [rad], NaN
-    where cracks choose theirs; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
+    where cracks choose theirs; `joint`: cracks there keep the shear stiffness, so that the joint opens but does not
+    slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
     """
 
     kind: str
@@ -210,6 +211,7 @@ class Plane:
     axis: float | np.ndarray = np.nan
     points: tuple[int, int] = (2, 2)
     selective: bool = False
+    joint: bool = False
 
 
 @dataclass(frozen=True)
@@ -391,7 +393,7 @@ class Model:
             bad, bad_row, status = _core.api_sla.add_plane(
                 self._handle, ELEMENTS[group.kind], *group.points, int(group.selective), one_based,
                 each("thickness", group.thickness), young, each("nu", group.nu), table, crush,
-                each("lateral", group.lateral), given.astype(np.int32), np.where(given, axis, 0.0), rows,
+                each("lateral", group.lateral), (1 + int(group.joint)) * given.astype(np.int32), np.where(given, axis, 0.0), rows,
             )  # fmt: skip
             what = "element"
             per = {"T3": 1, "T6": 3}.get(group.kind, group.points[0] * group.points[1])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extrados.analyses.context import Refused
+from extrados.analyses.sla.contact import settle
 from extrados.analyses.sla.curve import envelope
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
@@ -79,7 +80,9 @@ def run_curves(
                     f"resume_from: that wall has {damage.shape[1]} points with its bars, this one {core_model.points}"
                 )
             core_model.set_damage(damage)
-        elif options.constant_damage and np.any(model.constant):
+        else:
+            settle(core_model, model)
+        if damage is None and options.constant_damage and np.any(model.constant):
             stage_a = _constant_stage(core_model, model, options, progress)
         start = core_model.damage()
         ledger, events = _totals(stage_a)
@@ -189,11 +192,15 @@ def _reference_stage(
         batch = int(np.clip(batch * BATCH_SECONDS / max(spent, 1e-3), 10, 100_000)) if room == batch else batch
     events = core.Events.join(parts)
     events.monitors *= sign  # positive in the sense of the load
+    collapsed = events.reason == "mechanism" and events.compliance[-1] > options.mechanism_ratio * events.compliance[0]
+    if collapsed and model.mesh.has_joints:
+        # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
+        events.equilibrium[-1] = False
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before
-        if events.reason != "mechanism" or events.compliance[-1] > options.mechanism_ratio * events.compliance[0]:
+        if events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
             curve.residual = core_model.residual()
         if not (done - 1 in wanted and states):
             states.append(_state(core_model, len(events) - 1, float(events.load[-1])))

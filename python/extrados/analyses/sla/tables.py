@@ -80,15 +80,24 @@ class Sla(BuildingAnalysis):
     view: ClassVar = "mesh"
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
-        "material.compressive_strength",
+        "material.compressive_strength", "joints.tension",
     )  # fmt: skip
     starter: ClassVar = {
         "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
         "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
         "target_displacement": '"2 mm"',
     }
-    constant: list[Load] = key([], "loads A, there from the start", max_length=100)
-    reference: list[Load] = key(about="loads B that lambda multiplies", min_length=1, max_length=100)
+    constant: list[Load] | None = key(
+        None,
+        "loads A, there from the start; default the weight of stones, and of walls whose reference is not given",
+        max_length=100,
+    )
+    reference: list[Load] | None = key(
+        None,
+        "loads B that lambda multiplies; default all masses times 1 g to +x, so that lambda is an acceleration in g",
+        min_length=1,
+        max_length=100,
+    )
     constant_damage: bool = key(
         True, "bring A from 0 to 1 with damage before B; without it B acts on the undamaged wall", source="thesis 4.3.1"
     )
@@ -113,7 +122,9 @@ class Sla(BuildingAnalysis):
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
         None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
     )
-    crack_closure: bool = key(False, "cracks that close regain their stiffness")
+    crack_closure: bool | None = key(
+        None, "cracks that close regain their stiffness; default true for stones, whose joints must, false for walls"
+    )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
@@ -136,9 +147,10 @@ class Sla(BuildingAnalysis):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":
-        if any(load.kind == "displacement" for load in self.constant):
+        if any(load.kind == "displacement" for load in self.constant or []):
             raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
-        if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
+        reference = self.reference or []
+        if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
             raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
