@@ -121,7 +121,7 @@ def _constant_stage(
     """Bring the constant loads from 0 to 1, with damage where they ask for it."""
     core_model.loads(np.zeros_like(model.constant), model.constant)
     parts, done = [], 0
-    stop = core.Stop(load=1.0, compliance=options.mechanism_ratio)
+    stop = core.Stop(load=1.0, compliance=model.mechanism_ratio)
     while True:
         part = core_model.run(min(500, options.events - done), [model.control], stop)
         parts.append(part)
@@ -152,7 +152,7 @@ def _reference_stage(
     """Events under A + lambda B; states at the wanted events, at the peak and at the end."""
     target = np.inf if options.target_displacement is None else options.target_displacement
     stop = core.Stop(
-        displacement=target, fraction=options.stop_fraction or -1.0, compliance=options.mechanism_ratio,
+        displacement=target, fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
         refuse_overload=fresh and bool(np.any(model.constant)),
     )  # fmt: skip
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
@@ -192,7 +192,7 @@ def _reference_stage(
         batch = int(np.clip(batch * BATCH_SECONDS / max(spent, 1e-3), 10, 100_000)) if room == batch else batch
     events = core.Events.join(parts)
     events.monitors *= sign  # positive in the sense of the load
-    collapsed = events.reason == "mechanism" and events.compliance[-1] > options.mechanism_ratio * events.compliance[0]
+    collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
     if collapsed and model.mesh.has_joints:
         # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
         events.equilibrium[-1] = False

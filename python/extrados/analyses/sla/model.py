@@ -15,6 +15,8 @@ from extrados.core import sla as core
 
 AXES = {"x": 0, "y": 1}
 POINTS_PER_THREAD = 20_000
+#: Growth of the compliance that counts as a mechanism: of walls, and of stones, which may be slender
+MECHANISM, MECHANISM_OF_STONES = 1e4, 1e5
 #: Openings and closings of a joint's point before it is left open: they change no stress, so that many do no harm
 MOST_CHANGES_OF_JOINTS = 1000
 #: Stiffness left in an open joint: its row is so thin that the millionth left in a cracked wall would hold the stones
@@ -36,6 +38,7 @@ class SlaModel:
     control: core.Monitor
     bands: list[np.ndarray]  # crack band of the elements of each plane group [m]
     point_xy: np.ndarray  # (points, 2) of the plane groups [m]
+    mechanism_ratio: float  # growth of the compliance that ends a run
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
 
     def open(self, options: Sla, threads: int) -> core.Model:
@@ -156,7 +159,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
             FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor,
         ),
         constant, reference, unit, _control(mesh, options, reference, unit), bands, np.concatenate(points),
-        acceleration,
+        options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM), acceleration,
     )  # fmt: skip
 
 

@@ -111,7 +111,9 @@ class Sla(BuildingAnalysis):
     events: int = key(5000, "most events", ge=1, le=10_000_000)
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
     stop_fraction: float = key(0.0, "stop where the load falls below this part of its peak", ge=0, lt=1)
-    mechanism_ratio: float = key(1e4, "stop where the compliance has grown by this factor", ge=10, le=1e12)
+    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] | None = key(
+        None, "stop where the compliance has grown by this factor; default 1e4, of stones 1e5"
+    )
     teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
     ripple: float = key(0.1, "half-width p of the teeth over the strength", source="thesis 4.2", ge=0.005, le=0.5)
     overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")

@@ -24,12 +24,12 @@ class MeshOptions(Table):
 
     size: Length | None = key(
         None,
-        "wanted size of the elements; default a twentieth of a wall's lesser side, a sixth of the median joint of stones",
+        "wanted size of the elements; default a twentieth of a wall's lesser side, an eighth of the median joint of stones",
         gt=0,
     )
     joint_thickness: Length | None = key(
         None,
-        "thickness of the row of elements along each joint between stones; default 1/50 of the size, and at most a fifth "
+        "thickness of the row of elements along each joint between stones; default 1/25 of the size, and at most a fifth "
         "of the shortest element along a joint",
         gt=0,
     )

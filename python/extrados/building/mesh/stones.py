@@ -23,10 +23,10 @@ from extrados.schema.constants import GRAVITY
 if TYPE_CHECKING:
     from extrados.building.building import Building
 
-#: Elements along a joint of median length where no size is given, and along the shortest
-DIVISIONS, FEWEST = 6, 2
+#: Elements along a joint where no size is given (fewer along those shorter than the median), and along the shortest
+DIVISIONS, FEWEST = 8, 2
 #: Thickness of the rows over the size of the elements, and at most over the shortest side along a joint
-THICKNESS, THICKNESS_OF_SIDE = 0.02, 0.2
+THICKNESS, THICKNESS_OF_SIDE = 0.04, 0.2
 #: Integration points along and across the elements of a row
 ROW_POINTS = (4, 1)
 #: Turn of an outline from which it is a corner [rad]
@@ -58,11 +58,14 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
     """Mesh of the stones and joints of a building; BadGeometry says what does not fit."""
     _refuse(options)
     assembly = building.blocks()
-    size = options.size or float(np.median(assembly.length)) / DIVISIONS
-    area = sum(abs(signed_area(o)) for o in assembly.outlines)
-    if (count := area / size**2) > LARGEST_MESH:
+    size, most = options.size, LARGEST_MESH
+    if size is None:
+        size, most = float(np.median(assembly.length)) / DIVISIONS, DIVISIONS
+    sizes = [max(size, float(assembly.length[assembly.joints_of(i)].max()) / most) for i in range(len(assembly.mass))]
+    count = sum(abs(signed_area(o)) / s**2 for o, s in zip(assembly.outlines, sizes, strict=True))
+    if count > LARGEST_MESH:
         raise BadGeometry(f"about {count:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}; use larger ones")
-    lines = [_divided(p, q, size) for p, q in zip(assembly.p, assembly.q, strict=True)]
+    lines = [_divided(p, q, size, most) for p, q in zip(assembly.p, assembly.q, strict=True)]
     shortest = min(float(np.hypot(*np.diff(line, axis=0).T).min()) for line in lines)
     thickness = options.joint_thickness or min(THICKNESS * size, THICKNESS_OF_SIDE * shortest)
     if thickness > 0.5 * shortest:
@@ -72,7 +75,7 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
         )
     snap = max(1e-7 * assembly.size, 10.0 * getattr(building.structure, "contact_tolerance", 0.0))
     triangles_only = options.element == "T3"
-    stones = [_stone(assembly, i, lines, size, thickness, snap, triangles_only) for i in range(len(assembly.mass))]
+    stones = [_stone(assembly, i, lines, sizes[i], thickness, snap, triangles_only) for i in range(len(assembly.mass))]
 
     first = np.cumsum([0, *(len(s.xy) for s in stones)])
     xy = [s.xy for s in stones]
@@ -194,9 +197,9 @@ def _masses(stone: Stone, assembly: Assembly, block: int) -> np.ndarray:
     return mass
 
 
-def _divided(p: np.ndarray, q: np.ndarray, size: float) -> np.ndarray:
-    """Points along a joint, about `size` apart and closer toward its ends, where hinges form."""
-    count = max(FEWEST, round(float(np.hypot(*(q - p))) / size))
+def _divided(p: np.ndarray, q: np.ndarray, size: float, most: int) -> np.ndarray:
+    """Points along a joint, about `size` apart and closer toward its ends, where hinges form; at most `most` parts."""
+    count = min(most, max(FEWEST, round(float(np.hypot(*(q - p))) / size)))
     share = 0.5 - 0.5 * np.cos(np.pi * np.arange(count + 1) / count)
     return p + share[:, None] * (q - p)
 
