@@ -20,7 +20,7 @@ MECHANISM, MECHANISM_OF_STONES = 1e4, 1e5
 #: Openings and closings of a joint's point before it is left open: they change no stress, so that many do no harm
 MOST_CHANGES_OF_JOINTS = 1000
 #: Stiffness left in an open joint: its row is so thin that the millionth left in a cracked wall would hold the stones
-FLOOR_OF_JOINTS = 1e-10
+FLOOR_OF_JOINTS = 1e-11
 
 
 @dataclass
