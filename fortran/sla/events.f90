@@ -22,8 +22,7 @@ module sla_events
       stop_displacement = 4, stop_load = 5, stop_fraction = 6
 
    integer, parameter :: log_reals = 9, log_integers = 4
-   real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism,
-   real(wp), parameter :: least_of_floor = 1.0e-3_wp  !! unless the stiffness left in cracks is as small
+   real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    integer, parameter :: guard_every = 500
    real(wp), parameter :: most_residual = 1.0e-8_wp
 
@@ -239,8 +238,7 @@ contains
             wa(j) = dot_product(event%w(1:event%entries, j), made%ua(event%index(1:event%entries)))
             wb(j) = dot_product(event%w(1:event%entries, j), made%ub(event%index(1:event%entries)))
          end do
-         call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), &
-            min(least_pivot, least_of_floor * made%options%floor), reason)
+         call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), reason)
          if (reason /= stop_none) return
          do j = 1, r
             made%ua(1:n) = made%ua(1:n) + wa(j) * made%z(:, j)
@@ -264,18 +262,17 @@ contains
    end subroutine apply_event
 
    !> Solve m x = wa, m y = wb by elimination without pivoting: m is positive definite for softening events
-   pure subroutine small(m, wa, wb, r, definite, least, reason)
+   pure subroutine small(m, wa, wb, r, definite, reason)
       real(wp), intent(inout) :: m(:, :)
       real(wp), intent(inout) :: wa(:)
       real(wp), intent(inout) :: wb(:)
       integer, intent(in) :: r
       logical, intent(in) :: definite
-      real(wp), intent(in) :: least                 !! pivot of a mechanism
       integer(c_int), intent(inout) :: reason
       real(wp) :: f
       integer :: i, j
       do j = 1, r
-         if ((definite .and. .not. m(j, j) > least) .or. .not. abs(m(j, j)) > least) then
+         if ((definite .and. .not. m(j, j) > least_pivot) .or. .not. abs(m(j, j)) > least_pivot) then
             reason = stop_mechanism
             return
          end if

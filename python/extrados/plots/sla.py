@@ -123,7 +123,7 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
             angle = run.array(name, f"{prefix}state_angle")[s]
             widths = [run.array(name, f"{prefix}state_width_{d}")[s] for d in "ns"]
             most = max(w.max() for w in widths)
-            place = at + factor * _at_points(run, name, moved, at, xy)
+            place = at + factor * _at_points(run, name, moved)
             for width, turn in zip(widths, (0.5 * np.pi, 0.0), strict=True):
                 # A crack runs across its normal; those too fine to matter are left out
                 shown = width > max(1e-3 * most, 1e-9)
@@ -146,17 +146,11 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
     return title, "Cracks on the deformed wall, at the peak and at the end; colour and thickness give the width."
 
 
-def _at_points(run: Stored, name: str, moved: np.ndarray, at: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    """Displacements carried from the nodes to the points: that of the element's corners on the mean."""
-    rows = []
+def _at_points(run: Stored, name: str, moved: np.ndarray) -> np.ndarray:
+    """Displacements carried from the nodes to the points: the mean of their element's corners."""
     blocks = [a.data for n, a in sorted(run.arrays[name].items()) if n.startswith("elements_") and n[9:].isdigit()]
-    for connect in blocks:
-        rows.append(moved[connect[:, : CORNERS[connect.shape[1]]]].mean(axis=1))
-    per_element = np.concatenate(rows)
-    centres = np.concatenate([xy[c[:, : CORNERS[c.shape[1]]]].mean(axis=1) for c in blocks])
-    from scipy.spatial import cKDTree
-
-    return per_element[cKDTree(centres).query(at)[1]]
+    per_element = np.concatenate([moved[c[:, : CORNERS[c.shape[1]]]].mean(axis=1) for c in blocks])
+    return per_element[run.array(name, "point_element")]
 
 
 def _panels(span: np.ndarray, count: int):

@@ -19,7 +19,8 @@ from extrados.results.vtu import pvd, vtu
 from extrados.schema.constants import GRAVITY
 
 UNBOUNDED = 1e300
-HINGE = 0.95  # part of a joint from which it counts as open but for an edge
+#: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
+HINGE, WIDE = 0.95, 0.1
 PREFIXES = ("", "minus_")  # of the arrays of the first curve, whatever its sense, and of the second, to -
 
 
@@ -237,7 +238,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
 
 
 def _joints(result: Result, model: SlaModel, curve: Curve) -> list[str]:
-    """Openings of the joints at the peak as a table; the names of those that are open but for an edge."""
+    """Openings of the joints at the peak as a table; the names of the hinges: open but for an edge, and wide among them."""
     state = next((s for s in curve.states if s.event == curve.peak), None)
     if state is None:
         return []
@@ -257,7 +258,7 @@ def _joints(result: Result, model: SlaModel, curve: Curve) -> list[str]:
     result.tables["joints"] = TableData(
         {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}, {"greatest_opening": "m"}
     )
-    hinges = np.flatnonzero(share > HINGE)
+    hinges = np.flatnonzero((share > HINGE) & (most > WIDE * most.max()))
     return [model.mesh.joint_names[j] for j in hinges]
 
 
@@ -273,7 +274,7 @@ def _answer_of_stones(r: dict[str, Any], both: bool) -> str:
     text = f"The stones become a mechanism at {capacity(r)}; joints open but do not slide."
     if names := r["hinges"]:
         shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
-        text += f" Open but for an edge: {shown}."
+        text += f" Hinges: {shown}."
     if both and r.get("minus", {}).get("peak_load_N") is not None:
         text += f" In the opposite sense: {capacity(r['minus'])}."
     return text
@@ -306,6 +307,8 @@ def _mesh_arrays(model: SlaModel) -> dict[str, Array]:
     per = [len(model.point_xy) and b.gauss[0] * b.gauss[1] for b in model.mesh.groups]
     per = [{"T3": 1, "T6": 3}.get(b.kind, n) for b, n in zip(model.mesh.groups, per, strict=True)]
     band = np.concatenate([np.repeat(h, n) for h, n in zip(model.bands, per, strict=True)])
+    owner = np.repeat(np.arange(model.mesh.elements()), np.repeat(per, [len(g.connect) for g in model.mesh.groups]))
+    arrays["point_element"] = Array(owner, ("points",), "", "element of the point, from 0, group after group")
     arrays["point_band"] = Array(band, ("points",), "m", "crack band width")
     if model.mesh.has_joints:
         reach = [
