@@ -82,11 +82,6 @@ class Sla(BuildingAnalysis):
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "joints.tension",
     )  # fmt: skip
-    starter: ClassVar = {
-        "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
-        "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
-        "target_displacement": '"2 mm"',
-    }
     constant: list[Load] | None = key(
         None,
         "loads A, there from the start; default the weight of stones, and of walls whose reference is not given",
