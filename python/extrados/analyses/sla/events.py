@@ -229,7 +229,9 @@ def _replay(
     again = core_model.run(event - first + 1, [model.control], core.Stop())
     # Near a mechanism of stiff stones the last digits of the load depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
-    if len(again) != event - first + 1 or abs(again.load[-1] - events.load[event]) > tolerance * abs(events.load[event]):
+    if len(again) != event - first + 1 or abs(again.load[-1] - events.load[event]) > tolerance * abs(
+        events.load[event]
+    ):
         return None
     return _state(core_model, event, float(again.load[-1]))
 

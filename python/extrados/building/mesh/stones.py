@@ -5,6 +5,7 @@ their thickness (by all of it on the ground), and the gap is filled by one row o
 their own: where more than two meet, a pore of the size of the joint's thickness is left and nothing is tied there.
 """
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -128,7 +129,9 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
 
 def _refuse(options: MeshOptions) -> None:
     if options.element not in ("Q4", "T3"):
-        raise BadGeometry(f'stones are meshed by "Q4" (triangles where that does not fit) or "T3", not {options.element}')
+        raise BadGeometry(
+            f'stones are meshed by "Q4" (triangles where that does not fit) or "T3", not {options.element}'
+        )
     if options.pattern == "random":
         raise BadGeometry("stones have no random pattern: their joints lead the cracks")
     if options.refine or options.lines_x or options.lines_y:
@@ -268,7 +271,7 @@ def _outline_pieces(assembly: Assembly, block: int, lines: list[np.ndarray], sna
         raise BadGeometry(f"block '{assembly.block_names[block]}' has no joint")
     found.sort(key=lambda row: row[0])
     pieces = []
-    for this, after in zip(found, found[1:] + [found[0]], strict=True):
+    for this, after in zip(found, [*found[1:], found[0]], strict=True):
         pieces.append(Piece(this[3].copy(), this[2]))
         begin, end = this[1], after[0] if after is not found[0] else after[0] + around
         if end - begin < -snap:
@@ -292,7 +295,7 @@ def _at_corners(piece: Piece) -> list[Piece]:
     if piece.joint >= 0 or len(piece.points) < 3:
         return [piece]
     cuts = [0, *(1 + np.flatnonzero(_turns(np.diff(piece.points, axis=0)) > CORNER)), len(piece.points) - 1]
-    return [Piece(piece.points[a : b + 1]) for a, b in zip(cuts[:-1], cuts[1:], strict=True)]
+    return [Piece(piece.points[a : b + 1]) for a, b in itertools.pairwise(cuts)]
 
 
 def _turns(edges: np.ndarray) -> np.ndarray:
@@ -327,7 +330,7 @@ def _four_sides(pieces: list[Piece], size: float) -> list[list[Piece]] | None:
         return None
     turned = pieces[corner[0] :] + pieces[: corner[0]]
     cut = [c - corner[0] for c in corner] + [n]
-    sides = [turned[a:b] for a, b in zip(cut[:-1], cut[1:], strict=True)]
+    sides = [turned[a:b] for a, b in itertools.pairwise(cut)]
     for one, two in ((0, 2), (1, 3)):
         pair = (sides[one], sides[two])
         fixed = [sum(len(p.points) - 1 for p in side if p.joint >= 0) for side in pair]
@@ -378,8 +381,10 @@ def _withdrawal(assembly: Assembly, block: int, pieces: list[Piece], thickness: 
             move = free * width / slope if abs(slope) > 0.3 else normal * width
         else:
             move = np.zeros(2)
-        inner = np.zeros((len(piece.points) - 2, 2)) if there is None else np.tile(
-            there[0] * there[1], (len(piece.points) - 2, 1)
+        inner = (
+            np.zeros((len(piece.points) - 2, 2))
+            if there is None
+            else np.tile(there[0] * there[1], (len(piece.points) - 2, 1))
         )
         moves += [move[None], inner]
     return np.concatenate(moves)
@@ -417,5 +422,3 @@ def _mapped(ring: np.ndarray, counts: Sequence[int]) -> tuple[np.ndarray, np.nda
     ahead, back = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     convex = ahead[..., 0] * back[..., 1] - ahead[..., 1] * back[..., 0]
     return (xy, quads) if (convex > 0.0).all() else None
-
-

@@ -59,6 +59,7 @@ class Wall(Structure):
             "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
             "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
             "target_displacement": '"2 mm"',
+            "ripple": "0.2",
         },
     }
     thickness: Length = key(about="thickness out of plane", gt=0)
