@@ -27,9 +27,28 @@ from extrados.core.sla_parts import (
 )  # fmt: skip
 
 __all__ = [
-    "ELEMENTS", "EVENTS", "LAWS", "REPORT", "STOPS", "BadElement", "Bars", "Behaviour", "Events", "Freedoms",
-    "Mechanism", "Model", "Monitor", "Plane", "Softening", "Springs", "Stop", "body_force", "intervals",
-    "largest_band", "memory_limit", "teeth",
+    "ELEMENTS",
+    "EVENTS",
+    "LAWS",
+    "REPORT",
+    "STOPS",
+    "BadElement",
+    "Bars",
+    "Behaviour",
+    "Events",
+    "FreeNode",
+    "Freedoms",
+    "Model",
+    "Monitor",
+    "Plane",
+    "Softening",
+    "Springs",
+    "Stop",
+    "body_force",
+    "intervals",
+    "largest_band",
+    "memory_limit",
+    "teeth",
 ]  # fmt: skip
 
 REPORT = (
