@@ -8,10 +8,11 @@ from pathlib import Path
 
 from extrados.building.building import Building
 from extrados.decks.reader import Deck
-from extrados.motions.from_deck import make_motion
+from extrados.motions.from_deck import is_set, make_motion
 from extrados.motions.motion import Motion
 from extrados.motions.records import RecordError
 from extrados.results.checkpoint import Checkpoint
+from extrados.schema.constants import GRAVITY
 
 
 class Refused(Exception):
@@ -49,6 +50,17 @@ class Context:
             return make_motion(self.deck.motion, self.deck.folder)
         except RecordError as error:
             raise Refused(str(error)) from None
+
+    @cached_property
+    def demand_g(self) -> float | None:
+        """Peak horizontal acceleration of the deck's motion [g], to hold against a capacity; None where there is no
+        motion, many, or one that cannot be read, which an analysis that needs none does not complain of."""
+        if self.deck.motion is None or is_set(self.deck.motion):
+            return None
+        try:
+            return self.motion.peak / GRAVITY
+        except Refused:
+            return None
 
 
 def default_threads() -> int:

@@ -4,11 +4,23 @@ import time
 import traceback
 
 from extrados import kinds
+from extrados.analyses.assumptions import assumptions_of
 from extrados.analyses.context import Context, Refused
 from extrados.building.errors import BadGeometry
 from extrados.core.errors import Cancelled, CoreError
 from extrados.limit.solver import NoAnswer
+from extrados.results.assumptions import spoken
+from extrados.results.fields import ResultModel
 from extrados.results.model import Result
+from extrados.results.typed import shapes
+
+
+def _check(result: Result) -> None:
+    """TypeError where a driver gives other results than its kind has."""
+    bare = type(result.results) is ResultModel
+    if not isinstance(result.results, shapes(result.kind)) and (result.status == "ok" or not bare):
+        expected = " or ".join(model.__name__ for model in shapes(result.kind))
+        raise TypeError(f"the driver of {result.kind} gives {type(result.results).__name__}, expected {expected}")
 
 
 def run_analyses(context: Context) -> list[Result]:
@@ -23,7 +35,11 @@ def run_analyses(context: Context) -> list[Result]:
         try:
             context.warnings, context.building = [], building
             result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
+            _check(result)
             result.warnings = [*context.warnings, *result.warnings]
+            result.assumptions = assumptions_of(options, context.deck.building, building)
+            if result.answer:
+                result.answer = f"{result.answer} {spoken(result.assumptions)}".rstrip()
         except (Refused, BadGeometry) as error:
             result = Result(options.kind, "refused", str(error))
         except (Cancelled, KeyboardInterrupt):

@@ -10,40 +10,28 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
+from extrados.results.fields import ResultModel, plain
 from extrados.results.model import Array, Result, TableData
+from extrados.results.typed import typed
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
 REPORT = "report.html"
+#: What an array says of itself, in the order of Array's fields
+MARKS = ("unit", "about", "series")
 #: Further names that the report writes
 DRAWN = ("figures/", ".drawing-")
 
 
 class StoreError(Exception):
     """Results cannot be written or read; the text names the file and the reason."""
-
-
-def _plain(value: Any) -> Any:
-    """Values as JSON knows them; NaN and infinity become null, which summary.json cannot hold otherwise."""
-    if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    if isinstance(value, float):
-        return value if np.isfinite(value) else None
-    if isinstance(value, Path):
-        return str(value)
-    return value
 
 
 def group_names(kinds: list[str]) -> list[str]:
@@ -163,7 +151,8 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
             "analyses": [
                 {
                     "name": name, "kind": r.kind, "status": r.status, "reason": r.reason, "seconds": round(r.seconds, 6),
-                    "answer": r.answer, "warnings": r.warnings, "results": r.results,
+                    "answer": r.answer, "warnings": r.warnings, "verdict": r.verdict and r.verdict.as_json(),
+                    "assumptions": {key: a.as_json() for key, a in r.assumptions.items()}, "results": r.results.as_json(),
                 }
                 for name, r in zip(names, results, strict=True)
             ],
@@ -172,7 +161,7 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
                 for p in sorted(folder.rglob("*")) if p.is_file()
             },
         }  # fmt: skip
-        text = json.dumps(_plain(summary), indent=1, ensure_ascii=False)
+        text = json.dumps(plain(summary), indent=1, ensure_ascii=False)
         (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
         raise StoreError(f"{folder}: results could not be written: {reason(error)}") from None
@@ -215,6 +204,7 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                 store = group.create_dataset(title, data=data)
                 store.attrs["unit"] = store.attrs["units"] = array.unit
                 store.attrs["about"] = array.about
+                store.attrs["series"] = array.series
                 if array.dims == (title,):
                     store.make_scale(title)
             sizes = {d: n for a in result.arrays.values() for d, n in zip(a.dims, np.shape(a.data), strict=True)}
@@ -235,17 +225,39 @@ class Stored:
     folder: Path
     summary: dict[str, Any]
     arrays: dict[str, dict[str, Array]]
+    _typed: dict[str, ResultModel] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def analyses(self) -> list[dict[str, Any]]:
         return self.summary["analyses"]
 
-    def __getitem__(self, name: str) -> dict[str, Any]:
-        """The results of an analysis by its name, for instance run["tilt"]["collapse_acceleration_g"]."""
+    def __getitem__(self, name: str) -> ResultModel:
+        """The results of an analysis by its name, for instance run["tilt"].collapse_acceleration_g.
+
+        They read as a mapping too: run["tilt"]["collapse_acceleration_g"]. StoreError where they are not what this
+        version gives.
+        """
+        if name in self._typed:
+            return self._typed[name]
         for analysis in self.analyses:
             if analysis["name"] == name:
-                return analysis["results"]
+                self._typed[name] = self._read(analysis)
+                return self._typed[name]
         raise KeyError(f"{self.folder}: no analysis '{name}'; there are {', '.join(a['name'] for a in self.analyses)}")
+
+    def _read(self, analysis: dict[str, Any]) -> ResultModel:
+        try:
+            return typed(analysis["kind"], analysis["results"])
+        except (ValidationError, KeyError) as error:
+            first = error.errors()[0] if isinstance(error, ValidationError) else {"loc": [error], "msg": "unknown kind"}
+            place = ".".join(str(part) for part in first["loc"])
+            raise StoreError(
+                f"{self.folder}: the results of '{analysis['name']}' are not what this version gives: {place}: {first['msg']}"
+            ) from None
+
+    def series(self, analysis: str, name: str) -> list[Array]:
+        """The arrays of an analysis that make up a series, in order; none where there is no such series."""
+        return [array for array in self.arrays[analysis].values() if array.series == name]
 
     def array(self, analysis: str, name: str) -> np.ndarray:
         return self.arrays[analysis][name].data
@@ -289,7 +301,7 @@ def read(folder: str | Path) -> Stored:
                         continue
                     data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
                     dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
-                    arrays[name][title] = Array(data, dims, store.attrs["unit"], store.attrs["about"])
+                    arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
         return Stored(folder, summary, arrays)
     except FileNotFoundError as error:
         raise StoreError(f"{error.filename}: not found; {folder} holds no results of extrados") from None

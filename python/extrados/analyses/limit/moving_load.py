@@ -9,6 +9,7 @@ from extrados.analyses.limit.variation import signature, spoken
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
 
@@ -58,19 +59,19 @@ def run(context: Context, options: MovingLoad) -> Result:
         raise Refused("no load of this kind brings the structure down: it only presses the joints together")
     k, state, mechanism = worst
     result = Result("moving-load")
-    result.results = {
-        "chain": chain,
-        "collapse_load_N": float(capacity[k]),
-        "collapse_load_kN_per_m": float(capacity[k] / assembly.depth / 1e3),
-        "worst_place_m": float(places[k]),
-        "worst_place_over_span": float((places[k] - low) / (high - low)),
-        "hinges": [{"joint": j, "side": side, "name": assembly.joint_names[j]} for j, side in mechanism.hinges],
-        "places_without_limit": int(np.isinf(capacity).sum()),
-        "duality_gap": gap,
-    }
-    if options.force is not None:
-        result.results["load_N"] = options.force
-        result.results["safety_factor"] = float(capacity[k] / options.force)
+    asked = {} if options.force is None else {"load_N": options.force, "safety_factor": capacity[k] / options.force}
+    r = out.MovingLoad(
+        chain=chain,
+        collapse_load_N=float(capacity[k]),
+        collapse_load_kN_per_m=float(capacity[k] / assembly.depth / 1e3),
+        worst_place_m=float(places[k]),
+        worst_place_over_span=float((places[k] - low) / (high - low)),
+        hinges=[out.NamedHinge(joint=j, side=side, name=assembly.joint_names[j]) for j, side in mechanism.hinges],
+        places_without_limit=int(np.isinf(capacity).sum()),
+        duality_gap=gap,
+        **asked,
+    )
+    result.results, result.verdict = r, r.judged()
     result.arrays = {
         **geometry_arrays(assembly),
         "place": Array(places, ("place",), "m", "x of the first axle"),

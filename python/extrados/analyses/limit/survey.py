@@ -12,6 +12,7 @@ from extrados.analyses.limit.tables import Survey
 from extrados.analyses.limit.variation import Outcome, changed, evaluate, spoken
 from extrados.analyses.limit.variation import read_table as read_section
 from extrados.building.errors import BadGeometry
+from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
 LARGEST_FILE = 50_000_000  # bytes
@@ -103,20 +104,21 @@ def run(context: Context, options: Survey) -> Result:
     columns["reason"] = ["; ".join([o.reason] if o.reason else o.notes) for o in outcomes]
     stand = np.isfinite(gamma)
     result = Result("survey")
-    result.results = {
-        "sections": len(rows),
-        "standing": int(stand.sum()),
-        "without_answer": [
-            {"row": i + 2, "name": n, "reason": o.reason}
+    r = out.Survey(
+        sections=len(rows),
+        standing=int(stand.sum()),
+        without_answer=[
+            out.NoAnswerRow(row=i + 2, name=n, reason=o.reason)
             for i, (n, o) in enumerate(zip(names, outcomes, strict=True))
             if o.reason
         ][:100],
-        "weakest": names[int(np.nanargmin(gamma))] if stand.any() else None,
-        "weakest_collapse_acceleration_g": float(np.nanmin(gamma)) if stand.any() else None,
-        "median_collapse_acceleration_g": float(np.nanmedian(gamma)) if stand.any() else None,
-        "sections_per_second": len(rows) / max(seconds, 1e-9),
-        "duality_gap": max(o.gap for o in outcomes),
-    }
+        weakest=names[int(np.nanargmin(gamma))] if stand.any() else None,
+        weakest_collapse_acceleration_g=float(np.nanmin(gamma)) if stand.any() else None,
+        median_collapse_acceleration_g=float(np.nanmedian(gamma)) if stand.any() else None,
+        sections_per_second=len(rows) / max(seconds, 1e-9),
+        duality_gap=max(o.gap for o in outcomes),
+    )
+    result.results, result.verdict = r, r.judged()
     result.arrays = {
         "gamma": Array(gamma, ("section",), "g", "collapse acceleration to +x; NaN without an answer"),
         "section_name": Array(np.array(names, dtype=object), ("section",), "", "names of the sections"),
@@ -126,8 +128,8 @@ def run(context: Context, options: Survey) -> Result:
     text = f"{int(stand.sum())} of {len(rows)} sections stand"
     if stand.any():
         text += (
-            f"; the weakest is {result.results['weakest']} with {result.results['weakest_collapse_acceleration_g']:.4f} g, "
-            f"the median {result.results['median_collapse_acceleration_g']:.4f} g"
+            f"; the weakest is {r.weakest} with {r.weakest_collapse_acceleration_g:.4f} g, "
+            f"the median {r.median_collapse_acceleration_g:.4f} g"
         )
     result.answer = text + f". {len(rows) - int(stand.sum())} rows carry a reason in survey.csv."
     return result

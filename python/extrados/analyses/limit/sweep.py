@@ -21,7 +21,9 @@ from extrados.analyses.limit.variation import (
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.limit.motion import finite_motion
+from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
 
 # Of the range: how closely changes of mechanism and the optimum are found.
@@ -73,12 +75,6 @@ def _is_whole(model: Table, table: str, path: str) -> bool:
     return "int" in text and "float" not in text
 
 
-def _unit(model: Table, path: str) -> str:
-    """Unit of a key of the table itself, none where it has none."""
-    about = type(model).model_json_schema()["properties"].get(path, {})
-    return next((b["unit"] for b in (about, *about.get("anyOf", [])) if "unit" in b), "")
-
-
 def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
     table, path = _placed(options.vary)
@@ -106,30 +102,33 @@ def run(context: Context, options: Sweep) -> Result:
     result = Result("sweep")
     stable = [c for c in changes if not c["before"] or not c["after"]]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
-    result.results = {
-        "vary": options.vary,
-        "unit": _unit(model, path),
-        "mechanisms": [{"number": n, "hinges": spoken(s)} for s, n in numbers.items()],
-        "changes": [
-            {
-                "value": c["value"],
-                "from": "locked" if c["before"] == LOCKED else numbers.get(c["before"], 0),
-                "to": "locked" if c["after"] == LOCKED else numbers.get(c["after"], 0),
-                "collapse_acceleration_g": c["gamma"],
-            }
+    fractured = [o.fractured for o in outcomes]
+    r = out.Sweep(
+        vary=options.vary,
+        unit=unit_of(type(model), path),
+        mechanisms=[out.Mechanism(number=n, hinges=spoken(s)) for s, n in numbers.items()],
+        changes=[
+            out.Change(
+                value=c["value"],
+                before="locked" if c["before"] == LOCKED else numbers.get(c["before"], 0),
+                after="locked" if c["after"] == LOCKED else numbers.get(c["after"], 0),
+                collapse_acceleration_g=c["gamma"],
+            )
             for c in changes
         ],
-        "stable_limits": [c["value"] for c in stable],
-        "locked_limits": locks,
-        "optimum_value": best,
-        "optimum_collapse_acceleration_g": best_gamma,
-        "optimum_tilt_angle_deg": float(np.degrees(np.arctan(best_gamma))),
-        "optimum_inside": bool(values[0] < best < values[-1]),
-        "values": values.tolist(),
-        "collapse_accelerations_g": [o.gamma for o in outcomes],
-        "gaps": [{"value": float(v), "reason": o.reason} for v, o in zip(values, outcomes, strict=True) if o.reason],
-        "duality_gap": max(o.gap for o in outcomes),
-    }
+        stable_limits=[c["value"] for c in stable],
+        locked_limits=locks,
+        optimum_value=best,
+        optimum_collapse_acceleration_g=best_gamma,
+        optimum_tilt_angle_deg=float(np.degrees(np.arctan(best_gamma))),
+        optimum_inside=bool(values[0] < best < values[-1]),
+        values=values.tolist(),
+        collapse_accelerations_g=[o.gamma for o in outcomes],
+        gaps=[out.Gap(value=v, reason=o.reason) for v, o in zip(values, outcomes, strict=True) if o.reason],
+        duality_gap=max(o.gap for o in outcomes),
+        **({"fractured_collapse_accelerations_g": fractured} if options.fracture else {}),
+    )
+    result.results, result.verdict = r, r.judged()
     gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
     number = np.array([numbers.get(o.signature, 0) for o in outcomes])
     columns: dict[str, Any] = {
@@ -145,8 +144,7 @@ def run(context: Context, options: Sweep) -> Result:
         "change": Array(np.array([c["value"] for c in changes]), ("change",), "", "where the mechanism changes"),
     }
     if options.fracture:
-        cracked = np.array([np.nan if o.fractured is None else o.fractured for o in outcomes])
-        result.results["fractured_collapse_accelerations_g"] = [o.fractured for o in outcomes]
+        cracked = np.array([np.nan if f is None else f for f in fractured])
         result.arrays["fractured"] = Array(cracked, ("value",), "g", "with the leeward buttress cracked")
         columns["fractured_collapse_acceleration"] = cracked
     names = next((o.assembly.measures for o in outcomes if o.assembly is not None), {})
@@ -154,7 +152,7 @@ def run(context: Context, options: Sweep) -> Result:
         columns[name] = [measures_of(o.assembly).get(name, np.nan) for o in outcomes]
     columns["reason"] = [o.reason for o in outcomes]
     units = {
-        options.vary: result.results["unit"],
+        options.vary: r.unit,
         "collapse_acceleration": "g",
         "fractured_collapse_acceleration": "g",
         "tilt_angle": "deg",
@@ -162,7 +160,7 @@ def run(context: Context, options: Sweep) -> Result:
     result.tables = {"sweep": TableData(columns, units)}
     result.arrays.update(_examples(outcomes, numbers))
     result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
-    result.answer = _words(options, result.results, numbers)
+    result.answer = _words(options, r)
     return result
 
 
@@ -235,23 +233,23 @@ def _examples(outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[st
     }
 
 
-def _words(options: Sweep, results: dict[str, Any], numbers: dict[Signature, int]) -> str:
-    best = f"{results['optimum_value']:.4g}"
-    where = "an optimum at" if results["optimum_inside"] else "greatest at the end of the range,"
-    if results["locked_limits"]:
+def _words(options: Sweep, r: out.Sweep) -> str:
+    best = f"{r.optimum_value:.4g}"
+    where = "an optimum at" if r.optimum_inside else "greatest at the end of the range,"
+    if r.locked_limits:
         where = "greatest where it is nearly locked, at"
     text = (
-        f"{options.vary} from {results['values'][0]:.4g} to {results['values'][-1]:.4g}: {where} {best} with "
-        f"{results['optimum_collapse_acceleration_g']:.4f} g ({results['optimum_tilt_angle_deg']:.2f} degrees). "
-        f"{len(numbers)} mechanism{'s' if len(numbers) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}: {where} {best} with "
+        f"{r.optimum_collapse_acceleration_g:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
+        f"{len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
-    moves = [f"{c['from']} to {c['to']} at {c['value']:.4g}" for c in results["changes"] if c["from"] and c["to"]]
-    locked = ", ".join(f"{v:.4g}" for v in results["locked_limits"])
+    moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
+    locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if locked:
         text += f" At {locked} it locks: past that no load of this kind brings it down."
-    if results["stable_limits"]:
-        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in results['stable_limits'])}."
-    elif results["gaps"]:
-        text += f" {len(results['gaps'])} of {len(results['values'])} values give no structure that stands."
+    if r.stable_limits:
+        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
+    elif r.gaps:
+        text += f" {len(r.gaps)} of {len(r.values)} values give no structure that stands."
     return text
