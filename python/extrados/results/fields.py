@@ -4,7 +4,7 @@ One definition serves drivers, summary.json and its JSON Schema, `explain`, the 
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, KeysView
 from typing import Any
 
 import numpy as np
@@ -44,9 +44,10 @@ class ResultModel(BaseModel):
     def _taken(cls, values: Any) -> Any:
         return {name: plain(value) for name, value in values.items()} if isinstance(values, dict) else values
 
-    def keys(self) -> Iterator[str]:
+    def keys(self) -> KeysView[str]:
         """The keys that were given, as summary.json has them."""
-        return (field.alias or name for name, field in type(self).model_fields.items() if name in self.model_fields_set)
+        fields = type(self).model_fields.items()
+        return {field.alias or name: None for name, field in fields if name in self.model_fields_set}.keys()
 
     def __getitem__(self, key: str) -> Any:
         for name, field in type(self).model_fields.items():

@@ -6,6 +6,7 @@ first and each first failing cell refined, never bisected blindly over the whole
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -19,6 +20,8 @@ from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import Body
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
+from extrados.motions.tables import Pulse, SinePulse, StepPulse
+from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -206,49 +209,35 @@ def run(context: Context, options: FailureDomain) -> Result:
     codes = codes_of(swept["outcome"], swept["half_cycles"]).reshape(len(durations), len(amplitudes))
     curves = curves_of(mapper, durations, amplitudes, codes, options.accuracy * GRAVITY)
     names = {"mode_I": curves.mode_i, "mode_II": curves.mode_ii}
-    gamma = model.uplift
-    result.results = {
-        "pulse": options.pulse,
+    gamma, slender = model.uplift, model.what != "arch"
+    r = out.FailureDomain(
+        pulse=options.pulse,
         **{
-            name: {"durations_s": durations, "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve]}
+            name: out.ModeCurve(
+                durations_s=durations,
+                amplitudes_g=curve / GRAVITY,
+                **({"amplitude_ratios": curve / GRAVITY / gamma} if slender else {}),
+            )
             for name, curve in names.items()
         },
-        "pocket_begins_g": [None if np.isnan(a) else a / GRAVITY for a in curves.pocket],
-        "uplift_acceleration_g": gamma,
-        "restitution": model.restitution,
-        "natural_time_s": unit if model.what == "arch" else model.time_unit,
-        "safe_pockets": int(
-            (((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()
-        ),
-    }
-    if options.at_amplitudes:
-        at = np.array(options.at_amplitudes)
-        found = shortest_durations(
-            model.body, options.pulse, at, np.linspace(durations.min(), durations.max(), 200), 40.0 * unit,
-            options.accuracy, context.threads,
-        )  # fmt: skip
-        result.results["at_amplitudes"] = {
-            "amplitudes_g": at / GRAVITY,
-            "mode_I_durations_s": [None if np.isnan(t) else t for t in found[0]],
-            "mode_II_durations_s": [None if np.isnan(t) else t for t in found[1]],
-        }
+        pocket_begins_g=curves.pocket / GRAVITY,
+        uplift_acceleration_g=gamma,
+        restitution=model.restitution,
+        natural_time_s=unit if model.what == "arch" else model.time_unit,
+        safe_pockets=int((((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()),
+        **_at_amplitudes(context, options, model, durations, 40.0 * unit),
+        **(_over_uplift(durations, curves.pocket / GRAVITY, model) if slender else {}),
+    )
+    result.results, result.verdict = r, r.judged(*same_pulse(context, options.pulse))
     columns = {
         "duration": durations,
         **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
         "pocket_begins": curves.pocket / GRAVITY,
     }
-    if model.what != "arch":
-        # omega/p and a/(g tan alpha), the axes of overturning spectra
-        ratio = 2.0 * np.pi / durations * model.time_unit
-        columns |= {"frequency_ratio": ratio, **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()}}
-        result.results["frequency_ratio"] = ratio
-        result.results["pocket_begins_ratio"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curves.pocket]
-        for name, curve in names.items():
-            result.results[name]["amplitude_ratios"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curve]
-        result.results["mode_names"] = (
-            "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact (mode 1, with "
-            "impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)"
-        )
+    if slender:
+        columns |= {
+            "frequency_ratio": np.array(r.frequency_ratio), **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()},
+        }  # fmt: skip
     result.tables["failure_domain"] = TableData(
         columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"}
     )
@@ -264,8 +253,43 @@ def run(context: Context, options: FailureDomain) -> Result:
             curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"
         ),
     }
-    result.answer = _answer(model, options, durations, curves, result.results["safe_pockets"])
+    result.answer = _answer(model, options, durations, curves, r.safe_pockets)
     return result
+
+
+def _at_amplitudes(
+    context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, settle: float
+) -> dict[str, out.AtAmplitudes]:
+    """The key of the shortest failing durations at the amplitudes that the deck asks for; none where it asks none."""
+    if not options.at_amplitudes:
+        return {}
+    at = np.array(options.at_amplitudes)
+    tried = np.linspace(durations.min(), durations.max(), 200)
+    found = shortest_durations(model.body, options.pulse, at, tried, settle, options.accuracy, context.threads)
+    rows = out.AtAmplitudes(amplitudes_g=at / GRAVITY, mode_I_durations_s=found[0], mode_II_durations_s=found[1])
+    return {"at_amplitudes": rows}
+
+
+def _over_uplift(durations: np.ndarray, pocket: np.ndarray, model: Rocker) -> dict[str, Any]:
+    """omega/p and a/(g tan alpha), the axes of overturning spectra of blocks; `pocket` [g]."""
+    return {
+        "frequency_ratio": 2.0 * np.pi / durations * model.time_unit,
+        "pocket_begins_ratio": pocket / model.uplift,
+        "mode_names": "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact "
+        "(mode 1, with impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)",
+    }
+
+
+def same_pulse(context: Context, pulse: str) -> tuple[float | None, float | None]:
+    """Duration [s] and amplitude [g] of the deck's motion where it is a pulse of that shape; None, None elsewhere."""
+    match context.deck.motion:
+        case StepPulse() as m if pulse == "step":
+            return m.duration, abs(m.amplitude) / GRAVITY
+        case SinePulse() as m if pulse == "sine":
+            return m.period, abs(m.amplitude) / GRAVITY
+        case Pulse() as m if pulse == m.shape:
+            return m.period, abs(m.amplitude) / GRAVITY
+    return None, None
 
 
 def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves: Curves, pockets: int) -> str:
