@@ -31,9 +31,9 @@ MAY_IMPORT = {
         "schema",
     },
     "plots": {"kinds", "results", "schema"},
-    "session": {"analyses", "decks", "results", "plots", "_build_info"},
-    "cli": {"analyses", "decks", "results", "plots", "session", "_build_info"},
-    "": {"analyses", "decks", "results", "session"},
+    "running": {"analyses", "tables", "building", "decks", "motions", "results", "plots", "schema", "_build_info"},
+    "cli": {"analyses", "decks", "results", "plots", "running", "_build_info"},
+    "": {"analyses", "decks", "running"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit
 #: analysis, which knows blocks and joints alone
