@@ -112,16 +112,11 @@ def pick(results: dict[str, dict[str, Any]], quantity: str) -> Any:
 
 def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dict[str, Any]]:
     """Run the deck with the change, as a user would through Python; analysis name -> results."""
-    import tempfile
-
     from extrados.analyses.context import Context
     from extrados.decks.reader import make_deck
-    from extrados.results.store import read
-    from extrados.session import run_deck
+    from extrados.running.run import compute
 
     data = changed(tomllib.loads(case.deck.read_text(encoding="utf-8")), change)
-    with tempfile.TemporaryDirectory() as folder:
-        context = Context(make_deck(data, case.deck.parent), threads=2)
-        run = read(run_deck(context, Path(folder) / "run", figures=False)[0])
+    run = compute(Context(make_deck(data, case.deck.parent), threads=2))
     # A refusal is a result too: its status and reason can be expected
     return {a["name"]: {**a["results"], "status": a["status"], "reason": a["reason"]} for a in run.analyses}

@@ -8,11 +8,10 @@ from pathlib import Path
 
 from extrados.building.building import Building
 from extrados.decks.reader import Deck
-from extrados.motions.from_deck import is_set, make_motion
+from extrados.motions.from_deck import make_motion
 from extrados.motions.motion import Motion
 from extrados.motions.records import RecordError
 from extrados.results.checkpoint import Checkpoint
-from extrados.schema.constants import GRAVITY
 
 
 class Refused(Exception):
@@ -23,7 +22,8 @@ class Refused(Exception):
 class Context:
     """What every driver is given. `progress(done, total, text)` may be called often; `out` is the results
     folder of the run, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
-    dask.distributed scheduler for sweeps. `building` is the deck's, as the running analysis sees it."""
+    dask.distributed scheduler for sweeps. `building` is the deck's, as the running analysis sees it. `motions` keeps
+    what was made of motion tables."""
 
     deck: Deck
     threads: int = 1
@@ -33,6 +33,7 @@ class Context:
     scheduler: str = ""
     warnings: list[str] = field(default_factory=list)
     building: Building = None  # type: ignore[assignment]
+    motions: dict[str, Motion] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.building is None:
@@ -46,21 +47,14 @@ class Context:
     @cached_property
     def motion(self) -> Motion:
         """The motion of the deck; Refused where its file is wrong."""
-        try:
-            return make_motion(self.deck.motion, self.deck.folder)
-        except RecordError as error:
-            raise Refused(str(error)) from None
-
-    @cached_property
-    def demand_g(self) -> float | None:
-        """Peak horizontal acceleration of the deck's motion [g], to hold against a capacity; None where there is no
-        motion, many, or one that cannot be read, which an analysis that needs none does not complain of."""
-        if self.deck.motion is None or is_set(self.deck.motion):
-            return None
-        try:
-            return self.motion.peak / GRAVITY
-        except Refused:
-            return None
+        model = self.deck.motion
+        known = f"{model.model_dump_json()} {self.deck.folder}"
+        if known not in self.motions:
+            try:
+                self.motions[known] = make_motion(model, self.deck.folder)
+            except RecordError as error:
+                raise Refused(str(error)) from None
+        return self.motions[known]
 
 
 def default_threads() -> int:

@@ -4,7 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import Outcome
-from extrados.results.verdict import Verdict, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 
 class Check(ResultModel):
@@ -18,7 +18,7 @@ class Check(ResultModel):
     note: str = fact("what to know of it")
 
 
-class CodeChecks(ResultModel):
+class CodeChecks(KindResults):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
     dynamic_outcome: Outcome = maybe("of a block under a motion: what the computed rocking gives")
@@ -27,7 +27,7 @@ class CodeChecks(ResultModel):
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of the rules", "m/s")
     checks: dict[str, Check] = fact("the rules by name")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The rule of the least capacity over demand; without a demand the weakest strength of a pier [N]."""
         asked = {name: c for name, c in self.checks.items() if c.demand is not None and c.demand > 0.0}
         if asked:

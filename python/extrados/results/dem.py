@@ -5,7 +5,7 @@ from typing import Literal
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import NamedHinge
 from extrados.results.rocking import Outcome, between
-from extrados.results.verdict import Verdict, acceleration, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
 
 
 class Variation(ResultModel):
@@ -28,7 +28,7 @@ class Variation(ResultModel):
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
 
 
-class DemRun(ResultModel):
+class DemRun(KindResults):
     """dem: the blocks under a motion."""
 
     outcome: Outcome = fact("no joint opens, joints open and it stands, or it comes down")
@@ -38,6 +38,7 @@ class DemRun(ResultModel):
     stop_time_s: float = fact("when it ended", "s")
     still_moving: bool = fact("whether it still moved at the end")
     peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse", "m")
     peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
     peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
     peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
@@ -67,10 +68,10 @@ class DemRun(ResultModel):
     )
     friction_threshold: float | None = maybe("least friction at which no joint slides; null where not found")
 
-    def judged(self, limit: float) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
         outcome = "falls" if self.outcome == "collapse" else "open" if self.still_moving else "stands"
-        most = self.peak_displacement_m
+        most, limit = self.peak_displacement_m, self.collapse_displacement_m
         text = {
             "falls": f"A block moves farther than the {limit:.3g} m that count as collapse",
             "stands": f"No block moves farther than {most:.3g} m; {limit:.3g} m count as collapse",
@@ -79,7 +80,7 @@ class DemRun(ResultModel):
         return judge(f"{text}.", most, limit, "m", outcome)
 
 
-class DemTilt(ResultModel):
+class DemTilt(KindResults):
     """dem: the constant acceleration that brings the blocks down."""
 
     test: Literal["tilt"] = fact("the test")
@@ -98,10 +99,10 @@ class DemTilt(ResultModel):
     steps: int = fact("time steps of the last run")
     beta_s: float = fact("stiffness-proportional damping", "s")
 
-    def judged(self, peak: float | None) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return acceleration("The structure", least, peak)
+        return acceleration("The structure", least, demand)
 
 
 Dem = DemRun | DemTilt
@@ -120,7 +121,7 @@ class DemCurve(ResultModel):
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
 
 
-class DemDomain(ResultModel):
+class DemDomain(KindResults):
     """dem-domain: the shortest pulses that bring the blocks down."""
 
     pulse: Literal["step", "sine"] = fact("shape of the pulses")
@@ -134,10 +135,11 @@ class DemDomain(ResultModel):
     )
     four_hinge_mode_II_durations_s: list[float | None] = maybe("the same without an impact", "s")
 
-    def judged(self, duration: float | None, amplitude: float | None) -> Verdict:
-        """A pulse of the same shape, duration [s] and amplitude [g], against the curve between its amplitudes; without
-        one the shortest failing duration of all is told."""
-        if duration is not None and amplitude is not None:
+    def judged(self, demand: Demand) -> Verdict:
+        """A motion that is such a pulse [s] against the curve between its amplitudes; without one the shortest failing
+        duration of all is told."""
+        if demand.pulse == self.pulse:
+            duration, amplitude = demand.duration_s, demand.amplitude_g
             capacity = between(self.amplitudes_g, self.shortest_durations_s, amplitude)
             if capacity is not None:
                 word = "shorter than" if duration < capacity else "at least as long as"
@@ -154,7 +156,7 @@ class DemDomain(ResultModel):
         )  # fmt: skip
 
 
-class DemParameters(ResultModel):
+class DemParameters(KindResults):
     """dem-parameters: stiffness, impact frequencies and damping of the joints, without a run."""
 
     joint_stiffness_min_Pa_per_m: float = fact("least normal stiffness of the joints", "Pa/m")
@@ -173,6 +175,6 @@ class DemParameters(ResultModel):
     damping_ratio_edge: float = fact("the same at edge impact")
     convention: Literal["consistent", "thesis"] = fact("rule of the default stiffness")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """Nothing is asked of the building."""
         return judge("Parameters of the joints; nothing is asked of the building.")

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Verdict, acceleration, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
 
 Side = Literal["intrados", "extrados"]
 
@@ -59,7 +59,7 @@ class Fracture(ResultModel):
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
 
 
-class Tilt(ResultModel):
+class Tilt(KindResults):
     """tilt: the constant horizontal acceleration at which a structure becomes a mechanism."""
 
     collapse_acceleration_g: float = fact("greatest constant acceleration that is borne, pushed to +x", "g")
@@ -94,10 +94,10 @@ class Tilt(ResultModel):
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     fracture: Fracture = maybe("collapse with the leeward buttress cracked")
 
-    def judged(self, peak: float | None) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return acceleration("The structure", least, peak)
+        return acceleration("The structure", least, demand)
 
 
 class ThrustLine(ResultModel):
@@ -112,7 +112,7 @@ class ThrustLine(ResultModel):
     reactions: list[Reaction] = fact("forces of the ground")
 
 
-class Thrust(ResultModel):
+class Thrust(KindResults):
     """thrust: admissible thrust lines at a given horizontal acceleration."""
 
     gamma_g: float = fact("acceleration to +x at which the lines are drawn", "g")
@@ -127,7 +127,7 @@ class Thrust(ResultModel):
     most: ThrustLine = fact("the line of greatest thrust")
     central: ThrustLine = fact("the most central line")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The part of the joints that the most central line needs against the whole; the ratio is the safety factor."""
         part = self.least_part_of_joints
         return judge(
@@ -135,7 +135,7 @@ class Thrust(ResultModel):
         )  # fmt: skip
 
 
-class MovingLoad(ResultModel):
+class MovingLoad(KindResults):
     """moving-load: the load that brings an arch down, at every place along its span."""
 
     chain: str = fact("the arch that the load crosses")
@@ -149,7 +149,7 @@ class MovingLoad(ResultModel):
     load_N: float = maybe("the load that the deck gives", "N")
     safety_factor: float = maybe("collapse load over that load")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The deck's load against the least collapse load [N]."""
         text = f"The {self.chain} bears {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
         if self.load_N is None:
@@ -167,7 +167,7 @@ class Stage(ResultModel):
     hinges: list[str] = fact("the three hinges")
 
 
-class Supports(ResultModel):
+class Supports(KindResults):
     """supports: an arch whose right support spreads or settles until it falls."""
 
     movement_at_fall_m: float = fact("movement of the support at which the arch falls", "m")
@@ -180,7 +180,7 @@ class Supports(ResultModel):
     joints_touched_at_fall: list[int] = fact("joints where the thrust line touches a further end at the fall")
     stages: list[Stage] = fact("from the start on, each change of hinges")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The movement that the arch can follow [m]; the deck asks for none."""
         move = self.movement_at_fall_m
         return judge(
@@ -214,7 +214,7 @@ class Gap(ResultModel):
     reason: str = fact("why")
 
 
-class Sweep(ResultModel):
+class Sweep(KindResults):
     """sweep: capacity and mechanism as one key of the deck varies."""
 
     vary: str = fact("the key that varies")
@@ -233,7 +233,7 @@ class Sweep(ResultModel):
     duality_gap: float = fact("greatest difference between the bounds", "g")
     fractured_collapse_accelerations_g: list[float | None] = maybe("the same with the leeward buttress cracked", "g")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The greatest capacity [g]; a sweep compares, it asks for no demand."""
         best = self.optimum_collapse_acceleration_g
         unit = f" {self.unit}" if self.unit else ""
@@ -250,7 +250,7 @@ class NoAnswerRow(ResultModel):
     reason: str = fact("why")
 
 
-class Survey(ResultModel):
+class Survey(KindResults):
     """survey: many sections from a table."""
 
     sections: int = fact("sections in the table")
@@ -262,7 +262,7 @@ class Survey(ResultModel):
     sections_per_second: float = fact("speed of the survey", "1/s")
     duality_gap: float = fact("greatest difference between the bounds", "g")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The capacity of the weakest section that stands [g]; a survey asks for no demand."""
         text = f"{self.standing} of {self.sections} sections stand upright"
         if self.weakest is None:

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from extrados.results.assumptions import Assumption
-from extrados.results.fields import ResultModel
-from extrados.results.verdict import Verdict
+from extrados.results.verdict import KindResults, Verdict
 
 
 @dataclass(frozen=True)
@@ -48,7 +47,7 @@ class Result:
     reason: str = ""
     seconds: float = 0.0
     answer: str = ""
-    results: ResultModel = field(default_factory=ResultModel)
+    results: KindResults = field(default_factory=KindResults)
     verdict: Verdict | None = None
     assumptions: dict[str, Assumption] = field(default_factory=dict)
     arrays: dict[str, Array] = field(default_factory=dict)

@@ -4,7 +4,7 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import PrimaryImpulse
-from extrados.results.verdict import Verdict, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 
 class Impulse(PrimaryImpulse):
@@ -25,7 +25,7 @@ class WaveletPulse(ResultModel):
     pulse_like: bool = fact("whether all of Baker's conditions are met")
 
 
-class OneMotion(ResultModel):
+class OneMotion(KindResults):
     """motion: one ground motion in depth."""
 
     pga_g: float = fact("greatest horizontal acceleration", "g")
@@ -53,12 +53,12 @@ class OneMotion(ResultModel):
     rotd100_pga_g: float | None = maybe("greatest over all directions", "g", source="Boore 2010")
     rotd_damping: float = maybe("damping ratio of the spectra over all directions")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The peak acceleration; no building is asked."""
         return judge(f"The motion peaks at {self.pga_g:.3g} g.", self.pga_g, None, "g")
 
 
-class MotionSet(ResultModel):
+class MotionSet(KindResults):
     """motion: the statistics of a set of motions."""
 
     count: int = fact("number of motions")
@@ -89,7 +89,7 @@ class MotionSet(ResultModel):
     shortest_s: float = maybe("shortest period of the band that is matched", "s")
     longest_s: float = maybe("longest period of the band that is matched", "s")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The median peak acceleration; no building is asked."""
         text = f"The {self.count} motions have a median peak acceleration of {self.median_pga_g:.3g} g."
         return judge(text, self.median_pga_g, None, "g")
@@ -108,7 +108,7 @@ class UseOfLimits(ResultModel):
     governing: Literal["stroke", "flow", "force"] = fact("the limit that is nearest, or exceeded most")
 
 
-class ShakeTable(ResultModel):
+class ShakeTable(KindResults):
     """shake-table: what a table can play, and whether a motion fits."""
 
     max_velocity_m_s: float = fact("greatest velocity of the table", "m/s")
@@ -132,7 +132,7 @@ class ShakeTable(ResultModel):
     played_acceleration_g: float = maybe("greatest acceleration so scaled", "g")
     rest_error_m: float = maybe("displacement left at the ends of the drive", "m")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The share of its limits that the motion needs; about the table, not a building."""
         if self.use_of_limits is None:
             return judge("The deck holds no motion for the table to play.")

@@ -3,13 +3,13 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Verdict, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 Outcome = Literal["no-hinging", "recovery", "collapse"]
 Pulse = Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"]
 
 
-class Rocking(ResultModel):
+class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
     rotation_of: str = fact("whose rotation is told")
@@ -42,7 +42,7 @@ class Rocking(ResultModel):
     restitution_energy_safe: float = maybe("of an arch: by the energy-safe projection")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The greatest rotation against the critical one; open where the run ended before it settled."""
         outcome = "falls" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
@@ -70,7 +70,7 @@ class AtAmplitudes(ResultModel):
     mode_II_durations_s: list[float | None] = fact("shortest that does without an impact; null: none", "s")
 
 
-class FailureDomain(ResultModel):
+class FailureDomain(KindResults):
     """failure-domain: which pulses bring an arch or a block down."""
 
     pulse: Pulse = fact("shape of the pulses")
@@ -86,11 +86,12 @@ class FailureDomain(ResultModel):
     pocket_begins_ratio: list[float | None] = maybe("of a block: pocket_begins over the uplift acceleration")
     mode_names: str = maybe("of a block: how the modes are called elsewhere")
 
-    def judged(self, duration: float | None, amplitude: float | None) -> Verdict:
-        """A pulse of the same shape, duration [s] and amplitude [g], against the curve between its durations; without
-        one the lowest failing amplitude of all is told."""
+    def judged(self, demand: Demand) -> Verdict:
+        """A motion that is such a pulse [g] against the curve between its durations; without one the lowest failing
+        amplitude of all is told."""
         durations, curve = self.mode_I.durations_s, self.mode_I.amplitudes_g
-        if duration is not None and amplitude is not None:
+        if demand.pulse == self.pulse:
+            duration, amplitude = demand.duration_s, demand.amplitude_g
             capacity = between(durations, curve, duration)
             if capacity is not None:
                 word = "stays below" if amplitude < capacity else "reaches"
@@ -145,7 +146,7 @@ class AssessedImpulse(PrimaryImpulse):
     verdict: Literal["stands", "fails"] = fact("whether it brings the arch down by the criterion")
 
 
-class Assessment(ResultModel):
+class Assessment(KindResults):
     """assessment: the primary impulses of a motion against the failure curve of an arch."""
 
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which the arch hinges", "g")
@@ -160,7 +161,7 @@ class Assessment(ResultModel):
     margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
     primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The impulse of the least margin against its failing amplitude [g]."""
         harmful = [i for i in self.impulses if i.margin is not None]
         if not harmful:

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Verdict, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 
 class Bilinear(ResultModel):
@@ -65,7 +65,7 @@ class Scatter(ResultModel):
     highest_N: float = fact("the highest", "N")
 
 
-class Sla(SlaCurve):
+class Sla(SlaCurve, KindResults):
     """sla: cracks event by event under constant loads and growing ones; the curve of the first sense, and of both."""
 
     reference_load_N: float = fact("the reference loads, to which the multiplier 1 belongs", "N")
@@ -77,7 +77,7 @@ class Sla(SlaCurve):
     minus: SlaCurve = maybe("the curve of the second sense")
     scatter: Scatter = maybe("repetitions with other seeds")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses [N]; the deck asks for no load."""
         peaks = [c.peak_load_N for c in (self, self.minus) if c is not None and c.peak_load_N is not None]
         if not peaks:

@@ -1,11 +1,11 @@
 """Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
-from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.fields import fact, maybe
 from extrados.results.rocking import Outcome
-from extrados.results.verdict import Verdict, judge
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 
-class Ensemble(ResultModel):
+class Ensemble(KindResults):
     """fragility: one structure under many motions, or under motions scaled to levels of an intensity."""
 
     count: int = fact("runs with a result")
@@ -56,7 +56,7 @@ class Ensemble(ResultModel):
     first_collapse_median: float | None = maybe("median of the first level that brings it down")
     first_collapse_dispersion: float | None = maybe("dispersion of the same")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The share of runs that come down; open unless all runs agree. With levels the fitted median is the capacity."""
         if self.collapse_probability is None:
             return judge("No motion could be run.", outcome="open")
@@ -73,7 +73,7 @@ class Ensemble(ResultModel):
         )  # fmt: skip
 
 
-class OverDurations(ResultModel):
+class OverDurations(KindResults):
     """fragility: generated motions of several durations."""
 
     durations_s: list[float] = fact("durations of the motions", "s")
@@ -91,7 +91,7 @@ class OverDurations(ResultModel):
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The share of all runs that come down; open unless they agree."""
         if not self.count:
             return judge("No motion could be run.", outcome="open")
@@ -104,7 +104,7 @@ class OverDurations(ResultModel):
 Fragility = Ensemble | OverDurations
 
 
-class Resonance(ResultModel):
+class Resonance(KindResults):
     """resonance: the motion under a cap that feeds most energy to a rocking structure."""
 
     outcome: Outcome = fact("what it does under that motion")
@@ -136,7 +136,7 @@ class Resonance(ResultModel):
         source="thesis Fig. 6-4",
     )
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The cap [g] against the least that makes the rotation grow; open where it grows without coming down."""
         least = self.least_cap_g
         if self.outcome == "collapse":
@@ -148,7 +148,7 @@ class Resonance(ResultModel):
         return judge(f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome)
 
 
-class RockingSpectrum(ResultModel):
+class RockingSpectrum(KindResults):
     """rocking-spectrum: greatest rotation of blocks or arches of many sizes under a motion."""
 
     family: list[str] = fact("the families: slenderness of blocks, or the shape of the arch")
@@ -157,13 +157,13 @@ class RockingSpectrum(ResultModel):
     size_m: list[float] = fact("sizes: half-diagonal of the blocks, radius of the arches", "m")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """How many come down; a spectrum is about no one building."""
         total = len(self.family) * len(self.size_m)
         return judge(f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.")
 
 
-class HarmonicMap(ResultModel):
+class HarmonicMap(KindResults):
     """harmonic-map: response to harmonic motion over frequency and amplitude."""
 
     cycles: int = fact("cycles of the motion")
@@ -174,7 +174,7 @@ class HarmonicMap(ResultModel):
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
     restitution: float = fact("rate after over before an impact")
 
-    def judged(self) -> Verdict:
+    def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""
         failing = [a for a in self.lowest_overturning_amplitude_g if a is not None]
         if not failing:

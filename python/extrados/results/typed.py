@@ -5,18 +5,18 @@ from typing import Any, get_args
 from pydantic import TypeAdapter
 
 from extrados import kinds
-from extrados.results.fields import ResultModel
+from extrados.results.verdict import KindResults
 
 
-def shapes(kind: str) -> tuple[type[ResultModel], ...]:
+def shapes(kind: str) -> tuple[type[KindResults], ...]:
     """The models that the results of an analysis kind may have; KeyError where there is no such kind."""
     model = kinds.load(kinds.ANALYSES[kind].results)
     return get_args(model) or (model,)
 
 
-def typed(kind: str, values: dict[str, Any]) -> ResultModel:
+def typed(kind: str, values: dict[str, Any]) -> KindResults:
     """Results of a kind from their keys and values; an empty dictionary, where there is no result, gives an empty model.
 
     pydantic's ValidationError says what is missing, unknown or of a wrong type.
     """
-    return TypeAdapter(kinds.load(kinds.ANALYSES[kind].results)).validate_python(values) if values else ResultModel()
+    return TypeAdapter(kinds.load(kinds.ANALYSES[kind].results)).validate_python(values) if values else KindResults()

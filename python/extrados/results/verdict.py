@@ -1,6 +1,6 @@
 """The verdict of an analysis: one line by which different strategies on one building are compared."""
 
-from typing import Literal
+from typing import Literal, Protocol
 
 from extrados.results.fields import ResultModel, fact
 
@@ -23,6 +23,31 @@ class Verdict(ResultModel):
     statement: str = fact("the verdict in one sentence")
 
 
+class Demand(Protocol):
+    """What the deck's motion asks of a building, where it is one motion.
+
+    peak_g: greatest horizontal acceleration [g], None without a single motion. pulse: the shape of a motion that is a
+    single pulse, "" for any other; duration_s: its duration, or its period where the shape has one; amplitude_g.
+    """
+
+    @property
+    def peak_g(self) -> float | None: ...
+    @property
+    def pulse(self) -> str: ...
+    @property
+    def duration_s(self) -> float: ...
+    @property
+    def amplitude_g(self) -> float: ...
+
+
+class KindResults(ResultModel):
+    """Base of the results of a kind; by itself, of an analysis that has none."""
+
+    def judged(self, demand: Demand) -> Verdict | None:
+        """What the results say of the building under the demand."""
+        return None
+
+
 def judge(
     statement: str,
     demand: float | None = None,
@@ -40,11 +65,12 @@ def judge(
     )  # fmt: skip
 
 
-def acceleration(what: str, capacity: float, peak: float | None) -> Verdict:
-    """A constant acceleration that is borne [g] against the peak ground acceleration of the motion [g], if there is one.
+def acceleration(what: str, capacity: float, demand: Demand) -> Verdict:
+    """A constant acceleration that is borne [g] against the peak of the motion, if there is one.
 
     `what` begins the sentence, for instance "The arch".
     """
+    peak = demand.peak_g
     bears = f"{what} bears a constant horizontal acceleration of {capacity:.3g} g"
     if peak is None:
         return judge(f"{bears}; the deck holds no single motion to compare with.", None, capacity, "g")

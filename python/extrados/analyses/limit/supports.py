@@ -47,7 +47,7 @@ def run(context: Context, options: Supports) -> Result:
             for i in stages
         ],
     )
-    result.results, result.verdict = r, r.judged()
+    result.results = r
     shown = [int(np.abs(movement - share * movement[-1]).argmin()) for share in SHOWN]
     result.arrays = {
         **geometry_arrays(arch),

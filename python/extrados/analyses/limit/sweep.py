@@ -128,7 +128,7 @@ def run(context: Context, options: Sweep) -> Result:
         duality_gap=max(o.gap for o in outcomes),
         **({"fractured_collapse_accelerations_g": fractured} if options.fracture else {}),
     )
-    result.results, result.verdict = r, r.judged()
+    result.results = r
     gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
     number = np.array([numbers.get(o.signature, 0) for o in outcomes])
     columns: dict[str, Any] = {

@@ -64,7 +64,7 @@ def run(context: Context, options: Thrust) -> Result:
         duality_gap=answer.gap,
         **lines,
     )
-    result.results, result.verdict = r, r.judged()
+    result.results = r
     result.arrays = geometry_arrays(assembly)
     about = {"least": "of least thrust", "most": "of greatest thrust", "central": "that is most central"}
     for name, state in states.items():

@@ -64,7 +64,7 @@ def run(context: Context, options: Tilt) -> Result:
         duality_gap=answer.gap,
         **fracture,
     )
-    result.results, result.verdict = found, found.judged(context.demand_g)
+    result.results = found
     result.arrays |= {
         **geometry_arrays(assembly),
         **state_arrays(assembly, "collapse", state, "at collapse, load to +x"),

@@ -52,7 +52,7 @@ def run(context: Context, options: Assessment) -> Result:
         if rows
         else None,
     )
-    result.results, result.verdict = r, r.judged()
+    result.results = r
     columns = ("rank", "amplitude_g", "period_s", "start_s", "explained", "goodness_of_fit", "failing_amplitude_g",
                "failing_amplitude_own_g", "margin", "verdict")  # fmt: skip
     result.tables["assessment"] = TableData(

@@ -20,7 +20,6 @@ from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import Body
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
-from extrados.motions.tables import Pulse, SinePulse, StepPulse
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -228,7 +227,7 @@ def run(context: Context, options: FailureDomain) -> Result:
         **_at_amplitudes(context, options, model, durations, 40.0 * unit),
         **(_over_uplift(durations, curves.pocket / GRAVITY, model) if slender else {}),
     )
-    result.results, result.verdict = r, r.judged(*same_pulse(context, options.pulse))
+    result.results = r
     columns = {
         "duration": durations,
         **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
@@ -278,18 +277,6 @@ def _over_uplift(durations: np.ndarray, pocket: np.ndarray, model: Rocker) -> di
         "mode_names": "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact "
         "(mode 1, with impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)",
     }
-
-
-def same_pulse(context: Context, pulse: str) -> tuple[float | None, float | None]:
-    """Duration [s] and amplitude [g] of the deck's motion where it is a pulse of that shape; None, None elsewhere."""
-    match context.deck.motion:
-        case StepPulse() as m if pulse == "step":
-            return m.duration, abs(m.amplitude) / GRAVITY
-        case SinePulse() as m if pulse == "sine":
-            return m.period, abs(m.amplitude) / GRAVITY
-        case Pulse() as m if pulse == m.shape:
-            return m.period, abs(m.amplitude) / GRAVITY
-    return None, None
 
 
 def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves: Curves, pockets: int) -> str:

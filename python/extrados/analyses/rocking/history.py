@@ -79,7 +79,7 @@ def rocking_result(context: Context, response: Response, of: str, friction: np.n
         rejected_steps=response.rejected,
         **further,
     )
-    result.results, result.verdict = r, r.judged()
+    result.results = r
     result.tables["rocking"] = TableData(
         {
             "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,
