@@ -4,6 +4,7 @@ import time
 import traceback
 
 from extrados import kinds
+from extrados.analyses.batches import Unfinished
 from extrados.analyses.context import Context, Refused
 from extrados.building.errors import BadGeometry
 from extrados.core.errors import Cancelled, CoreError
@@ -26,6 +27,8 @@ def run_analyses(context: Context) -> list[Result]:
             result.warnings = [*context.warnings, *result.warnings]
         except (Refused, BadGeometry) as error:
             result = Result(options.kind, "refused", str(error))
+        except Unfinished as error:
+            result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))
         except (Cancelled, KeyboardInterrupt):
             result = Result(options.kind, "interrupted", "interrupted before it had a result")
         except MemoryError as error:

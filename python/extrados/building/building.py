@@ -46,6 +46,10 @@ class Building:
     folder: Path = field(default_factory=Path.cwd)
     _views: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Pickled without its views, which are made again where it arrives."""
+        return {**self.__dict__, "_views": {}}
+
     def having(self, **tables: Table) -> "Building":
         """The same building with other tables: structure, material, joints, supports, initial."""
         return replace(self, **tables)

@@ -1,6 +1,5 @@
 """dem-domain: the shortest pulses that bring a structure down, by discrete elements (thesis Figs 7-11, 7-13, 7-14)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +7,7 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
+from extrados.analyses.dem.runs import Runs, Task, answered
 from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.rocking.failure_domain import settling_time, shortest_durations, unit_pulse
 from extrados.building.errors import BadGeometry
@@ -15,7 +15,6 @@ from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem
 from extrados.core.errors import CoreError
-from extrados.results.checkpoint import fingerprint
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -31,61 +30,40 @@ class Curve:
     shortest: np.ndarray
 
 
-class Sweep:
-    """Runs pulses (curve, amplitude, duration) once each, in parallel, and remembers their outcomes."""
+class Search:
+    """Asks round by round which pulses (curve, amplitude, duration) bring the structure down."""
 
-    def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[JointValues]):
-        self.options, self.model, self.curves = options, model, curves
-        self.context = context
+    def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[JointValues], rounds: float):
+        self.context, self.options, self.model = context, options, model
+        self.bodies = [model.bodies(values) for values in curves]
         self.settle = options.settle or dem_model.settle_time(model)
         self.limit = options.collapse_displacement or 0.2 * model.size
-        self.answers: dict[str, bool] = {}
-        self.batches = 0
-        self.residual = 0.0
-        self.steps = 0
-        # The deck guards the checkpoint; two sweeps of one deck are told apart by what they ask.
-        self.name = "dem-domain-" + fingerprint([options.model_dump(), context.building.joints.model_dump()])[:16]
-        if context.checkpoint is not None:
-            for first, kept in context.checkpoint.load(self.name):
-                self.answers |= dict(zip(kept["pulse"].tolist(), kept["fails"].tolist(), strict=True))
-                self.residual = max(self.residual, float(kept["residual"]))
-                self.steps += int(kept["steps"])
-                self.batches = max(self.batches, first + 1)
+        self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
+        self.residual, self.steps = 0.0, 0
 
-    def fails(self, asked: list[tuple[int, float, float]], tick: Callable[[int], None]) -> list[bool]:
-        """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down."""
-        keys = [f"{k} {a!r} {t!r}" for k, a, t in asked]
-        todo = [(key, one) for key, one in zip(keys, asked, strict=True) if key not in self.answers]
-        batch = 8 * max(1, self.context.threads)
-        for first in range(0, len(todo), batch):
-            part = todo[first : first + batch]
-            runs = dem_model.many([self._task(*one) for _, one in part], self.context.threads, lambda n: None)
-            for (key, _), run in zip(part, runs, strict=True):
-                dem_model.checked(run, self.model)
-                self.answers[key] = run.reason in FAILED
-                self.residual = max(self.residual, run.residual)
-                self.steps += run.steps
-            if self.context.checkpoint is not None:
-                done = [key for key, _ in part]
-                arrays = {
-                    "pulse": np.array(done),
-                    "fails": np.array([self.answers[key] for key in done]),
-                    "residual": np.array(max(run.residual for run in runs)),
-                    "steps": np.array(sum(run.steps for run in runs)),
-                }
-                self.context.checkpoint.keep(self.name, self.batches, arrays)
-                self.batches += 1
-            tick(len(part))
-        return [bool(self.answers[key]) for key in keys]
+    def fails(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
+        """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down; Unfinished where
+        some have no answer, Refused where one is not to be trusted."""
+        runs = answered(
+            self.context, "dem-domain", Runs(self.bodies, [self._task(*one) for one in pulses]), "",
+            tell=lambda done: self.context.progress(
+                min(self.asked + done, self.total), self.total, "failure domain by discrete elements"
+            ),
+        )  # fmt: skip
+        self.asked += len(pulses)
+        for run in runs:
+            dem_model.checked(run, self.model)
+            self.residual = max(self.residual, run.residual)
+            self.steps += run.steps
+        return [run.reason in FAILED for run in runs]
 
-    def _task(self, curve: int, amplitude: float, duration: float) -> Callable[[], dem.Run]:
+    def _task(self, curve: int, amplitude: float, duration: float) -> Task:
         motion = unit_pulse(self.options.pulse, duration)
         options = dem.Options(
             end_time=motion.end + self.settle, output_step=1e3, fraction=self.options.fraction, collapse=self.limit,
             stop_at_rest=True, mass_damping=self.options.mass_damping,
         )  # fmt: skip
-        bodies = self.model.bodies(self.curves[curve])
-        return lambda: dem.run(bodies, options, motion.ground, scale=amplitude)
+        return Task(curve, options, motion.ground, amplitude)
 
 
 def run(context: Context, options: DemDomain) -> Result:
@@ -103,18 +81,10 @@ def run(context: Context, options: DemDomain) -> Result:
         *(base.scaled(friction=f) for f in options.vary_friction),
     ]
     context.warnings += dem_model.warnings(model, options)
-    sweep = Sweep(context, options, model, curves)
     amplitudes, durations = np.array(options.amplitudes), np.array(options.durations)
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
-    total = len(curves) * len(amplitudes) * (len(durations) + refining)
-    done = 0
-
-    def tick(n: int) -> None:
-        nonlocal done
-        done += n
-        context.progress(min(done, total), total, "failure domain by discrete elements")
-
-    shortest = _shortest(sweep, len(curves), amplitudes, durations, options.accuracy, tick)
+    search = Search(context, options, model, curves, len(durations) + refining)
+    shortest = _shortest(search, len(curves), amplitudes, durations, options.accuracy)
     found = [Curve(label, v, row) for label, v, row in zip(labels, curves, shortest, strict=True)]
     result = Result("dem-domain")
     result.results = {
@@ -132,8 +102,8 @@ def run(context: Context, options: DemDomain) -> Result:
             }
             for c in found
         ],
-        "energy_residual_ratio": sweep.residual,
-        "steps": sweep.steps,
+        "energy_residual_ratio": search.residual,
+        "steps": search.steps,
     }
     table = {"amplitude": amplitudes / GRAVITY, **{f"shortest duration, {c.label}": c.shortest for c in found}}
     units = {"amplitude": "g", **{f"shortest duration, {c.label}": "s" for c in found}}
@@ -149,12 +119,7 @@ def run(context: Context, options: DemDomain) -> Result:
 
 
 def _shortest(
-    sweep: Sweep,
-    curves: int,
-    amplitudes: np.ndarray,
-    durations: np.ndarray,
-    accuracy: float,
-    tick: Callable[[int], None],
+    search: Search, curves: int, amplitudes: np.ndarray, durations: np.ndarray, accuracy: float
 ) -> np.ndarray:
     """Shortest failing duration (curves, amplitudes): the first failing one of those tried, refined by bisection.
 
@@ -165,7 +130,7 @@ def _shortest(
     low, high = np.zeros(len(rows)), np.full(len(rows), np.nan)
     open_rows = list(range(len(rows)))
     for duration in durations:
-        fails = sweep.fails([(*rows[r], float(duration)) for r in open_rows], tick)
+        fails = search.fails([(*rows[r], float(duration)) for r in open_rows]) if open_rows else []
         for r, failed in zip(open_rows, fails, strict=True):
             if failed:
                 high[r] = duration
@@ -180,7 +145,7 @@ def _shortest(
         ]  # fmt: skip
         if not wide:
             return high.reshape(curves, len(amplitudes))
-        fails = sweep.fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide], tick)
+        fails = search.fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide])
         for r, failed in zip(wide, fails, strict=True):
             middle = 0.5 * (low[r] + high[r])
             if failed:
