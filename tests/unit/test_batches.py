@@ -137,7 +137,8 @@ FRAGILITY = """
 kind = "block"
 width = 0.1
 height = 0.4
-initial_rotation_ratio = 0.03125
+[initial]
+rotation_ratio = 0.03125
 [motion]
 kind = "generated"
 mmi = 6
