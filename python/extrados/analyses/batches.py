@@ -131,11 +131,13 @@ def sweep(
     text: str,
     *,
     slow: bool = False,
+    parallel: bool = False,
     tell: Callable[[int], None] | None = None,
 ) -> Swept:
     """Run all `count` members of the job here, or on the scheduler of the context; see Swept for what may be missing.
 
-    slow: a member may take seconds: batches begin with one, and each thread runs a batch of its own. tell: is given the number of
+    slow: a member may take seconds, batches begin with one. parallel: each thread runs a batch of its own, for slow
+    members that the core computes; else one batch after the other has all threads. tell: is given the number of
     finished members instead of the context's progress, where the sweep is one round of a search.
     """
     if count < 1:
@@ -147,7 +149,7 @@ def sweep(
         pace = _Pace(1 if slow else FIRST_BATCH)
         if context.scheduler:
             return _on_cluster(context, batches, job, pace)
-        return (_in_threads if slow else _in_turn)(context, batches, job, pace)
+        return (_in_threads if parallel else _in_turn)(context, batches, job, pace)
 
 
 def _in_turn(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:

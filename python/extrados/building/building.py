@@ -54,6 +54,10 @@ class Building:
         """The same building with other tables: structure, material, joints, supports, initial."""
         return replace(self, **tables)
 
+    def apart(self) -> "Building":
+        """The same building that keeps its views for itself: one of many in a sweep, whose views nobody asks for again."""
+        return replace(self, _views={})
+
     def blocks(self) -> Assembly:
         """Stones and joints."""
         return self._view(

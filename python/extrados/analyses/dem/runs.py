@@ -114,5 +114,5 @@ def answered(
     context: Context, name: str, job: Runs, text: str, tell: Callable[[int], None] | None = None
 ) -> list[dem.Run]:
     """All runs of the job, kept by the batch layer; Unfinished where some are missing."""
-    swept = sweep(context, name, job, len(job.tasks), text, slow=True, tell=tell).whole()
+    swept = sweep(context, name, job, len(job.tasks), text, slow=True, parallel=True, tell=tell).whole()
     return [run_of(swept.arrays, k) for k in range(swept.count)]

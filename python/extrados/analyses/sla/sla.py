@@ -442,7 +442,7 @@ def _scatter(context: Context, options: Sla, result: Result) -> None:
         raise Refused('seeds ask for a random mesh (mesh.pattern = "random") or for strength_variation above 0')
     swept = sweep(
         context, "sla-seeds", Repetitions(context.building, options, random_mesh), len(options.seeds), "repetitions",
-        slow=True,
+        slow=True, parallel=True,
     )  # fmt: skip
     if not swept.complete:
         result.status = "interrupted" if swept.interrupted else "failed"
