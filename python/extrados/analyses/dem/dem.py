@@ -6,6 +6,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem import motion, tilt
 from extrados.analyses.dem.tables import Dem
+from extrados.core.calls import interruptible
 from extrados.results.model import Result
 
 
@@ -15,4 +16,5 @@ def run(context: Context, options: Dem) -> Result:
         raise Refused('animation = "mp4" needs the program ffmpeg, which is not here; "gif" needs nothing')
     model = dem_model.make_model(context, options, options.floor)
     context.warnings += dem_model.warnings(model, options)
-    return (tilt if options.test == "tilt" else motion).run(context, options, model)
+    with interruptible():  # Ctrl-C between two runs stops the next one
+        return (tilt if options.test == "tilt" else motion).run(context, options, model)

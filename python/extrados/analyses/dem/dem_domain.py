@@ -9,11 +9,13 @@ from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task, answered
 from extrados.analyses.dem.tables import DemDomain
+from extrados.analyses.dem.trial import start
 from extrados.analyses.rocking.failure_domain import settling_time, shortest_durations, unit_pulse
 from extrados.building.errors import BadGeometry
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem
+from extrados.core.calls import interruptible
 from extrados.core.errors import CoreError
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -38,6 +40,7 @@ class Search:
         self.bodies = [model.bodies(values) for values in curves]
         self.settle = options.settle or dem_model.settle_time(model)
         self.limit = options.collapse_displacement or 0.2 * model.size
+        self.shift = start(context, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
         self.residual, self.steps = 0.0, 0
 
@@ -63,7 +66,7 @@ class Search:
             end_time=motion.end + self.settle, output_step=1e3, fraction=self.options.fraction, collapse=self.limit,
             stop_at_rest=True, mass_damping=self.options.mass_damping,
         )  # fmt: skip
-        return Task(curve, options, motion.ground, amplitude)
+        return Task(curve, options, motion.ground, amplitude, self.shift)
 
 
 def run(context: Context, options: DemDomain) -> Result:
@@ -84,7 +87,8 @@ def run(context: Context, options: DemDomain) -> Result:
     amplitudes, durations = np.array(options.amplitudes), np.array(options.durations)
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
     search = Search(context, options, model, curves, len(durations) + refining)
-    shortest = _shortest(search, len(curves), amplitudes, durations, options.accuracy)
+    with interruptible():  # Ctrl-C between two rounds stops the next one
+        shortest = _shortest(search, len(curves), amplitudes, durations, options.accuracy)
     found = [Curve(label, v, row) for label, v, row in zip(labels, curves, shortest, strict=True)]
     result = Result("dem-domain")
     result.results = {

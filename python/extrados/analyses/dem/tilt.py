@@ -35,6 +35,8 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         unused.append("the [motion]")
     if context.building.initial.movements:
         unused.append("[[initial.movements]]")
+    if context.building.initial.rotation_ratio:
+        unused.append("[initial] rotation_ratio")
     if unused:
         context.warnings.append(f"plays no part in a tilt test: {', '.join(unused)}")
     base = replace(

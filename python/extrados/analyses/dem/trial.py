@@ -54,12 +54,20 @@ def _moves(context: Context, model: Model) -> tuple[dem.SupportMove, ...]:
     return tuple(found)
 
 
-def _start(context: Context, model: Model) -> np.ndarray | None:
-    """Initial displacements of a block that starts rotated about a toe; None: from rest."""
+def start(context: Context, model: Model) -> np.ndarray | None:
+    """Initial displacements (bodies, 3) [m, m, rad] of a block that starts rotated about a toe; None: from rest.
+
+    Refused where another structure is to start rotated: its blocks would have to be placed first.
+    """
     ratio = context.building.initial.rotation_ratio
     block = model.assembly
-    if not ratio or not isinstance(block, BlockAssembly):
+    if not ratio:
         return None
+    if not isinstance(block, BlockAssembly):
+        raise Refused(
+            "[initial] rotation_ratio: discrete elements start only a block rotated; "
+            "initial.rotation_ratio = 0 within this [[analysis]] starts it from rest"
+        )
     side = 0 if ratio > 0.0 else 1
     turn = -ratio * block.alpha[side]  # positive to +x is clockwise
     toe = np.array([block.toe_right, 0.0]) if side == 0 else np.array([-block.toe_left, 0.0])
@@ -80,7 +88,7 @@ class Trial:
         self.limit = collapse_limit(options, model)
         self.ground: Ground | None = context.motion.ground if context.deck.motion else None
         self.moves = _moves(context, model)
-        self.shift = _start(context, model)
+        self.shift = start(context, model)
 
     @property
     def idle(self) -> bool:
