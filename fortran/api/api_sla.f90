@@ -7,7 +7,7 @@ module api_sla
    private
    public :: teeth, band, intervals, body_force
    public :: create, add_plane, add_bars, add_springs, prepare, factorise, loads, run, displacement
-   public :: measure, report, damage
+   public :: measure, report, damage, standing, resume
    public :: free
 
 contains
@@ -440,6 +440,30 @@ contains
          end select
       end do
    end subroutine damage
+
+   !> Read where the event loop stands; its numbers are those of sla_model
+   subroutine standing(handle, values)
+      use sla_handle, only : model_of
+      use sla_model, only : model, model_standing
+      integer(c_int64_t), intent(in) :: handle
+      real(c_double), intent(out) :: values(27)
+      type(model), pointer :: made
+      made => model_of(handle)
+      values = model_standing(made)
+   end subroutine standing
+
+   !> Go on from where an event loop stood, after its loads and damage were set and the factor was made
+   subroutine resume(handle, values, status)
+      use sla_handle, only : model_of
+      use sla_model, only : model, model_resume
+      integer(c_int64_t), intent(in) :: handle
+      real(c_double), intent(in) :: values(27)
+      integer(c_int), intent(out) :: status
+      type(model), pointer :: made
+      !f2py threadsafe
+      made => model_of(handle)
+      call model_resume(made, values, status)
+   end subroutine resume
 
    !> Give a model back; the handle becomes 0
    subroutine free(handle)

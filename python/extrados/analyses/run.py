@@ -4,6 +4,7 @@ import time
 import traceback
 
 from extrados import kinds
+from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
@@ -45,6 +46,8 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result.warnings = [*context.warnings, *result.warnings]
     except (Refused, BadGeometry) as error:
         result = Result(options.kind, "refused", str(error))
+    except Unfinished as error:
+        result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))
     except (Cancelled, KeyboardInterrupt):
         result = Result(options.kind, "interrupted", "interrupted before it had a result")
     except MemoryError as error:

@@ -474,3 +474,15 @@ class Model:
         """Go on from a stored damage: the factor is made anew."""
         _core.api_sla.damage(self._handle, 0, real("damage", damage, (11, self.points)))
         self.factorise()
+
+    def standing(self) -> np.ndarray:
+        """Where the loop stands between two calls of `run`, beside loads and damage."""
+        return _core.api_sla.standing(self._handle).copy()
+
+    def renew(self, damage: np.ndarray, standing: np.ndarray) -> None:
+        """Go on from a damage and where the loop stood, under the loads of the stage, with a new factor.
+
+        Whoever goes on from the same two gets the same bits, after whatever history. Raises Mechanism.
+        """
+        self.set_damage(damage)
+        check(long_call(_core.api_sla.resume, self._handle, real("standing", standing, (27,))), "displacements")

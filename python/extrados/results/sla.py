@@ -5,6 +5,9 @@ from typing import Literal
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
+#: How the names of arrays begin that belong to the first sense of the load, and to the second
+PREFIXES = ("", "minus_")
+
 
 class Bilinear(ResultModel):
     """Elastic-plastic idealisation of the envelope, of equal area."""

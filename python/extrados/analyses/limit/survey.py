@@ -2,15 +2,18 @@
 
 import csv
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.tables import Survey
-from extrados.analyses.limit.variation import Outcome, changed, evaluate, spoken
+from extrados.analyses.limit.variation import Outcome, changed, evaluate, outcomes_of, spoken
 from extrados.analyses.limit.variation import read_table as read_section
+from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
@@ -59,6 +62,35 @@ def _value(cell: str) -> Any:
     return cell
 
 
+def _column(header: list[str], rows: list[list[str]], name: str) -> list[str]:
+    return [row[header.index(name)] for row in rows] if name in header else [""] * len(rows)
+
+
+@dataclass(frozen=True)
+class Sections:
+    """Member k is the structure of table `data` with the keys of rows[k] in their place."""
+
+    building: Building
+    data: dict[str, Any]
+    header: list[str]
+    rows: list[list[str]]
+    options: Survey
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(lambda k: self._outcome(self.rows[k]).row(), first, count)
+
+    def _outcome(self, row: list[str]) -> Outcome:
+        data = self.data
+        for name, cell in zip(self.header, row, strict=True):
+            if name != "name" and cell:
+                data = changed(data, name, _value(cell))
+        try:
+            building = self.building.apart().having(structure=read_section(type(self.building.structure), data))
+        except BadGeometry as error:
+            return Outcome(reason=str(error))
+        return evaluate(building, self.options, fracture=self.options.fracture)
+
+
 def run(context: Context, options: Survey) -> Result:
     """The deck's structure with the keys of each row in their place; empty cells leave the deck's value."""
     model = type(context.deck.structure)
@@ -70,24 +102,9 @@ def run(context: Context, options: Survey) -> Result:
                 f"it has {', '.join(k for k in model.model_fields if k != 'kind')}, and 'name'"
             )
     begin = time.perf_counter()
-    outcomes: list[Outcome] = []
-    names = []
-    for i, row in enumerate(rows):
-        if i % 50 == 0:
-            context.progress(i, len(rows), "survey")
-        data = context.deck.data["structure"]
-        names.append(f"section {i + 1}")
-        for name, cell in zip(header, row, strict=True):
-            if name == "name":
-                names[-1] = cell or names[-1]
-            elif cell:
-                data = changed(data, name, _value(cell))
-        try:
-            building = context.building.having(structure=read_section(model, data))
-        except BadGeometry as error:
-            outcomes.append(Outcome(reason=str(error)))
-            continue
-        outcomes.append(evaluate(building, options, fracture=options.fracture))
+    names = [cell or f"section {i + 1}" for i, cell in enumerate(_column(header, rows, "name"))]
+    job = Sections(context.building, context.deck.data["structure"], header, rows, options)
+    outcomes = outcomes_of(sweep(context, "survey", job, len(rows), "survey", slow=True).whole())
     seconds = time.perf_counter() - begin
     gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
     columns: dict[str, Any] = {

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import packed
 from extrados.analyses.limit.tables import Sweep
@@ -14,7 +15,7 @@ from extrados.analyses.limit.variation import (
     Signature,
     changed,
     evaluate,
-    measures_of,
+    outcomes_of,
     read_table,
     spoken,
 )
@@ -49,7 +50,22 @@ class Range:
             table = read_table(type(getattr(self.building, self.table)), data)
         except BadGeometry as error:
             return Outcome(reason=str(error))
-        return evaluate(self.building.having(**{self.table: table}), self.options, fracture=fracture, explain=explain)
+        return evaluate(
+            self.building.apart().having(**{self.table: table}), self.options, fracture=fracture, explain=explain
+        )
+
+
+@dataclass(frozen=True)
+class Values:
+    """Member k is the question put at values[k]."""
+
+    ask: Range
+    values: np.ndarray
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(
+            lambda k: self.ask.at(self.values[k], fracture=self.ask.options.fracture, explain=True).row(), first, count
+        )
 
 
 def _placed(vary: str) -> tuple[str, str]:
@@ -84,10 +100,8 @@ def run(context: Context, options: Sweep) -> Result:
     values = np.unique(np.round(values)) if whole else np.sort(values)
     data = {**context.deck.data.get(table, {}), **(options.model_dump(exclude_none=True).get(table) or {})}
     ask = Range(context.building, table, path, data, options, whole)
-    outcomes = []
-    for i, value in enumerate(values):
-        context.progress(i, len(values), f"sweep of {options.vary}")
-        outcomes.append(ask.at(value, fracture=options.fracture, explain=True))
+    swept = sweep(context, "sweep", Values(ask, values), len(values), f"sweep of {options.vary}", slow=True)
+    outcomes = outcomes_of(swept.whole())
     if all(o.gamma is None for o in outcomes):
         raise Refused(f"no value of {options.vary} gives a structure that stands: {outcomes[-1].reason}")
     changes = _changes(ask, values, outcomes) if options.locate and not whole else []
@@ -147,9 +161,8 @@ def run(context: Context, options: Sweep) -> Result:
         cracked = np.array([np.nan if f is None else f for f in fractured])
         result.arrays["fractured"] = Array(cracked, ("value",), "g", "with the leeward buttress cracked")
         columns["fractured_collapse_acceleration"] = cracked
-    names = next((o.assembly.measures for o in outcomes if o.assembly is not None), {})
-    for name in names:
-        columns[name] = [measures_of(o.assembly).get(name, np.nan) for o in outcomes]
+    for name in next((o.measures for o in outcomes if o.measures), {}):
+        columns[name] = [o.measures.get(name, np.nan) for o in outcomes]
     columns["reason"] = [o.reason for o in outcomes]
     units = {
         options.vary: r.unit,
@@ -158,7 +171,7 @@ def run(context: Context, options: Sweep) -> Result:
         "tilt_angle": "deg",
     }
     result.tables = {"sweep": TableData(columns, units)}
-    result.arrays.update(_examples(outcomes, numbers))
+    result.arrays.update(_examples(ask, values, outcomes, numbers))
     result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
     result.answer = _words(options, r)
     return result
@@ -213,15 +226,17 @@ def _optimum(ask: Range, values: np.ndarray, outcomes: list[Outcome], closely: b
     return best[1], best[0]
 
 
-def _examples(outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[str, Array]:
+def _examples(
+    ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int]
+) -> dict[str, Array]:
     """One section of each mechanism, in the middle of where it governs, with its mechanism carried on."""
     outlines: dict[str, np.ndarray] = {}
     moved: dict[str, np.ndarray] = {}
     for signature, number in numbers.items():
-        same = [o for o in outcomes if o.signature == signature]
+        same = [v for v, o in zip(values, outcomes, strict=True) if o.signature == signature]
         if not same:
             continue
-        one = same[len(same) // 2]
+        one = ask.at(same[len(same) // 2])
         pose = finite_motion(one.assembly, one.mechanism)
         for i, (outline, c, p) in enumerate(zip(one.assembly.outlines, one.assembly.centroid, pose, strict=True)):
             cos, sin = np.cos(p[2]), np.sin(p[2])

@@ -17,6 +17,7 @@ from extrados.analyses.rocking.tables import FailureDomain
 from extrados.analyses.runs import RunsJob, runs_job
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
+from extrados.core.calls import interruptible
 from extrados.core.rocking import Body
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
@@ -64,7 +65,7 @@ def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
 
 
 class Mapper:
-    """Runs pulses of many durations and amplitudes on one structure."""
+    """Runs pulses of many durations and amplitudes on one structure; with a context through the batch layer."""
 
     def __init__(
         self,
@@ -74,8 +75,10 @@ class Mapper:
         settle: float,
         threads: int,
         start_rotation: float = 0.0,
+        context: Context | None = None,
     ):
         self.body = body
+        self.context = context
         self.motions = [unit_pulse(pulse, t) for t in durations]
         self.settle = settle
         self.threads = threads
@@ -89,8 +92,11 @@ class Mapper:
         )
 
     def codes(self, index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]."""
+        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]; Unfinished where some are missing."""
         job = self.job(index, amplitude)
+        if self.context is not None:
+            swept = sweep(self.context, "failure-domain", job, len(index), "failure domain").whole()
+            return codes_of(swept["outcome"], swept["half_cycles"])
         parts = []
         for first in range(0, len(index), BATCH):
             rows = job.run(first, min(BATCH, len(index) - first), self.threads)
@@ -102,13 +108,6 @@ def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray
     """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map."""
     nd, na = len(durations), len(amplitudes)
     codes = mapper.codes(np.repeat(np.arange(nd), na), np.tile(amplitudes, nd)).reshape(nd, na)
-    return curves_of(mapper, durations, amplitudes, codes, accuracy)
-
-
-def curves_of(
-    mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, codes: np.ndarray, accuracy: float
-) -> Curves:
-    """The curves of a map that has been run."""
     grid = np.broadcast_to(amplitudes, codes.shape)
     refined = [_refine(mapper.codes, codes, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II)]
     # The pocket is the first safe amplitude above a failing one: the same search with the roles exchanged.
@@ -198,15 +197,12 @@ def run(context: Context, options: FailureDomain) -> Result:
     unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
-    mapper = Mapper(model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation)
-    job = mapper.job(np.repeat(np.arange(len(durations)), len(amplitudes)), np.tile(amplitudes, len(durations)))
+    mapper = Mapper(
+        model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation, context
+    )  # fmt: skip
+    with interruptible():  # Ctrl-C between two rounds stops the next one
+        curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY)
     result = Result("failure-domain")
-    swept = sweep(context, "failure-domain", job, len(job.scale), "failure domain")
-    if not swept.complete:
-        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
-        return result
-    codes = codes_of(swept["outcome"], swept["half_cycles"]).reshape(len(durations), len(amplitudes))
-    curves = curves_of(mapper, durations, amplitudes, codes, options.accuracy * GRAVITY)
     names = {"mode_I": curves.mode_i, "mode_II": curves.mode_ii}
     gamma, slender = model.uplift, model.what != "arch"
     r = out.FailureDomain(
