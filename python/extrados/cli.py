@@ -218,22 +218,36 @@ def check(decks: Annotated[list[Path], typer.Argument(help="decks to check")]) -
 
 
 @app.command()
-def schema() -> None:
-    """Print the JSON Schema of decks, for editors."""
-    from extrados.decks.explain import json_schema
+def schema(
+    results: Annotated[bool, typer.Option("--results", help="that of summary.json instead")] = False,
+) -> None:
+    """Print the JSON Schema of decks, for editors, or of results."""
+    if results:
+        from extrados.results.explain import json_schema
+    else:
+        from extrados.decks.explain import json_schema
 
     print(json.dumps(json_schema(), indent=1))
 
 
 @app.command()
 def explain(
-    key: Annotated[str | None, typer.Argument(help="a key, a kind or a section")] = None,
-    manual: Annotated[bool, typer.Option(help="the whole reference manual in Markdown")] = False,
+    key: Annotated[
+        str | None,
+        typer.Argument(help="a key, a kind or a section of decks; results, results.KIND or results.KIND.KEY"),
+    ] = None,
+    manual: Annotated[bool, typer.Option("--manual", help="the whole reference manual of decks in Markdown")] = False,
+    results: Annotated[
+        bool, typer.Option("--results", help="the whole reference manual of results in Markdown")
+    ] = False,
 ) -> None:
-    """Say what a deck key or kind means: unit, default, bounds, source."""
-    from extrados.decks import explain as explanation
+    """Say what a deck key, a kind or a result means: unit, default, bounds, source."""
+    if results or (key or "").split(".")[0] == "results":
+        from extrados.results import explain as explanation
+    else:
+        from extrados.decks import explain as explanation
 
-    if manual or key is None:
+    if manual or results or key is None:
         print(explanation.manual())
         return
     try:

@@ -21,12 +21,16 @@ class Assumption(ResultModel):
 
 
 def spoken(assumptions: dict[str, Assumption]) -> str:
-    """One sentence such as "Friction 0.7 (default), density 2000 kg/m^3 (deck)."; friction first, what is not given
-    left out; "" without assumptions."""
+    """One sentence such as "Friction 0.7 (default), density 2000 kg/m^3 (deck)."; friction first, what is not given or
+    zero by default left out; "" without assumptions."""
     order = sorted(assumptions, key=lambda name: name != FRICTION)
-    words = [_words(name, assumptions[name]) for name in order if assumptions[name].value is not None]
+    words = [_words(name, assumptions[name]) for name in order if name == FRICTION or not _silent(assumptions[name])]
     text = ", ".join(words)
     return text[:1].upper() + text[1:] + "." if text else ""
+
+
+def _silent(one: Assumption) -> bool:
+    return one.value is None or (one.value == 0 and one.origin == "default" and not one.exceptions)
 
 
 def _words(name: str, one: Assumption) -> str:

@@ -232,17 +232,23 @@ def _examples(
     """One section of each mechanism, in the middle of where it governs, with its mechanism carried on."""
     outlines: dict[str, np.ndarray] = {}
     moved: dict[str, np.ndarray] = {}
+    blocks: dict[int, int] = {}
     for signature, number in numbers.items():
         same = [v for v, o in zip(values, outcomes, strict=True) if o.signature == signature]
         if not same:
             continue
         one = ask.at(same[len(same) // 2])
         pose = finite_motion(one.assembly, one.mechanism)
+        blocks[number] = len(pose)
         for i, (outline, c, p) in enumerate(zip(one.assembly.outlines, one.assembly.centroid, pose, strict=True)):
             cos, sin = np.cos(p[2]), np.sin(p[2])
             outlines[f"{number}/{i}"] = outline
             moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
+    of = [number for number, count in blocks.items() for _ in range(count)]
     return {
+        "example_mechanism": Array(
+            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism of each block"
+        ),
         **packed("example", outlines, "m", "blocks of one section of each mechanism (number/block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
