@@ -10,8 +10,13 @@ import re
 import tomllib
 from copy import deepcopy
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
+
+from jsonschema import Draft202012Validator
+
+from extrados.results.explain import json_schema
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
@@ -110,6 +115,12 @@ def pick(results: dict[str, dict[str, Any]], quantity: str) -> Any:
     return place
 
 
+@cache
+def summary_schema() -> Draft202012Validator:
+    """The schema that every summary.json meets."""
+    return Draft202012Validator(json_schema())
+
+
 def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dict[str, Any]]:
     """Run the deck with the change, as a user would through Python; analysis name -> results."""
     from extrados.analyses.context import Context
@@ -118,5 +129,6 @@ def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dic
 
     data = changed(tomllib.loads(case.deck.read_text(encoding="utf-8")), change)
     run = compute(Context(make_deck(data, case.deck.parent), threads=2))
+    summary_schema().validate(run.summary)
     # A refusal is a result too: its status and reason can be expected
     return {a["name"]: {**a["results"], "status": a["status"], "reason": a["reason"]} for a in run.analyses}

@@ -6,9 +6,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
 from extrados.analyses.arch_model import ArchModel
 from extrados.analyses.block_model import BlockModel
+from extrados.structures.arch import make_arch
+from extrados.structures.assembly import GROUND, Assembly
+from extrados.structures.block import make_block
+from extrados.structures.from_deck import make_structure
+
 from extrados.analyses.mechanism_model import MechanismModel
 from extrados.analyses.run import Refused
 from extrados.core import arch as core_arch
@@ -22,10 +26,6 @@ from extrados.limit.programme import LimitAnalysis
 from extrados.motions import pulses
 from extrados.motions.motion import GRAVITY
 from extrados.motions.records import locate, read_record, record_motion
-from extrados.structures.arch import make_arch
-from extrados.structures.assembly import GROUND, Assembly
-from extrados.structures.block import make_block
-from extrados.structures.from_deck import make_structure
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 ARCHES = [(10.0, 1.5, 157.5, 7), (10.0, 2.0, 180.0, 15), (10.0, 1.2, 170.0, 31)]

@@ -40,11 +40,18 @@ def test_round_trip(tmp_path) -> None:
     with store.new_folder(out) as folder:
         store.write(folder, HEAD, [sample(), sample()])
     run = store.read(out)
-    assert run["rocking-spectrum"]["peak_ground_acceleration_g"] == run["rocking-spectrum"].peak_ground_acceleration_g == 0.37
+    assert (
+        run["rocking-spectrum"]["peak_ground_acceleration_g"]
+        == run["rocking-spectrum"].peak_ground_acceleration_g
+        == 0.37
+    )
     assert run["rocking-spectrum-2"].longest_overturning_period_s == [None]
     assert run["rocking-spectrum-2"].size_m == [0.0, 1.0, 2.0]
     assert np.array_equal(run.array("rocking-spectrum", "x"), sample().arrays["x"].data)
-    assert run.arrays["rocking-spectrum"]["x"].dims == ("time", "joint") and run.arrays["rocking-spectrum"]["x"].unit == "m"
+    assert (
+        run.arrays["rocking-spectrum"]["x"].dims == ("time", "joint")
+        and run.arrays["rocking-spectrum"]["x"].unit == "m"
+    )
     rows = (out / "tilt.csv").read_text().splitlines()
     assert rows[0] == "t [s],w" and rows[1] == "1e-308,'=1+1" and float(rows[2].split(",")[0]) == 0.1 + 0.2
     assert (out / "tilt-2.csv").exists()

@@ -9,17 +9,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from extrados.analyses.failure_domain import shortest_durations
+from extrados.decks.dem import DemDomain
+from extrados.structures.from_deck import make_structure
+from extrados.structures.rigid import rigid_bodies
 
 from extrados.analyses import dem_model
-from extrados.analyses.failure_domain import shortest_durations
 from extrados.analyses.mechanism_model import MechanismModel
 from extrados.core import dem
-from extrados.decks.dem import DemDomain
 from extrados.decks.reader import read_deck
 from extrados.motions import pulses
 from extrados.motions.motion import GRAVITY
-from extrados.structures.from_deck import make_structure
-from extrados.structures.rigid import rigid_bodies
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Rotation of a buttress that counts as rocking [rad]
