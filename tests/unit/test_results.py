@@ -174,6 +174,10 @@ def test_assumptions_tell_who_set_them() -> None:
     assert second["answer"].endswith(" No sliding (analysis), density 2200 kg/m^3 (deck).")
     assert "joints.friction" not in sweep["assumptions"]
     assert spoken({}) == ""
+    rocking = extrados.run({"structure": ARCH, "motion": PULSE, "analysis": {"kind": "rocking"}}).analysis("rocking")
+    assert (
+        rocking["assumptions"]["joints.friction"]["from"] == "method" and " No sliding (method), " in rocking["answer"]
+    )
     typed_joints = {
         **deck,
         "joints": {"types": [{"joints": ["ground"], "friction": 0.4}]},

@@ -67,6 +67,9 @@ def assumptions_of(options: Analysis, deck: Building, building: Building) -> dic
         if key == getattr(options, "vary", None):
             continue
         table, name = key.split(".")
+        if key in options.method:
+            found[key] = Assumption(value=options.method[key], unit="", origin="method", exceptions=False)
+            continue
         own, override = getattr(building, table), getattr(options, table, None)
         if override is not None and name in override.model_fields_set:
             origin = "analysis"

@@ -14,8 +14,9 @@ class Assumption(ResultModel):
 
     value: Any = fact("the value, in `unit`; null where the deck gives none and the analysis does without")
     unit: str = fact("unit of the value")
-    origin: Literal["default", "deck", "analysis"] = fact(
-        "default, the deck's own table, or an override in the table of the analysis", name="from"
+    origin: Literal["default", "deck", "analysis", "method"] = fact(
+        "default, the deck's own table, an override in the table of the analysis, or the method, which knows no other",
+        name="from",
     )
     exceptions: bool = fact("whether some joints or parts have values of their own")
 
