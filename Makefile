@@ -33,8 +33,9 @@ format: setup
 	@.venv/bin/ruff check --fix python tests tools
 	@.venv/bin/ruff format python tests tools
 
-docs: setup  ## the deck reference, from the deck models
+docs: setup  ## the references of decks and results, from their models
 	@.venv/bin/extrados explain --manual > docs/decks.md
+	@.venv/bin/extrados explain --results > docs/results.md
 
 table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3)
 	@$(PYTHON) -m extrados.analyses.rocking.criterion

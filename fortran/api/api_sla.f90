@@ -8,7 +8,7 @@ module api_sla
    private
    public :: teeth, band, intervals, body_force
    public :: create, tables, plane, bars, springs, prepare, factorise, loads, run
-   public :: displacement, measure, report, damage, set_damage
+   public :: displacement, measure, report, damage, set_damage, standing, resume
 
 contains
 
@@ -574,5 +574,40 @@ contains
       end if
       call handle_leave(handle)
    end subroutine set_damage
+
+   !> Read where the event loop stands; its numbers are those of sla_model
+   subroutine standing(handle, values, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : model, model_standing
+      integer(c_int64_t), intent(in) :: handle
+      real(c_double), intent(out) :: values(27)
+      integer(c_int), intent(out) :: status
+      type(model), pointer :: made
+      values = 0.0_c_double
+      call model_take(handle, stage_loaded, stage_loaded, made, status)
+      if (status /= status_ok) return
+      values = model_standing(made)
+      call handle_leave(handle)
+   end subroutine standing
+
+   !> Go on from where an event loop stood, after its loads and damage were set and the factor was made
+   subroutine resume(handle, values, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_factored, stage_loaded
+      use sla_model, only : model, model_resume
+      integer(c_int64_t), intent(in) :: handle
+      real(c_double), intent(in) :: values(27)
+      integer(c_int), intent(out) :: status
+      type(model), pointer :: made
+      !f2py threadsafe
+      call model_take(handle, stage_factored, stage_loaded, made, status)
+      if (status /= status_ok) return
+      call model_resume(made, values, status)
+      if (status == status_ok) made%stage = stage_loaded
+      call handle_leave(handle)
+   end subroutine resume
 
 end module api_sla

@@ -15,12 +15,13 @@ module sla_model
    implicit none
    private
    public :: model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
-   public :: model_damage
+   public :: model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
    !> No tooth or change of a stored damage has a greater number
    real(wp), parameter :: most_damage = 1.0e8_wp
+   integer, parameter :: standing_values = 27   !! numbers that tell where the event loop stands
    integer, parameter :: chunk = 128   !! elements scanned in one piece, whatever the threads
 
    type :: model
@@ -296,6 +297,62 @@ contains
       end do
       if (info /= 0) status = status_out_of_memory
    end subroutine model_loads
+
+   !> Where the event loop stands, beside the damage and the loads; to be read between two batches of events
+   pure function model_standing(made) result(values)
+      type(model), intent(in) :: made
+      real(wp) :: values(standing_values)
+      values = [real(made%pending, wp), made%lambda, made%noise, made%work, made%external, made%dissipated, &
+         made%cracked, made%first_compliance, made%peak, made%peak_displacement, made%slope, made%residual, &
+         real(made%guard, wp), real(made%events, wp), merge(1.0_wp, 0.0_wp, made%recorded), &
+         merge(1.0_wp, 0.0_wp, made%carried), made%lambda_recorded, reshape(real(made%hot, wp), [4])]
+   end function model_standing
+
+   !> Go on from where an event loop stood, after its loads and its damage were set and the factor made: the
+   !> displacements are solved anew, so that all who go on from here get the same bits
+   subroutine model_resume(made, values, status)
+      type(model), intent(inout) :: made
+      real(wp), intent(in) :: values(standing_values)
+      integer(c_int), intent(out) :: status      !! invalid_argument: nothing was changed
+      status = status_invalid_argument
+      if (.not. all(abs([values(1:3), values(17:20), values(24:27)]) <= real(huge(1), wp))) return
+      if (.not. (is_point(made, nint(values(1:2))) .and. is_point(made, nint(values(24:25))) .and. &
+         is_point(made, nint(values(26:27))))) return
+      if (nint(values(3)) < 0 .or. nint(values(3)) > 8) return
+      made%pending = nint(values(1:3))
+      made%lambda = values(4)
+      made%noise = values(5)
+      made%work = values(6:8)
+      made%external = values(9)
+      made%dissipated = values(10)
+      made%cracked = values(11)
+      made%first_compliance = values(12)
+      made%peak = values(13)
+      made%peak_displacement = values(14)
+      made%slope = values(15)
+      made%residual = values(16)
+      made%guard = nint(values(17:19))
+      made%events = nint(values(20))
+      made%recorded = values(21) > 0.5_wp
+      made%carried = values(22) > 0.5_wp
+      made%lambda_recorded = values(23)
+      made%hot = reshape(nint(values(24:27)), [2, 2])
+      made%event%rank = 0
+      call model_solve(made, status)
+   end subroutine model_resume
+
+   !> Is this the number of a group and of one of its points, or none?
+   pure function is_point(made, place) result(yes)
+      type(model), intent(in) :: made
+      integer, intent(in) :: place(2)      !! group and point, the group 0: none
+      logical :: yes
+      yes = place(1) == 0
+      if (place(1) < 1 .or. place(1) > size(made%holders)) return
+      select type (group => made%holders(place(1))%group)
+      class is (point_group)
+         yes = place(2) >= 1 .and. place(2) <= group%points
+      end select
+   end function is_point
 
    !> Put the damage of all points into `values`, or take it from there where it can be true
    subroutine model_damage(made, store, values, status)

@@ -6,9 +6,13 @@
 """
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-__all__ = ["load", "run"]
+if TYPE_CHECKING:
+    from extrados.running.live import Live
+    from extrados.running.run import Run
+
+__all__ = ["live", "load", "run"]
 
 
 def run(
@@ -17,29 +21,38 @@ def run(
     *,
     threads: int | None = None,
     figures: bool = False,
-):
-    """Run a deck (a file, or a dictionary of the same shape) and return its stored results.
+) -> "Run":
+    """Run a deck (a file, or a dictionary of the same shape) in memory and return its results.
 
-    DeckError lists what is wrong with the deck. Without `out`, a deck file writes to results/<deck name> and a
-    dictionary to a temporary folder that is gone afterwards.
+    With `out` they are also written there, on request with figures and report, and a long sweep keeps its finished
+    batches beside that folder; `Run.write` does the same later. DeckError lists what is wrong with the deck,
+    StoreError says why `out` cannot be written.
     """
-    import tempfile
-
     from extrados.analyses.context import Context, default_threads
+    from extrados.running.run import compute, run_to
+
+    context = Context(_checked(deck), threads or default_threads())
+    return compute(context) if out is None else run_to(context, out, figures)
+
+
+def live(deck: str | Path | dict[str, Any], *, threads: int | None = None) -> "Live":
+    """A model of the deck (a file, or a dictionary of the same shape) that answers anew when a value changes.
+
+    DeckError lists what is wrong with the deck.
+    """
+    from extrados.running.live import Live
+
+    return Live(_checked(deck), threads)
+
+
+def load(folder: str | Path) -> "Run":
+    """The results of an earlier run, from its folder; StoreError where it holds none."""
+    from extrados.running.run import Run
+
+    return Run.read(folder)
+
+
+def _checked(deck: str | Path | dict[str, Any]) -> Any:
     from extrados.decks.reader import make_deck, read_deck
-    from extrados.results.store import read
-    from extrados.session import run_deck
 
-    checked = make_deck(deck) if isinstance(deck, dict) else read_deck(deck)
-    context = Context(checked, threads or default_threads())
-    if out is None and isinstance(deck, dict):
-        with tempfile.TemporaryDirectory() as folder:
-            return read(run_deck(context, Path(folder) / "run", figures)[0])
-    return read(run_deck(context, Path(out) if out is not None else None, figures)[0])
-
-
-def load(folder: str | Path):
-    """The stored results of an earlier run."""
-    from extrados.results.store import read
-
-    return read(folder)
+    return make_deck(deck) if isinstance(deck, dict) else read_deck(deck)

@@ -89,7 +89,7 @@ def run(
     """Run decks: print the answer, write results, figures and report."""
     from extrados.analyses.context import Context, default_threads
     from extrados.decks.reader import DeckError, read_deck
-    from extrados.session import default_out, run_deck
+    from extrados.running.run import default_out, run_to
 
     if out is not None and len(decks) > 1:
         err_console.print("--out takes one deck at a time")
@@ -105,15 +105,15 @@ def run(
             progress = _Progress(quiet or as_json)
             context = Context(deck, threads or default_threads(), progress, resume=resume, scheduler=scheduler)
             try:
-                folder, results = run_deck(context, out, figures)
+                found = run_to(context, out or default_out(deck), figures)
             finally:
                 progress.stop()
             if as_json:
-                out_console.print_json((folder / "summary.json").read_text(encoding="utf-8"))
+                out_console.print_json((found.folder / "summary.json").read_text(encoding="utf-8"))
             elif not quiet:
-                _tell(deck, results, folder, figures)
+                _tell(found, deck.title, figures)
             codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": INTERRUPTED}
-            for result in results:
+            for result in found.results:
                 if quiet and result.status != "ok":
                     err_console.print(f"{result.kind}: {result.status}: {result.reason}", markup=False)
                 worst = max(worst, codes[result.status])
@@ -122,24 +122,23 @@ def run(
     raise typer.Exit(worst)
 
 
-def _tell(deck, results, folder: Path, figures: bool) -> None:
-    if deck.title:
-        out_console.print(deck.title, style="bold", markup=False)
-    from extrados.results.store import group_names
-
-    for name, result in zip(group_names([r.kind for r in results]), results, strict=True):
-        if result.status != "ok":
-            out_console.print(f"{name}: {result.status}: {result.reason}", markup=False)
-        if result.answer:
-            out_console.print(f"{name}: {result.answer}", markup=False)
-        for warning in result.warnings:
-            out_console.print(f"{name}: warning: {warning}", markup=False)
+def _tell(run, title: str, figures: bool) -> None:
+    """The answers of a run that has been written, and where it lies."""
+    if title:
+        out_console.print(title, style="bold", markup=False)
+    for row in run.analyses:
+        if row["status"] != "ok":
+            out_console.print(f"{row['name']}: {row['status']}: {row['reason']}", markup=False)
+        if row["answer"]:
+            out_console.print(f"{row['name']}: {row['answer']}", markup=False)
+        for warning in row["warnings"]:
+            out_console.print(f"{row['name']}: warning: {warning}", markup=False)
     if figures:
-        out_console.print(f"Report:  {folder / 'report.html'}", markup=False)
-        if (folder / "figures").is_dir():
-            out_console.print(f"Figures: {folder / 'figures'}", markup=False)
+        out_console.print(f"Report:  {run.folder / 'report.html'}", markup=False)
+        if (run.folder / "figures").is_dir():
+            out_console.print(f"Figures: {run.folder / 'figures'}", markup=False)
     else:
-        out_console.print(f"Results: {folder}", markup=False)
+        out_console.print(f"Results: {run.folder}", markup=False)
 
 
 @app.command()
@@ -158,7 +157,7 @@ def motion(
     """What a ground motion is, on one page, without a deck."""
     from extrados.analyses.context import Context, default_threads
     from extrados.decks.reader import make_deck
-    from extrados.session import run_deck
+    from extrados.running.run import run_to
 
     record = {
         "kind": "record",
@@ -171,13 +170,13 @@ def motion(
     with _errors(as_json):
         deck = make_deck({"title": Path(file).name, "motion": record, "analysis": {"kind": "motion"}})
         folder = out or Path("results") / Path(file.removeprefix("extrados:")).stem
-        folder, results = run_deck(Context(deck, default_threads()), folder, figures)
+        found = run_to(Context(deck, default_threads()), folder, figures)
         if as_json:
-            out_console.print_json((folder / "summary.json").read_text(encoding="utf-8"))
+            out_console.print_json((found.folder / "summary.json").read_text(encoding="utf-8"))
         else:
-            _motion_page(results[0])
-            _tell(deck, results, folder, figures)
-    raise typer.Exit(0 if results[0].status == "ok" else NOT_DONE)
+            _motion_page(found.results[0])
+            _tell(found, deck.title, figures)
+    raise typer.Exit(0 if found.results[0].status == "ok" else NOT_DONE)
 
 
 def _motion_page(result) -> None:
@@ -219,22 +218,36 @@ def check(decks: Annotated[list[Path], typer.Argument(help="decks to check")]) -
 
 
 @app.command()
-def schema() -> None:
-    """Print the JSON Schema of decks, for editors."""
-    from extrados.decks.explain import json_schema
+def schema(
+    results: Annotated[bool, typer.Option("--results", help="that of summary.json instead")] = False,
+) -> None:
+    """Print the JSON Schema of decks, for editors, or of results."""
+    if results:
+        from extrados.results.explain import json_schema
+    else:
+        from extrados.decks.explain import json_schema
 
     print(json.dumps(json_schema(), indent=1))
 
 
 @app.command()
 def explain(
-    key: Annotated[str | None, typer.Argument(help="a key, a kind or a section")] = None,
-    manual: Annotated[bool, typer.Option(help="the whole reference manual in Markdown")] = False,
+    key: Annotated[
+        str | None,
+        typer.Argument(help="a key, a kind or a section of decks; results, results.KIND or results.KIND.KEY"),
+    ] = None,
+    manual: Annotated[bool, typer.Option("--manual", help="the whole reference manual of decks in Markdown")] = False,
+    results: Annotated[
+        bool, typer.Option("--results", help="the whole reference manual of results in Markdown")
+    ] = False,
 ) -> None:
-    """Say what a deck key or kind means: unit, default, bounds, source."""
-    from extrados.decks import explain as explanation
+    """Say what a deck key, a kind or a result means: unit, default, bounds, source."""
+    if results or (key or "").split(".")[0] == "results":
+        from extrados.results import explain as explanation
+    else:
+        from extrados.decks import explain as explanation
 
-    if manual or key is None:
+    if manual or results or key is None:
         print(explanation.manual())
         return
     try:
@@ -299,7 +312,7 @@ def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> No
 @app.command()
 def version() -> None:
     """Version, commit and compilers."""
-    from extrados.session import provenance
+    from extrados.running.provenance import provenance
 
     made = provenance()
     out_console.print(f"extrados {VERSION} {made['commit']} ({made['compiler']}, {made['build_type']})", markup=False)

@@ -12,12 +12,14 @@ from typing import Any
 class AnalysisKind:
     """Where the parts of an analysis live, each "module:name" within the package.
 
-    table: its deck table. driver: run(context, options) -> Result. figures: draws a stored analysis,
-    (run, name, folder) -> [(figure, caption)]. example: a deck with known answers, below cases/.
+    table: its deck table. driver: run(context, options) -> Result. results: the typed model of what it gives, or a
+    union of models. figures: draws a stored analysis, (run, name, folder) -> [(figure, caption)]. example: a deck with
+    known answers, below cases/.
     """
 
     table: str
     driver: str
+    results: str
     figures: str
     example: str
 
@@ -50,9 +52,11 @@ MOTIONS: dict[str, str] = {
 
 
 def _analysis(room: str, table: str, driver: str, figures: str, example: str) -> AnalysisKind:
+    """The results of a kind are called as its table is."""
     return AnalysisKind(
-        f"analyses.{room}.tables:{table}", f"analyses.{room}.{driver}:run", f"plots.{figures}", f"{example}.toml"
-    )
+        f"analyses.{room}.tables:{table}", f"analyses.{room}.{driver}:run", f"results.{room}:{table}", f"plots.{figures}",
+        f"{example}.toml",
+    )  # fmt: skip
 
 
 ANALYSES: dict[str, AnalysisKind] = {

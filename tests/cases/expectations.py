@@ -10,8 +10,13 @@ import re
 import tomllib
 from copy import deepcopy
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
+
+from jsonschema import Draft202012Validator
+
+from extrados.results.explain import json_schema
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
@@ -110,18 +115,20 @@ def pick(results: dict[str, dict[str, Any]], quantity: str) -> Any:
     return place
 
 
+@cache
+def summary_schema() -> Draft202012Validator:
+    """The schema that every summary.json meets."""
+    return Draft202012Validator(json_schema())
+
+
 def results_of(case: Case, change: tuple[tuple[str, Any], ...]) -> dict[str, dict[str, Any]]:
     """Run the deck with the change, as a user would through Python; analysis name -> results."""
-    import tempfile
-
     from extrados.analyses.context import Context
     from extrados.decks.reader import make_deck
-    from extrados.results.store import read
-    from extrados.session import run_deck
+    from extrados.running.run import compute
 
     data = changed(tomllib.loads(case.deck.read_text(encoding="utf-8")), change)
-    with tempfile.TemporaryDirectory() as folder:
-        context = Context(make_deck(data, case.deck.parent), threads=2)
-        run = read(run_deck(context, Path(folder) / "run", figures=False)[0])
+    run = compute(Context(make_deck(data, case.deck.parent), threads=2))
+    summary_schema().validate(run.summary)
     # A refusal is a result too: its status and reason can be expected
     return {a["name"]: {**a["results"], "status": a["status"], "reason": a["reason"]} for a in run.analyses}

@@ -25,15 +25,15 @@ MAY_IMPORT = {
     "motions": {"core", "schema"},
     "tables": {"building", "schema"},
     "decks": {"kinds", "tables", "building", "schema"},
-    "results": set(),
+    "results": {"kinds", "schema"},
     "analyses": {
         "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
         "schema",
     },
     "plots": {"kinds", "results", "schema"},
-    "session": {"analyses", "decks", "results", "plots", "_build_info"},
-    "cli": {"analyses", "decks", "results", "plots", "session", "_build_info"},
-    "": {"analyses", "decks", "results", "session"},
+    "running": {"analyses", "tables", "building", "decks", "motions", "results", "plots", "schema", "_build_info"},
+    "cli": {"analyses", "decks", "results", "plots", "running", "_build_info"},
+    "": {"analyses", "decks", "running"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit
 #: analysis, which knows blocks and joints alone

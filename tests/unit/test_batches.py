@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses import batches
-from extrados.analyses.batches import sweep
+from extrados.analyses.batches import Chain, sweep
 from extrados.analyses.context import Context
 from extrados.core import calls
 from extrados.decks.reader import make_deck
@@ -83,6 +83,7 @@ def test_only_missing_batches_run_again(tmp_path: Path, monkeypatch: pytest.Monk
     kept = sorted(folder_of(out).glob("t-*/*.npz"))
     assert len(kept) > 2
     kept[1].write_bytes(b"cut off")
+    begins = [int(path.stem.split("-")[0]) for path in kept]
     ran = []
     real = Squares.run
     monkeypatch.setattr(
@@ -90,7 +91,62 @@ def test_only_missing_batches_run_again(tmp_path: Path, monkeypatch: pytest.Monk
     )
     s = sweep(context(out, resume=True), "t", Squares(), 3000, "squares")
     assert s.complete and np.array_equal(s["value"], np.arange(3000) ** 2)
-    assert ran and min(ran) == int(kept[1].stem) and max(ran) < int(kept[2].stem)
+    assert ran and min(ran) == begins[1] and max(ran) < begins[2]
+
+
+@pytest.mark.parametrize("at", [0, 10, 40, 200, -200, -30, -1])
+def test_a_damaged_batch_is_told_and_computed_again(tmp_path: Path, at: int) -> None:
+    """Wherever a bit flipped: neither taken nor in the way."""
+    out = tmp_path / "run"
+    sweep(context(out), "t", Squares(), 3000, "squares")
+    path = sorted(folder_of(out).glob("t-*/*.npz"))[1]
+    content = bytearray(path.read_bytes())
+    content[at] ^= 4
+    path.write_bytes(bytes(content))
+    again = context(out, resume=True)
+    s = sweep(again, "t", Squares(), 3000, "squares")
+    assert s.complete and np.array_equal(s["value"], np.arange(3000) ** 2)
+    assert len(again.warnings) == 1 and "damaged" in again.warnings[0] and path.stem in again.warnings[0]
+
+
+@pytest.mark.parametrize("threads", [1, 3])
+def test_slow_members_run_side_by_side(tmp_path: Path, threads: int) -> None:
+    out = tmp_path / "run"
+    c = context(out)
+    c.threads = threads
+    n = 20_000
+    s = sweep(c, "t", Squares(stop_at=20), n, "squares", slow=True, parallel=True)
+    assert s.interrupted and 20 < len(s.members) < n and np.array_equal(s["value"], s.members**2)
+    again = context(out, resume=True)
+    again.threads = threads
+    rest = sweep(again, "t", Squares(stop_at=20), n, "squares", slow=True, parallel=True)
+    assert rest.complete and np.array_equal(rest["value"], np.arange(n) ** 2)
+
+
+def test_a_failing_member_stops_the_sweep() -> None:
+    @dataclass(frozen=True)
+    class Fails(Squares):
+        def run(self, first, count, threads):
+            raise RuntimeError(f"member {first}")
+
+    with pytest.raises(RuntimeError, match="member"):
+        sweep(context(), "t", Fails(), 10, "squares", slow=True, parallel=True)
+
+
+def test_a_chain_goes_on_from_its_newest_state(tmp_path: Path) -> None:
+    out = tmp_path / "run"
+    chain = Chain(context(out), "c", Squares())
+    for step in (1, 2, 3):
+        chain.keep(step, {"x": np.array([step])})
+    kept = sorted(folder_of(out).glob("c-*/*.npz"))
+    assert len(kept) == 2
+    assert Chain(context(out, resume=True), "c", Squares()).state[0] == 3
+    kept[-1].write_bytes(kept[-1].read_bytes()[:-3])
+    again = context(out, resume=True)
+    step, state = Chain(again, "c", Squares()).state
+    assert step == 2 and state["x"] == 2 and "damaged" in again.warnings[0]
+    assert Chain(context(out, resume=True), "c", Squares(3)).state is None
+    assert Chain(context(), "c", Squares()).state is None
 
 
 def test_another_job_takes_nothing(tmp_path: Path) -> None:
@@ -203,46 +259,6 @@ class Roots:
                 os.kill(os.getpid(), signal.SIGKILL)
         time.sleep(0.001 * count)  # the batches stay small, so that many are left when something dies
         return {"value": np.sqrt(np.arange(first, first + count))}
-
-
-#: Ends the wait for processes that hang [s]; no measure of how long they may take.
-PATIENCE = 600
-
-
-@pytest.fixture
-def cluster(tmp_path: Path):
-    """A scheduler and two workers on the loopback, as processes of their own."""
-    pytest.importorskip("distributed")
-    file = tmp_path / "scheduler.json"
-    here = str(Path(__file__).parent)
-    environment = {**os.environ, "PYTHONPATH": here + os.pathsep + os.environ.get("PYTHONPATH", "")}
-    environment["DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES"] = "10"
-
-    def start(*words: str) -> subprocess.Popen:
-        return subprocess.Popen(
-            [sys.executable, "-m", "distributed.cli." + words[0], *words[1:]], env=environment, cwd=tmp_path,
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-        )  # fmt: skip
-
-    processes = [
-        start("dask_scheduler", "--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file))
-    ]
-    for _ in range(2):
-        processes.append(
-            start("dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny", "--no-dashboard")
-        )
-    while not file.exists() or not file.read_text().strip():
-        assert processes[0].poll() is None, "the scheduler did not start"
-        time.sleep(0.1)
-    address = json.loads(file.read_text())["address"]
-    from distributed import Client
-
-    with Client(address, timeout=PATIENCE) as client:
-        client.wait_for_workers(2, timeout=PATIENCE)
-    yield address, processes
-    for process in processes:
-        process.kill()
-        process.wait()
 
 
 def test_cluster_gives_the_same_bytes(cluster, tmp_path: Path) -> None:

@@ -114,10 +114,11 @@ def test_overlapping_blocks_are_refused_by_name(monkeypatch: pytest.MonkeyPatch)
         dem_model.checked(dem.run(model.bodies(), dem.Options(1.0)), model)
 
 
-def test_failure_curve_resumes(tmp_path: Path) -> None:
+def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """An interrupted sweep goes on from what it has: the answers kept are not computed again."""
     from extrados.analyses.dem import dem_domain
     from extrados.analyses.dem import model as dem_model
+    from extrados.core import dem
 
     deck = make_deck(
         {
@@ -133,14 +134,14 @@ def test_failure_curve_resumes(tmp_path: Path) -> None:
     options = deck.analyses[0]
     first = Context(deck, out=tmp_path / "run")
     model = dem_model.make_model(first, options)
-    sweep = dem_domain.Sweep(first, options, model, [model.values])
-    sweep.fails([(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)], lambda n: None)
-    again = dem_domain.Sweep(Context(deck, out=tmp_path / "run", resume=True), options, model, [model.values])
-    assert again.answers == sweep.answers and len(again.answers) == 2
-    assert (again.steps, again.residual) == (sweep.steps, sweep.residual) and sweep.steps > 0 < sweep.residual
-    again.fails([(0, 0.6 * 9.80665, 0.2)], lambda n: pytest.fail("was computed again"))
-    fresh = dem_domain.Sweep(Context(deck, out=tmp_path / "run"), options, model, [model.values])
-    assert not fresh.answers
+    asked = [(0, 0.6 * 9.80665, 0.2), (0, 0.6 * 9.80665, 0.8)]
+    search = dem_domain.Search(first, options, model, [model.values], 4)
+    answers = search.fails(asked)
+    with monkeypatch.context() as patch:
+        patch.setattr(dem, "run", lambda *args, **keys: pytest.fail("was computed again"))
+        again = dem_domain.Search(Context(deck, out=tmp_path / "run", resume=True), options, model, [model.values], 4)
+        assert again.fails(asked) == answers
+        assert (again.steps, again.residual) == (search.steps, search.residual) and search.steps > 0 < search.residual
     (found,) = run_analyses(Context(deck, threads=2, out=tmp_path / "run"))
     assert found.status == "ok" and 0.2 < found["shortest_durations_s"][0] <= 0.8
 

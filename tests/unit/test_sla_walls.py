@@ -13,7 +13,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.store import read
-from extrados.session import run_deck as run_to_folder
+from extrados.running.run import run_to
 
 
 def write_mesh(path, clockwise: bool = False, extra=()):
@@ -120,7 +120,8 @@ def test_strength_field_has_its_mean_and_scatter() -> None:
 def test_results_fields_and_figures(tmp_path) -> None:
     """A run as a user makes it: CSV, VTU in a PVD series, figures, report; and going on from it."""
     data = wall(events=90, directions=["+", "-"], states=[20], section_x=[0.5])
-    out, (result,) = run_to_folder(Context(make_deck(data)), tmp_path / "run")
+    run = run_to(Context(make_deck(data)), tmp_path / "run")
+    out, result = run.folder, run.results[0]
     stored = read(out)
     assert stored["sla"]["events"] == 90
     lines = (out / "load_displacement.csv").read_text().splitlines()
@@ -146,7 +147,8 @@ def test_results_fields_and_figures(tmp_path) -> None:
 
 def test_a_run_to_minus_alone_is_read_back(tmp_path) -> None:
     """The only curve has the plain names, whatever its sense, and can be gone on from."""
-    out, (result,) = run_to_folder(Context(make_deck(wall(events=30, directions=["-"]))), tmp_path / "run")
+    run = run_to(Context(make_deck(wall(events=30, directions=["-"]))), tmp_path / "run")
+    out, result = run.folder, run.results[0]
     assert (result.results["sense"], "minus" in result.results) == ("-", False)
     assert len((out / "load_displacement.csv").read_text().splitlines()) == 31
     assert (out / "figures" / "sla-curve.png").exists() or (out / "figures" / "sla-curve.svg").exists()
@@ -155,7 +157,8 @@ def test_a_run_to_minus_alone_is_read_back(tmp_path) -> None:
 
 
 def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
-    out, (result,) = run_to_folder(Context(make_deck(wall(events=5))), tmp_path / "run")
+    run = run_to(Context(make_deck(wall(events=5))), tmp_path / "run")
+    out, result = run.folder, run.results[0]
     finer = run_deck(wall(0.1, events=5, resume_from=str(out)))
     sizes = f"that wall has {len(result['point_xy'])} points"
     assert (finer.status, sizes in finer.reason) == ("refused", True)
@@ -167,7 +170,8 @@ def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
 def test_a_wall_that_cannot_crack(tmp_path) -> None:
     data = wall(section_x=[0.5])
     del data["material"]["tensile_strength"], data["material"]["fracture_energy"]
-    _, (result,) = run_to_folder(Context(make_deck(data)), tmp_path / "run")
+    run = run_to(Context(make_deck(data)), tmp_path / "run")
+    result = run.results[0]
     assert result.status == "ok", result.reason
     assert result.answer.startswith("The load is not limited")
 

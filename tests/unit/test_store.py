@@ -10,11 +10,18 @@ import pytest
 
 from extrados.results import store
 from extrados.results.model import Array, Result, TableData
+from extrados.results.statistics import RockingSpectrum
 
 
 def sample() -> Result:
-    result = Result("tilt", answer="words")
-    result.results = {"a_g": np.float64(0.37), "list": np.arange(3), "none": float("nan")}
+    result = Result("rocking-spectrum", answer="words")
+    result.results = RockingSpectrum(
+        family=["alpha 10 deg"],
+        overturned=np.array([3]),
+        longest_overturning_period_s=[float("nan")],
+        size_m=np.arange(3.0),
+        peak_ground_acceleration_g=np.float64(0.37),
+    )
     result.arrays = {
         "time": Array(np.linspace(0, 1, 5), ("time",), "s"),
         "x": Array(np.random.default_rng(7).normal(size=(5, 3)), ("time", "joint"), "m", "about x"),
@@ -33,13 +40,22 @@ def test_round_trip(tmp_path) -> None:
     with store.new_folder(out) as folder:
         store.write(folder, HEAD, [sample(), sample()])
     run = store.read(out)
-    assert run["tilt"]["a_g"] == 0.37 and run["tilt"]["none"] is None and run["tilt-2"]["list"] == [0, 1, 2]
-    assert np.array_equal(run.array("tilt", "x"), sample().arrays["x"].data)
-    assert run.arrays["tilt"]["x"].dims == ("time", "joint") and run.arrays["tilt"]["x"].unit == "m"
+    assert (
+        run["rocking-spectrum"]["peak_ground_acceleration_g"]
+        == run["rocking-spectrum"].peak_ground_acceleration_g
+        == 0.37
+    )
+    assert run["rocking-spectrum-2"].longest_overturning_period_s == [None]
+    assert run["rocking-spectrum-2"].size_m == [0.0, 1.0, 2.0]
+    assert np.array_equal(run.array("rocking-spectrum", "x"), sample().arrays["x"].data)
+    assert (
+        run.arrays["rocking-spectrum"]["x"].dims == ("time", "joint")
+        and run.arrays["rocking-spectrum"]["x"].unit == "m"
+    )
     rows = (out / "tilt.csv").read_text().splitlines()
     assert rows[0] == "t [s],w" and rows[1] == "1e-308,'=1+1" and float(rows[2].split(",")[0]) == 0.1 + 0.2
     assert (out / "tilt-2.csv").exists()
-    assert (out / "fields" / "a.vtu").exists() and (out / "tilt-2" / "fields" / "a.vtu").exists()
+    assert (out / "fields" / "a.vtu").exists() and (out / "rocking-spectrum-2" / "fields" / "a.vtu").exists()
 
 
 def test_opens_in_xarray(tmp_path) -> None:
@@ -47,9 +63,9 @@ def test_opens_in_xarray(tmp_path) -> None:
     out = tmp_path / "run"
     with store.new_folder(out) as folder:
         store.write(folder, HEAD, [sample()])
-    data = xarray.open_dataset(out / "results.h5", group="tilt", engine="h5netcdf", phony_dims="sort")
+    data = xarray.open_dataset(out / "results.h5", group="rocking-spectrum", engine="h5netcdf", phony_dims="sort")
     assert data["x"].dims == ("time", "joint") and data["x"].attrs["units"] == "m"
-    assert store.read(out).dataset("tilt")["x"].shape == (5, 3)
+    assert store.read(out).dataset("rocking-spectrum")["x"].shape == (5, 3)
 
 
 def test_old_folder_survives_a_failure(tmp_path) -> None:

@@ -1,13 +1,18 @@
-"""The one layer under every large sweep: batches of about a second, progress, Ctrl-C, checkpoint, cluster.
+"""The one layer under everything that takes long: batches of about a second, progress, Ctrl-C, checkpoint, cluster.
 
-A job is a picklable object with `run(first, count, threads) -> {name: array}` whose arrays have one row for
-each of its members first .. first + count - 1. The rows of a member must not depend on how the members are
-cut into batches: then neither threads nor workers nor resuming change a bit of the result.
+`sweep` runs independent members. A job is a picklable object with `run(first, count, threads) -> {name: array}`
+whose arrays have one row for each of its members first .. first + count - 1. The rows of a member must not depend
+on how the members are cut into batches: then neither threads nor workers nor resuming change a bit of the result.
+A search, whose next question depends on the answers so far, is one sweep for each round of questions.
+
+`Chain` keeps the state of a computation whose steps follow from one another.
 """
 
 import time
 from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -24,6 +29,14 @@ CONNECT_SECONDS = 10.0
 
 class Job(Protocol):
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]: ...
+
+
+class Unfinished(Exception):
+    """Some members of a sweep are missing; the text says why. `interrupted`: the user asked for it."""
+
+    def __init__(self, why: str, interrupted: bool):
+        super().__init__(why)
+        self.interrupted = interrupted
 
 
 @dataclass(frozen=True)
@@ -43,20 +56,33 @@ class Swept:
     def __getitem__(self, name: str) -> np.ndarray:
         return self.arrays[name]
 
+    def whole(self) -> "Swept":
+        """Itself; Unfinished where members are missing."""
+        if not self.complete:
+            raise Unfinished(self.stopped, self.interrupted)
+        return self
+
+
+def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int) -> dict[str, np.ndarray]:
+    """The rows of a batch from those of single members: for jobs whose members take long."""
+    found = [rows(k) for k in range(first, first + count)]
+    return {name: np.stack([one[name] for one in found]) for name in found[0]}
+
 
 class _Batches:
     """Finished rows, wherever they come from, and what is still to do."""
 
-    def __init__(self, context: Context, name: str, job: Job, count: int, text: str):
-        self.context, self.count, self.text = context, count, text
+    def __init__(self, context: Context, name: str, job: Job, count: int, tell: Callable[[int], None]):
+        self.context, self.count, self.tell = context, count, tell
         self.parts: dict[int, dict[str, np.ndarray]] = {}
         self.name = ""
         self.again = "; --resume goes on from here" if context.checkpoint is not None else ""
         if context.checkpoint is not None:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
-            for first, arrays in context.checkpoint.load(self.name):
+            for first, arrays in context.checkpoint.load(self.name, context.warnings):
                 self.parts[first] = arrays
         self.done = sum(_rows(p) for p in self.parts.values())
+        tell(self.done)
 
     def missing(self) -> list[tuple[int, int]]:
         """Ranges (first, end) without rows."""
@@ -72,7 +98,7 @@ class _Batches:
         self.done += _rows(arrays)
         if self.name:
             self.context.checkpoint.keep(self.name, first, arrays)
-        self.context.progress(self.done, self.count, self.text)
+        self.tell(self.done)
 
     def swept(self, stopped: str = "", interrupted: bool = False) -> Swept:
         order = sorted(self.parts)
@@ -89,51 +115,99 @@ def _rows(arrays: dict[str, np.ndarray]) -> int:
 class _Pace:
     """Batch sizes that take about a second."""
 
-    def __init__(self) -> None:
-        self.size = FIRST_BATCH
+    def __init__(self, size: int = FIRST_BATCH) -> None:
+        self.size = size
 
     def learn(self, count: int, seconds: float) -> None:
         ideal = count * BATCH_SECONDS / max(seconds, 1e-6)
         self.size = int(min(max(1.0, ideal), 8.0 * self.size, LARGEST_BATCH))
 
 
-def sweep(context: Context, name: str, job: Job, count: int, text: str) -> Swept:
-    """Run all `count` members of the job here, or on the scheduler of the context; see Swept for what may be missing."""
+def sweep(
+    context: Context,
+    name: str,
+    job: Job,
+    count: int,
+    text: str,
+    *,
+    slow: bool = False,
+    parallel: bool = False,
+    tell: Callable[[int], None] | None = None,
+) -> Swept:
+    """Run all `count` members of the job here, or on the scheduler of the context; see Swept for what may be missing.
+
+    slow: a member may take seconds, batches begin with one. parallel: each thread runs a batch of its own, for slow
+    members that the core computes; else one batch after the other has all threads. tell: is given the number of
+    finished members instead of the context's progress, where the sweep is one round of a search.
+    """
     if count < 1:
         raise ValueError(f"a sweep needs at least one member, got {count}")
     with interruptible():
-        batches = _Batches(context, name, job, count, text)
-        context.progress(batches.done, count, text)
+        batches = _Batches(context, name, job, count, tell or (lambda done: context.progress(done, count, text)))
+        if batches.done == count:
+            return batches.swept()
+        pace = _Pace(1 if slow else FIRST_BATCH)
         if context.scheduler:
-            return _on_cluster(context, batches, job)
-        pace = _Pace()
-        for first, end in batches.missing():
-            while first < end:
-                if cancel_requested():
-                    return _interrupted(batches)
-                size = min(pace.size, end - first)
-                begin = time.perf_counter()
+            return _on_cluster(context, batches, job, pace)
+        return (_in_threads if parallel else _in_turn)(context, batches, job, pace)
+
+
+def _in_turn(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:
+    """One batch after the other, each on all threads."""
+    for first, count in _pieces(batches.missing(), lambda: pace.size):
+        if cancel_requested():
+            return _interrupted(batches)
+        try:
+            rows, seconds = _timed(job, first, count, context.threads)
+        except Cancelled:
+            return _interrupted(batches)
+        pace.learn(count, seconds)
+        batches.add(first, rows)
+    return batches.swept()
+
+
+def _in_threads(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:
+    """A batch for each thread at a time, kept as they come; few members have several threads each."""
+    todo = _pieces(batches.missing(), lambda: pace.size)
+    threads = max(1, context.threads)
+    each = max(1, threads // (batches.count - batches.done))
+    upcoming = next(todo, None)
+    pending: dict[Future, int] = {}
+    stopped = False
+    pool = ThreadPoolExecutor(threads)
+    try:
+        while pending or (upcoming is not None and not stopped):
+            while upcoming is not None and len(pending) < threads and not stopped:
+                pending[pool.submit(_timed, job, *upcoming, each)] = upcoming[0]
+                upcoming = next(todo, None)
+            finished, _ = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
+            for future in finished:
+                first = pending.pop(future)
                 try:
-                    rows = job.run(first, size, context.threads)
+                    rows, seconds = future.result()
                 except Cancelled:
-                    return _interrupted(batches)
-                pace.learn(size, time.perf_counter() - begin)
+                    stopped = True
+                    continue
+                pace.learn(_rows(rows), seconds)
                 batches.add(first, rows)
-                first += size
-        return batches.swept()
+            stopped = stopped or cancel_requested()
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return batches.swept() if batches.done == batches.count else _interrupted(batches)
 
 
 def _interrupted(batches: _Batches) -> Swept:
     return batches.swept(f"interrupted after {batches.done} of {batches.count}{batches.again}", True)
 
 
-def _run_on_worker(job: Job, first: int, count: int) -> tuple[dict[str, np.ndarray], float]:
+def _timed(job: Job, first: int, count: int, threads: int) -> tuple[dict[str, np.ndarray], float]:
+    """Rows of a batch and the seconds it took."""
     begin = time.perf_counter()
-    rows = job.run(first, count, 1)
+    rows = job.run(first, count, threads)
     return rows, time.perf_counter() - begin
 
 
-def _on_cluster(context: Context, batches: _Batches, job: Job) -> Swept:
+def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:
     """The same on a dask.distributed scheduler: lost workers' batches run again elsewhere."""
     try:
         from distributed import Client
@@ -147,16 +221,15 @@ def _on_cluster(context: Context, batches: _Batches, job: Job) -> Swept:
     except (OSError, ValueError, TimeoutError) as error:
         raise Refused(f"no dask scheduler answers at {address}: {error}") from None
     try:
-        return _collect(context, batches, job, client, address)
+        return _collect(batches, job, pace, client, address)
     except OSError:  # what distributed raises where the connection breaks within a call
         return _lost(batches, address)
     finally:
         client.close(timeout=1.0)
 
 
-def _collect(context: Context, batches: _Batches, job: Job, client: Any, address: str) -> Swept:
+def _collect(batches: _Batches, job: Job, pace: _Pace, client: Any, address: str) -> Swept:
     """Two batches for each worker are out at any time; finished ones are kept as they come."""
-    pace = _Pace()
     pending: dict[Any, int] = {}
     todo = _pieces(batches.missing(), lambda: pace.size)
     upcoming = next(todo, None)
@@ -166,7 +239,7 @@ def _collect(context: Context, batches: _Batches, job: Job, client: Any, address
         workers = max(1, sum(client.nthreads().values())) if client.status == "running" else 1
         while upcoming is not None and len(pending) < 2 * workers:
             first, count = upcoming
-            pending[client.submit(_run_on_worker, job, first, count, pure=False, retries=5)] = first
+            pending[client.submit(_timed, job, first, count, 1, pure=False, retries=5)] = first
             upcoming = next(todo, None)
         ready = [future for future in pending if future.done()]
         if not ready:
@@ -197,3 +270,34 @@ def _pieces(gaps: list[tuple[int, int]], size: Callable[[], int]) -> Iterator[tu
             count = min(size(), end - first)
             yield first, count
             first += count
+
+
+class Chain:
+    """The state of a computation whose steps follow from one another, kept now and then.
+
+    `state` is the newest one that an interrupted run kept, with the number of its step; None begins anew. What the
+    steps compute, `job`, names it as that of a sweep does.
+    """
+
+    def __init__(self, context: Context, name: str, job: Any):
+        self._checkpoint = context.checkpoint
+        self._name = f"{name}-{fingerprint(job)[:16]}"
+        self._kept: list[Path] = []
+        self.state: tuple[int, dict[str, np.ndarray]] | None = None
+        if self._checkpoint is not None:
+            for found in self._checkpoint.load(self._name, context.warnings):
+                self.state = found
+
+    @property
+    def again(self) -> str:
+        """What to say to the user whose run was stopped."""
+        return "; --resume goes on from here" if self._checkpoint is not None else ""
+
+    def keep(self, step: int, state: dict[str, np.ndarray]) -> None:
+        """Keep the state after a step; of those before, one stays in case this one is damaged."""
+        if self._checkpoint is None:
+            return
+        self._kept.append(self._checkpoint.keep(self._name, step, state))
+        for old in self._kept[:-2]:
+            old.unlink(missing_ok=True)
+        del self._kept[:-2]

@@ -22,7 +22,8 @@ class Refused(Exception):
 class Context:
     """What every driver is given. `progress(done, total, text)` may be called often; `out` is the results
     folder of the run, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
-    dask.distributed scheduler for sweeps. `building` is the deck's, as the running analysis sees it."""
+    dask.distributed scheduler for sweeps. `building` is the deck's, as the running analysis sees it. `motions` keeps
+    what was made of motion tables."""
 
     deck: Deck
     threads: int = 1
@@ -32,6 +33,7 @@ class Context:
     scheduler: str = ""
     warnings: list[str] = field(default_factory=list)
     building: Building = None  # type: ignore[assignment]
+    motions: dict[str, Motion] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.building is None:
@@ -45,10 +47,14 @@ class Context:
     @cached_property
     def motion(self) -> Motion:
         """The motion of the deck; Refused where its file is wrong."""
-        try:
-            return make_motion(self.deck.motion, self.deck.folder)
-        except RecordError as error:
-            raise Refused(str(error)) from None
+        model = self.deck.motion
+        known = f"{model.model_dump_json()} {self.deck.folder}"
+        if known not in self.motions:
+            try:
+                self.motions[known] = make_motion(model, self.deck.folder)
+            except RecordError as error:
+                raise Refused(str(error)) from None
+        return self.motions[known]
 
 
 def default_threads() -> int:

@@ -4,41 +4,61 @@ import time
 import traceback
 
 from extrados import kinds
+from extrados.analyses.batches import Unfinished
+from extrados.analyses.conclude import concluded
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.table import Analysis
+from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.core.errors import Cancelled, CoreError
 from extrados.limit.solver import NoAnswer
 from extrados.results.model import Result
+from extrados.results.typed import shapes
+from extrados.results.verdict import KindResults
+
+
+def _check(result: Result) -> None:
+    """TypeError where a driver gives other results than its kind has."""
+    bare = type(result.results) is KindResults
+    if not isinstance(result.results, shapes(result.kind)) and (result.status == "ok" or not bare):
+        expected = " or ".join(model.__name__ for model in shapes(result.kind))
+        raise TypeError(f"the driver of {result.kind} gives {type(result.results).__name__}, expected {expected}")
 
 
 def run_analyses(context: Context) -> list[Result]:
     """All analyses of the deck in order; after Ctrl-C the rest is marked interrupted."""
     results: list[Result] = []
-    stopped = False
     for options, building in zip(context.deck.analyses, context.deck.buildings, strict=True):
-        if stopped:
+        if results and results[-1].status == "interrupted":
             results.append(Result(options.kind, "interrupted", "not run: interrupted before"))
-            continue
-        begin = time.perf_counter()
-        try:
-            context.warnings, context.building = [], building
-            result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
-            result.warnings = [*context.warnings, *result.warnings]
-        except (Refused, BadGeometry) as error:
-            result = Result(options.kind, "refused", str(error))
-        except (Cancelled, KeyboardInterrupt):
-            result = Result(options.kind, "interrupted", "interrupted before it had a result")
-        except MemoryError as error:
-            result = Result(options.kind, "failed", str(error) or "not enough memory")
-        except (CoreError, NoAnswer) as error:
-            result = Result(options.kind, "failed", str(error))
-        except Exception as error:  # a fault of ours: the other analyses of the deck still count
-            name = f"internal-error-{options.kind}.txt"
-            result = Result(
-                options.kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}"
-            )
-            result.files[name] = traceback.format_exc().encode()
-        result.seconds = time.perf_counter() - begin
-        stopped = result.status == "interrupted"
-        results.append(result)
+        else:
+            results.append(concluded(run_one(context, options, building), options, context, building))
     return results
+
+
+def run_one(context: Context, options: Analysis, building: Building) -> Result:
+    """One analysis of a building, without its verdict; what it refuses and what fails is told in its result."""
+    begin = time.perf_counter()
+    try:
+        context.warnings, context.building = [], building
+        result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
+        _check(result)
+        result.warnings = [*context.warnings, *result.warnings]
+    except (Refused, BadGeometry) as error:
+        result = Result(options.kind, "refused", str(error))
+    except Unfinished as error:
+        result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))
+    except (Cancelled, KeyboardInterrupt):
+        result = Result(options.kind, "interrupted", "interrupted before it had a result")
+    except MemoryError as error:
+        result = Result(options.kind, "failed", str(error) or "not enough memory")
+    except (CoreError, NoAnswer) as error:
+        result = Result(options.kind, "failed", str(error))
+    except Exception as error:  # a fault of ours: the other analyses of the deck still count
+        name = f"internal-error-{options.kind}.txt"
+        result = Result(
+            options.kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}"
+        )
+        result.files[name] = traceback.format_exc().encode()
+    result.seconds = time.perf_counter() - begin
+    return result

@@ -18,13 +18,14 @@ class Analysis(Table):
 
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. uses: properties of the building that its answer rests on, which every
-    answer tells. starter_motion: the motion kind of the deck that `new` writes.
+    answer tells; method: what the method itself fixes of them, whatever the deck says. starter_motion: the motion kind of the deck that `new` writes.
     """
 
     kind: str
     view: ClassVar[str] = ""
     structures: ClassVar[tuple[str, ...] | None] = None
     uses: ClassVar[tuple[str, ...]] = ()
+    method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
     starter_motion: ClassVar[str] = "step-pulse"
 

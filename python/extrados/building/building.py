@@ -46,9 +46,17 @@ class Building:
     folder: Path = field(default_factory=Path.cwd)
     _views: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
 
+    def __getstate__(self) -> dict[str, Any]:
+        """Pickled without its views, which are made again where it arrives."""
+        return {**self.__dict__, "_views": {}}
+
     def having(self, **tables: Table) -> "Building":
         """The same building with other tables: structure, material, joints, supports, initial."""
         return replace(self, **tables)
+
+    def apart(self) -> "Building":
+        """The same building that keeps its views for itself: one of many in a sweep, whose views nobody asks for again."""
+        return replace(self, _views={})
 
     def blocks(self) -> Assembly:
         """Stones and joints."""

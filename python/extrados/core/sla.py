@@ -345,6 +345,20 @@ class Model(Owner):
         check(status, "stored damage")
         self.factorise()
 
+    def standing(self) -> np.ndarray:
+        """Where the loop stands between two calls of `run`, beside loads and damage."""
+        values, status = _core.api_sla.standing(self.handle)
+        check(status, "where the events stand")
+        return np.array(values)
+
+    def renew(self, damage: npt.ArrayLike, standing: npt.ArrayLike) -> None:
+        """Go on from a damage and where the loop stood, under the loads of the stage, with a new factor.
+
+        Whoever goes on from the same two gets the same bits, after whatever history. Raises FreeNode.
+        """
+        self.set_damage(damage)
+        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (27,))), "stored events")
+
 
 def _each(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
     """One value for all elements, or one for each."""

@@ -31,11 +31,11 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ground, rotation, energy, friction = axes
         ground.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
         for sign in (1, -1):
-            ground.axhline(sign * r["uplift_acceleration_g"], color=style.EDGE, linestyle="--", linewidth=0.7)
+            ground.axhline(sign * r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.7)
         ground.set_ylabel("ground [g]")
         rotation.plot(t, 1e3 * run.array(name, "rotation"), color=style.THRUST)
         for sign in (1, -1):
-            rotation.axhline(1e3 * sign * r["critical_rotation_rad"], color=style.EDGE, linestyle=":", linewidth=0.8)
+            rotation.axhline(1e3 * sign * r.critical_rotation_rad, color=style.EDGE, linestyle=":", linewidth=0.8)
         limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=1e-9)
         rotation.set_ylim(-limit, limit)
         rotation.plot(
@@ -63,7 +63,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found.append(
             (
                 style.save(fig, folder, f"{name}-history"),
-                f"Ground motion, rotation of {r.get('rotation_of', 'link AB')} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
+                f"Ground motion, rotation of {r.rotation_of} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
             )
         )
     moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
@@ -145,14 +145,14 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         mark = "o" if len(d) == 1 else ""
         ax.plot(d, run.array(name, "mode_I")[order], f"k-{mark}", label="Mode I (governs)")
         ax.plot(d, run.array(name, "mode_II")[order], f"k--{mark}", label="Mode II")
-        ax.axhline(r["uplift_acceleration_g"], color=style.EDGE, linewidth=0.8, linestyle=":")
+        ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linewidth=0.8, linestyle=":")
         for code, text in enumerate(
             ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
         ):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
         ax.set_xlabel(
             {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(
-                r["pulse"], "period T_p [s]"
+                r.pulse, "period T_p [s]"
             )
         )
         ax.set_ylabel("amplitude [g]")
@@ -160,7 +160,7 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         ax.set_xlim(*((d[0], d[-1]) if len(d) > 1 else (0.5 * d[0], 1.5 * d[0])))
         ax.legend(loc="upper right", frameon=True)
         ax.grid(False)
-        title = f"Failure domain of {r['pulse']} pulses"
+        title = f"Failure domain of {r.pulse} pulses"
         ax.set_title(title)
         return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest failing amplitudes.")]
 
@@ -168,10 +168,10 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
 def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Impulses against the failure curve (Fig. 5-15) and the fitted impulses on the record (Fig. 5-10)."""
     r = run[name]
-    gamma = r["uplift_acceleration_g"]
+    gamma = r.uplift_acceleration_g
     with style.figure(8.5, 4.0, columns=2, width_ratios=[1.1, 1]) as (fig, (curve, record)):
         period = run.array(name, "period")
-        curve.plot(period, run.array(name, "failing_amplitude"), "k-", label=f"Eq. 5.8, {r['coefficients_source']}")
+        curve.plot(period, run.array(name, "failing_amplitude"), "k-", label=f"Eq. 5.8, {r.coefficients_source}")
         curve.plot(
             period,
             run.array(name, "failing_amplitude_own"),
@@ -188,27 +188,27 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
             label="computed Mode I points",
         )
         curve.axhline(gamma, linestyle=":", color=style.EDGE, linewidth=0.8)
-        for k, i in enumerate(r["impulses"]):
-            color = style.THRUST if i["verdict"] == "fails" else style.SAFE
+        for k, i in enumerate(r.impulses):
+            color = style.THRUST if i.verdict == "fails" else style.SAFE
             curve.plot(
-                i["period_s"],
-                abs(i["amplitude_g"]),
+                i.period_s,
+                abs(i.amplitude_g),
                 "o" if k == 0 else "s",
                 color=color,
                 markersize=7 if k == 0 else 5,
             )
             curve.annotate(
-                str(i["rank"]),
-                (i["period_s"], abs(i["amplitude_g"])),
+                str(i.rank),
+                (i.period_s, abs(i.amplitude_g)),
                 textcoords="offset points",
                 xytext=(6, 4),
             )
-        top = max([3.0 * gamma, *(1.3 * abs(i["amplitude_g"]) for i in r["impulses"])])
+        top = max([3.0 * gamma, *(1.3 * abs(i.amplitude_g) for i in r.impulses)])
         curve.set_ylim(0.0, top)
         curve.set_xlim(0.0, period[-1])
         curve.set_xlabel("period of the impulse T_p [s]")
         curve.set_ylabel("amplitude A_p [g]")
-        curve.set_title(f"Verdict: the arch {r['verdict']}")
+        curve.set_title(f"Verdict: the arch {r.verdict}")
         curve.legend(loc="upper right")
         t = run.array(name, "time")
         record.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.6)
@@ -228,8 +228,8 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
                 linewidth=1.6 if k == 0 else 1.0,
             )
             record.annotate(str(k + 1), (start + 0.25 * length, amplitude / GRAVITY), fontsize=8)
-        if len(r["impulses"]):
-            ends = [(i["start_s"], i["start_s"] + i["period_s"]) for i in r["impulses"]]
+        if len(r.impulses):
+            ends = [(i.start_s, i.start_s + i.period_s) for i in r.impulses]
             record.set_xlim(max(0.0, min(e[0] for e in ends) - 2.0), min(t[-1], max(e[1] for e in ends) + 3.0))
         record.set_xlabel("time [s]")
         record.set_ylabel("ground acceleration [g]")

@@ -10,6 +10,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from extrados.plots import style
 from extrados.plots.arch import moved, outlines
+from extrados.results.dem import DemRun
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -108,7 +109,7 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         figures += [_histories(run, name, folder), _energies(run, name, folder)]
         if run.array(name, "hinge").shape[1] > 1:
             figures.append(_hinge_map(run, name, folder))
-        if "sensitivity" in run[name]:
+        if run[name].sensitivity:
             figures.append(_sensitivity(run, name, folder))
     _animation(run, name, folder)
     return figures
@@ -142,7 +143,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     time, rotation = run.array(name, "time"), run.array(name, "rotation")
     tracked = run.array(name, "tracked")
     most = tracked[np.argsort(-np.abs(rotation[:, tracked]).max(axis=0), kind="stable")[:SHOWN]]
-    names = list(run[name]["peak_rotation_rad"])
+    names = list(run[name].peak_rotation_rad)
     label = dict(zip(tracked.tolist(), names, strict=True))
     rigid = next((a for a in run.analyses if a["kind"] == "rocking" and "rotation" in run.arrays[a["name"]]), None)
     with style.figure(8.0, 5.4, rows=2, sharex=True, height_ratios=[3, 1]) as (fig, (top, low)):
@@ -187,7 +188,7 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         low.legend(loc="best", ncols=2)
         saved = style.save(fig, folder, f"{name}-energy")
     return saved, (
-        f"Kinetic energy, and the whole ledger; it closes to {100 * run[name]['energy_residual_ratio']:.2g} % of the energy that went round."
+        f"Kinetic energy, and the whole ledger; it closes to {100 * run[name].energy_residual_ratio:.2g} % of the energy that went round."
     )
 
 
@@ -209,18 +210,19 @@ def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    rows = run[name]["sensitivity"]
-    kinds = list(dict.fromkeys(row["varied"] for row in rows))
+    rows = run[name].sensitivity
+    kinds = list(dict.fromkeys(row.varied for row in rows))
+    times, turns = (run.series(name, what) for what in ("varied_time", "varied_rotation"))
     time, rotation = run.array(name, "time"), run.array(name, "rotation")
     follow = int(run.array(name, "tracked")[0])
     with style.figure(8.0, 2.6 * len(kinds) + 0.4, rows=len(kinds), sharex=True) as (fig, axes):
         for ax, kind in zip(axes, kinds, strict=True):
             ax.plot(time, 1e3 * rotation[:, follow], color="black", linewidth=1.8, label="as given")
             for k, row in enumerate(rows):
-                if row["varied"] == kind:
+                if row.varied == kind:
                     ax.plot(
-                        run.array(name, f"varied_time_{k}"), 1e3 * run.array(name, f"varied_rotation_{k}"),
-                        label=f"{'' if kind == 'friction' else 'x '}{row['value']:g} ({row['outcome']})", linewidth=0.9,
+                        times[k].data, 1e3 * turns[k].data,
+                        label=f"{'' if kind == 'friction' else 'x '}{row.value:g} ({row.outcome})", linewidth=0.9,
                     )  # fmt: skip
             ax.set_title(kind)
             ax.set_ylabel("rotation [mrad]")
@@ -247,7 +249,7 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                     color="black",
                     label=f"four hinges, {mode.replace('_', ' ')}",
                 )
-        ax.set_xlabel("t_p [s]" if run[name]["pulse"] == "step" else "T_p [s]")
+        ax.set_xlabel("t_p [s]" if run[name].pulse == "step" else "T_p [s]")
         ax.set_ylabel("amplitude [g]")
         ax.set_xlim(left=0.0)
         ax.legend()
@@ -257,7 +259,7 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Damping over frequency, with the impact frequencies of the joints (thesis Figs 7-4, 7-12)."""
-    beta = run[name]["beta_s"]
+    beta = run[name].beta_s
     with style.figure(6.5, 4.0) as (fig, (ax,)):
         lowest = min(run.array(name, f"{k}_frequency").min() for k in ("rotation", "corner", "edge"))
         highest = max(run.array(name, f"{k}_frequency").max() for k in ("rotation", "corner", "edge"))
@@ -278,7 +280,7 @@ def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str
 
 def _animation(run: Stored, name: str, folder: Path) -> None:
     """figures/NAME.gif or .mp4, in real time, where the deck asks for one."""
-    kind = run[name].get("animation", "none")
+    kind = run[name].animation if isinstance(run[name], DemRun) else "none"
     if kind == "none":
         return
     from matplotlib.animation import FFMpegWriter, PillowWriter

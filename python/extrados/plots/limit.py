@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 
 from extrados.plots import style
+from extrados.results.limit import Hinge, Tilt
 from extrados.results.store import Stored
 
 HATCH = "#cfc6b2"
@@ -108,9 +109,9 @@ def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] 
     ax.legend(loc="best")
 
 
-def hinge_marks(ax: Axes, hinges: list[dict]) -> None:
+def hinge_marks(ax: Axes, hinges: list[Hinge]) -> None:
     """Hinges as circles with letters."""
-    points = np.array([[h["x_m"], h["y_m"]] for h in hinges]).reshape(-1, 2)
+    points = np.array([[h.x_m, h.y_m] for h in hinges]).reshape(-1, 2)
     if len(points) > 26:
         ax.plot(*points.T, ".", color=style.HINGE, markersize=2.0, zorder=5)
         return
@@ -118,7 +119,7 @@ def hinge_marks(ax: Axes, hinges: list[dict]) -> None:
 
 
 def _standing(run: Stored, name: str) -> list[int]:
-    return [r["joint"] for r in run[name].get("reactions", [])]
+    return [reaction.joint for reaction in run[name].reactions]
 
 
 def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -141,11 +142,9 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2)
         else:
             axes[0].plot(*run.array(name, "collapse_point").T, ".", color=style.THRUST, markersize=3, zorder=3)
-        hinge_marks(axes[0], r["hinges"])
+        hinge_marks(axes[0], r.hinges)
         overall_dimensions(axes[0], blocks)
-        axes[0].set_title(
-            f"Collapse at {r['collapse_acceleration_g']:.4f} g to +x (tilt {r['tilt_angle_deg']:.2f} deg)"
-        )
+        axes[0].set_title(f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)")
         stone(axes[1], blocks, ghost=True)
         stone(axes[1], carried(blocks, centroid, run.array(name, "mechanism_pose")))
         axes[1].set_title("Mechanism (finite rotations)")
@@ -160,15 +159,15 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             stone(ax, blocks)
             ground(ax, run, name, _standing(run, name))
             thrust_lines(
-                ax, paths(run, name, "least_line"), style.THRUST, f"least thrust {_per_metre(r, 'thrust_min_N')}"
+                ax, paths(run, name, "least_line"), style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}"
             )
             thrust_lines(
-                ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, 'thrust_max_N')}"
+                ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}"
             )
             ax.legend(loc="lower center")
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
-            first = next(iter(r["thrusts"]))
+            first = next(iter(r.thrusts))
             polygon(forces, {
                 f"least, {first}": paths(run, name, "least_polygon")[first],
                 f"greatest, {first}": paths(run, name, "most_polygon")[first],
@@ -180,20 +179,20 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                     "Thrust lines of least and greatest horizontal thrust under self-weight, and their force polygons.",
                 )
             )
-    if r.get("fracture", {}).get("cracks"):
+    if r.fracture and r.fracture.cracks:
         found.append(_draw_fracture(run, name, folder, blocks, centroid, height))
     return found
 
 
-def _per_metre(r: dict, key: str) -> str:
-    return f"{r[key] / r['depth_m'] / 1e3:.4g} kN/m"
+def _per_metre(r: Tilt, force: float) -> str:
+    return f"{force / r.depth_m / 1e3:.4g} kN/m"
 
 
-def _caption(r: dict) -> str:
-    letters = "; ".join(f"{chr(65 + i)} {h['side']} of {h['name']}" for i, h in enumerate(r["hinges"][:26]))
+def _caption(r: Tilt) -> str:
+    letters = "; ".join(f"{chr(65 + i)} {h.side} of {h.name}" for i, h in enumerate(r.hinges[:26]))
     free = (
         " Where the line is not fixed by the mechanism its most central course is drawn."
-        if len(r.get("thrusts", {})) > 1
+        if len(r.thrusts or {}) > 1
         else ""
     )
     return f"Thrust line, hinges and mechanism under the greatest constant acceleration. Hinges: {letters}.{free}"
@@ -201,11 +200,11 @@ def _caption(r: dict) -> str:
 
 def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, height: float) -> tuple[str, str]:
     r = run[name]
-    f = r["fracture"]
+    f = r.fracture
     with style.figure(9.5, height, columns=2) as (fig, (whole, cracked)):
         stone(whole, blocks, ghost=True)
         stone(whole, carried(blocks, centroid, run.array(name, "mechanism_pose")))
-        whole.set_title(f"Monolithic: {r['collapse_acceleration_g']:.4f} g ({r['tilt_angle_deg']:.2f} deg)")
+        whole.set_title(f"Monolithic: {r.collapse_acceleration_g:.4f} g ({r.tilt_angle_deg:.2f} deg)")
         stone(cracked, blocks, ghost=True)
         stone(
             cracked,
@@ -217,12 +216,12 @@ def _draw_fracture(run: Stored, name: str, folder: Path, blocks, centroid, heigh
             *run.array(name, "crack").T, "--", color=style.HINGE, linewidth=1.4, zorder=4, label="fracture line"
         )
         cracked.legend(loc="lower center")
-        cracked.set_title(f"Buttress cracked: {f['collapse_acceleration_g']:.4f} g ({f['tilt_angle_deg']:.2f} deg)")
+        cracked.set_title(f"Buttress cracked: {f.collapse_acceleration_g:.4f} g ({f.tilt_angle_deg:.2f} deg)")
         for ax in (whole, cracked):
             style.section_axes(ax)
         return (
             style.save(fig, folder, f"{name}-fracture"),
-            f"Mechanisms with the buttress whole and cracked; the crack starts {f['crack_height_m']:.2f} m above the base, the wedge below it stays.",
+            f"Mechanisms with the buttress whole and cracked; the crack starts {f.crack_height_m:.2f} m above the base, the wedge below it stays.",
         )
 
 
@@ -231,23 +230,24 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     r = run[name]
     blocks = outlines(run, name)
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
+    lines = {"least": r.least, "central": r.central, "most": r.most}
     with style.figure(12.0, 4.6, columns=2, width_ratios=[1.4, 1]) as (fig, (ax, forces)):
         stone(ax, blocks)
-        ground(ax, run, name, [row["joint"] for row in r["central"]["reactions"]])
+        ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
         for which, colour in colours.items():
             thrust_lines(
-                ax, paths(run, name, f"{which}_line"), colour, f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m"
+                ax, paths(run, name, f"{which}_line"), colour, f"{which}: {lines[which].horizontal_kN_per_m:.4g} kN/m"
             )
         overall_dimensions(ax, blocks)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
-        ax.set_title(f"Thrust lines at {r['gamma_g']:g} g, safety factor {r['geometric_safety_factor']:.2f}")
+        ax.set_title(f"Thrust lines at {r.gamma_g:g} g, safety factor {r.geometric_safety_factor:.2f}")
         style.section_axes(ax)
         polygon(
             forces,
-            {which: paths(run, name, f"{which}_polygon")[r["chain"]] for which in colours},
+            {which: paths(run, name, f"{which}_polygon")[r.chain] for which in colours},
             tuple(colours.values()),
         )
-        forces.set_title(f"Force polygons of the {r['chain']}")
+        forces.set_title(f"Force polygons of the {r.chain}")
         found = [
             (
                 style.save(fig, folder, f"{name}-lines"),
@@ -287,28 +287,28 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
         crowded = 0.04 * (value[-1] - value[0])
         shown = -np.inf
-        for change in r["changes"]:
-            ax.axvline(change["value"], color=style.EDGE, linestyle=":", linewidth=0.7)
-            if change["value"] - shown < crowded:
+        for change in r.changes:
+            ax.axvline(change.value, color=style.EDGE, linestyle=":", linewidth=0.7)
+            if change.value - shown < crowded:
                 continue
-            shown = change["value"]
+            shown = change.value
             ax.annotate(
-                f"{change['from'] or 'falls'}|{change['to'] or 'falls'}", (change["value"], 1.0), xycoords=("data", "axes fraction"),
+                f"{change.before or 'falls'}|{change.after or 'falls'}", (change.value, 1.0), xycoords=("data", "axes fraction"),
                 ha="center", va="bottom", fontsize=7,
             )  # fmt: skip
         ax.plot(
-            r["optimum_value"],
-            r["optimum_tilt_angle_deg"],
+            r.optimum_value,
+            r.optimum_tilt_angle_deg,
             "*",
             color="black",
             markersize=9,
             zorder=4,
-            label=f"greatest: {r['optimum_value']:.4g}",
+            label=f"greatest: {r.optimum_value:.4g}",
         )
-        for gap in r["gaps"]:
-            ax.plot(gap["value"], 0.0, "x", color=style.THRUST, markersize=4)
+        for gap in r.gaps:
+            ax.plot(gap.value, 0.0, "x", color=style.THRUST, markersize=4)
         ax.set_ylim(bottom=0.0)
-        ax.set_xlabel(f"{r['vary']} [{r['unit']}]" if r["unit"] else r["vary"])
+        ax.set_xlabel(f"{r.vary} [{r.unit}]" if r.unit else r.vary)
         ax.set_ylabel("tilt at collapse [deg]")
         ax.legend(loc="best")
         found = [
@@ -318,18 +318,19 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             )
         ]
     if len(run.array(name, "example")):
-        examples, moved = paths(run, name, "example"), paths(run, name, "example_moved")
-        numbers = sorted({int(key.split("/")[0]) for key in examples})[:6]
+        examples, moved = (list(paths(run, name, what).values()) for what in ("example", "example_moved"))
+        of = run.array(name, "example_mechanism")
+        numbers = np.unique(of)[:6]
         with style.figure(3.4 * len(numbers), 3.8, columns=len(numbers)) as (fig, axes):
             for ax, k in zip(axes, numbers, strict=True):
-                stone(ax, [v for key, v in examples.items() if key.startswith(f"{k}/")], ghost=True)
-                stone(ax, [v for key, v in moved.items() if key.startswith(f"{k}/")])
+                stone(ax, [examples[i] for i in np.flatnonzero(of == k)], ghost=True)
+                stone(ax, [moved[i] for i in np.flatnonzero(of == k)])
                 ax.set_title(f"Mechanism {k}")
                 style.section_axes(ax)
             found.append(
                 (
                     style.save(fig, folder, f"{name}-mechanisms"),
-                    "; ".join(f"{m['number']}: {m['hinges']}" for m in r["mechanisms"][:6]),
+                    "; ".join(f"{m.number}: {m.hinges}" for m in r.mechanisms[:6]),
                 )
             )
     return found
@@ -379,8 +380,8 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
         u, force = run.array(name, "movement"), run.array(name, "force")
         ax.plot(u, force[:, 0] / 1e3, color=style.THRUST, label="horizontal")
         ax.plot(u, -force[:, 1] / 1e3, color=style.HINGE, label="vertical")
-        for stage in r["stages"][1:]:
-            ax.axvline(stage["movement_m"], color=style.EDGE, linestyle=":", linewidth=0.7)
+        for stage in r.stages[1:]:
+            ax.axvline(stage.movement_m, color=style.EDGE, linestyle=":", linewidth=0.7)
         ax.set_xlabel("movement of the right support [m]")
         ax.set_ylabel("force on it [kN]")
         ax.legend()

@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from extrados.plots import style
+from extrados.results.motion import MotionSet
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
 
 def draw_motion(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """A motion in depth, or the statistics of a set."""
-    return _draw_set(run, name, folder) if "psa_percentile" in run.arrays[name] else _draw_one(run, name, folder)
+    return _draw_set(run, name, folder) if isinstance(run[name], MotionSet) else _draw_one(run, name, folder)
 
 
 def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -20,17 +21,17 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     found = []
     with style.figure(8.0, 7.0, rows=4, sharex=True, height_ratios=[1.5, 1, 1, 0.8]) as (fig, (acc, vel, dis, husid)):
         acc.plot(t, run.array(name, "acceleration") / GRAVITY, color=style.GROUND, linewidth=0.7)
-        for k, impulse in enumerate(r["impulses"]):
-            s = np.linspace(0.0, impulse["period_s"], 100)
+        for k, impulse in enumerate(r.impulses):
+            s = np.linspace(0.0, impulse.period_s, 100)
             acc.plot(
-                impulse["start_s"] + s, impulse["amplitude_g"] * np.sin(2 * np.pi * s / impulse["period_s"]),
+                impulse.start_s + s, impulse.amplitude_g * np.sin(2 * np.pi * s / impulse.period_s),
                 color=style.THRUST, linewidth=1.6 if k == 0 else 0.9, label="strongest impulses" if k == 0 else None,
             )  # fmt: skip
         acc.set_ylabel("acceleration [g]")
-        if r["impulses"]:
+        if r.impulses:
             acc.legend(loc="upper right")
         vel.plot(t, 100 * run.array(name, "velocity"), color=style.HINGE, linewidth=0.9)
-        if r["wavelet_pulse"]["indicator"] > 0.5:
+        if r.wavelet_pulse.indicator > 0.5:
             vel.plot(
                 t,
                 100 * run.array(name, "pulse_velocity"),
@@ -64,7 +65,7 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             for key, label, line in (("psa_rotd50", "RotD50", "k--"), ("psa_rotd100", "RotD100", "k:")):
                 psa.semilogx(period, run.array(name, key) / GRAVITY, line, linewidth=1.1, label=label)
             psa.set_ylim(top=1.35 * psa.get_ylim()[1])  # room for the longer legend
-            caption += f"; black: median and greatest over all directions ({100 * r['rotd_damping']:g} % damping)"
+            caption += f"; black: median and greatest over all directions ({100 * r.rotd_damping:g} % damping)"
         psa.set_ylabel("pseudo-acceleration [g]")
         sd.set_ylabel("displacement [cm]")
         psa.legend(title="damping", loc="upper right", ncols=2 if "psa_rotd50" in run.arrays[name] else 1)
@@ -88,16 +89,15 @@ def _fourier_axes(ax, frequency: np.ndarray, amplitude: np.ndarray) -> None:
 def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     r, arrays = run[name], run.arrays[name]
     found = []
-    shown = [k for k in arrays if k.startswith("shown_") and k != "shown_step"]
+    shown = run.series(name, "shown")
     steps = run.array(name, "shown_step")
     with style.figure(8.0, 1.4 * len(shown) + 0.6, rows=len(shown), sharex=True, sharey=True) as (fig, axes):
-        for ax, key, step in zip(axes, shown, steps, strict=True):
-            a = run.array(name, key)
-            ax.plot(step * np.arange(len(a)), a / GRAVITY, color=style.GROUND, linewidth=0.7)
+        for ax, a, step in zip(axes, shown, steps, strict=True):
+            ax.plot(step * np.arange(len(a.data)), a.data / GRAVITY, color=style.GROUND, linewidth=0.7)
             ax.set_ylabel("[g]")
-            ax.set_title(arrays[key].about, loc="left", fontsize=8)
+            ax.set_title(a.about, loc="left", fontsize=8)
         axes[-1].set_xlabel("time [s]")
-        found.append((style.save(fig, folder, f"{name}-motions"), f"The first of {r['count']} motions."))
+        found.append((style.save(fig, folder, f"{name}-motions"), f"The first of {r.count} motions."))
     period = run.array(name, "period")
     columns = 2 if "fourier" in arrays else 1
     with style.figure(4.6 * columns, 3.8, columns=columns) as (fig, axes):
@@ -111,12 +111,12 @@ def _draw_set(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.plot(period, target, "k", label="target")
             ax.plot(period, 0.9 * target, "k:", linewidth=0.7)
             ax.plot(period, 1.1 * target, "k:", linewidth=0.7)
-            for at in (r["shortest_s"], r["longest_s"]):
+            for at in (r.shortest_s, r.longest_s):
                 ax.axvline(at, color=style.EDGE, linewidth=0.6, linestyle="--")
         ax.set_xscale("log")
         ax.set_xlim(period[0], period[-1])
         ax.set_xlabel("period [s]")
-        ax.set_ylabel(f"pseudo-acceleration [g], {100 * r['damping']:g} %")
+        ax.set_ylabel(f"pseudo-acceleration [g], {100 * r.damping:g} %")
         ax.legend(loc="upper right")
         if columns == 2:
             _fourier_axes(axes[1], run.array(name, "frequency"), run.array(name, "fourier"))
@@ -211,7 +211,7 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
                 dis.axhline(
                     100 * sign * arrays["stroke_limit"].data[0], color=style.EDGE, linestyle="--", linewidth=0.8
                 )
-                vel.axhline(100 * sign * r["max_velocity_m_s"], color=style.EDGE, linestyle="--", linewidth=0.8)
+                vel.axhline(100 * sign * r.max_velocity_m_s, color=style.EDGE, linestyle="--", linewidth=0.8)
             vel.plot(t, 100 * run.array(name, "drive_velocity"), color=style.HINGE)
             acc.plot(
                 run.array(name, "motion_time"),
@@ -228,12 +228,12 @@ def draw_shake_table(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             vel.set_ylabel("velocity\n[cm/s]")
             acc.set_ylabel("acceleration\n[g]")
             acc.set_xlabel("time [s]")
-            moving = np.flatnonzero(np.abs(run.array(name, "drive_displacement")) > 2e-3 * r["played_displacement_m"])
+            moving = np.flatnonzero(np.abs(run.array(name, "drive_displacement")) > 2e-3 * r.played_displacement_m)
             acc.set_xlim(t[moving[0]] - 0.5, t[moving[-1]] + 0.5)
             found.append(
                 (
                     style.save(fig, folder, f"{name}-drive"),
-                    f"Drive of the table, time scaled by {r['time_scale']:.3f} and acceleration by {r['amplitude_factor']:.3f}; dashed: its limits.",
+                    f"Drive of the table, time scaled by {r.time_scale:.3f} and acceleration by {r.amplitude_factor:.3f}; dashed: its limits.",
                 )
             )
     return found

@@ -9,6 +9,8 @@ from typing import Any
 import jinja2
 
 from extrados import kinds
+from extrados.results.explain import fact_of
+from extrados.results.fields import ResultModel
 from extrados.results.store import REPORT, Stored, StoreError, read, reason
 
 TEMPLATE = """<!doctype html>
@@ -25,12 +27,15 @@ table{border-collapse:collapse;font:13px/1.4 sans-serif}td,th{border-bottom:1px 
 pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px}footer{margin-top:3rem;font-size:.8rem;color:#666}
 </style></head><body>
 <h1>{{ title }}</h1>{% if note %}<p>{{ note }}</p>{% endif %}
+<h2>Verdicts</h2><table><tr><th></th><th>outcome</th><th>demand</th><th>capacity</th><th>unit</th><th>capacity / demand</th><th></th></tr>
+{% for a in analyses %}<tr><th>{{ a.name }}</th>{% if a.verdict %}<td>{{ outcomes[a.verdict.outcome] }}</td><td>{{ a.verdict.demand | cell }}</td><td>{{ a.verdict.capacity | cell }}</td><td>{{ a.verdict.unit }}</td><td>{{ a.verdict.ratio | cell }}</td><td>{{ a.verdict.statement }}</td>{% else %}<td>{{ a.status }}</td><td></td><td></td><td></td><td></td><td>{{ a.reason }}</td>{% endif %}</tr>{% endfor %}</table>
 {% for a in analyses %}<h2>{{ a.name }}</h2>
 {% if a.status != "ok" %}<p class="bad"><b>{{ a.status }}</b>: {{ a.reason }}</p>{% endif %}
 {% if a.answer %}<p class="answer">{{ a.answer }}</p>{% endif %}
 {% for w in a.warnings %}<p class="warn">Warning: {{ w }}</p>{% endfor %}
 {% for f in a.figures %}<figure><img alt="{{ f.caption }}" src="data:image/svg+xml;base64,{{ f.data }}"><figcaption>{{ f.caption }}</figcaption></figure>{% endfor %}
-<details><summary>Numbers</summary><table>{% for k, v in a.rows %}<tr><th>{{ k }}</th><td>{{ v }}</td></tr>{% endfor %}</table></details>
+{% if a.assumptions %}<details><summary>Assumptions</summary><table>{% for k, s in a.assumptions.items() %}<tr><th>{{ k }}</th><td>{{ s.value | cell }}</td><td>{{ s.unit }}</td><td>{{ s["from"] }}{% if s.exceptions %}, some differ{% endif %}</td></tr>{% endfor %}</table></details>{% endif %}
+<details><summary>Numbers</summary><table>{% for k, v, unit, about in a.rows %}<tr><th>{{ k }}</th><td>{{ v }}</td><td>{{ unit }}</td><td>{{ about }}</td></tr>{% endfor %}</table></details>
 {% endfor %}
 <h2>Deck</h2><p>{{ deck.path }} (sha256 {{ deck.sha256[:16] }}); all keys with their defaults, in SI:</p>
 <table>{% for k, v in resolved %}<tr><th>{{ k }}</th><td>{{ v }}</td></tr>{% endfor %}</table>
@@ -58,7 +63,29 @@ def draw(run: Stored, folder: Path) -> dict[str, list[tuple[str, str]]]:
     return drawn
 
 
+#: Outcomes of verdicts in words
+OUTCOMES = {"stands": "stands", "falls": "falls", "open": "open", "none": "no demand"}
+
+
+def _numbers(results: ResultModel, prefix: str = "") -> list[tuple[str, str, str, str]]:
+    """Key, value, unit and meaning of all results."""
+    rows = []
+    for name, field in type(results).model_fields.items():
+        if name not in results.model_fields_set:
+            continue
+        told, value = fact_of(prefix + (field.alias or name), field), getattr(results, name)
+        if isinstance(value, ResultModel):
+            rows += _numbers(value, f"{told.key}.")
+        elif isinstance(value, dict) and any(isinstance(v, ResultModel) for v in value.values()):
+            for key, inner in value.items():
+                rows += _numbers(inner, f"{told.key}.{key}.")
+        else:
+            rows.append((told.key, _cell(value), told.unit, told.about))
+    return rows
+
+
 def _rows(values: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
+    """Keys, dotted, and values of tables."""
     rows = []
     for key, value in values.items():
         if isinstance(value, dict):
@@ -74,7 +101,7 @@ def _cell(value: Any) -> str:
     if isinstance(value, list):
         shown = ", ".join(_cell(v) for v in value[:12])
         return shown + (f", ... ({len(value)})" if len(value) > 12 else "")
-    if isinstance(value, dict):
+    if isinstance(value, dict | ResultModel):
         return "; ".join(f"{k} {_cell(v)}" for k, v in value.items())
     return "none" if value is None else str(value)
 
@@ -107,20 +134,19 @@ def _page(run: Stored, folder: Path, drawn: dict[str, list[tuple[str, str]]]) ->
             {"caption": caption, "data": base64.b64encode((folder / "figures" / f"{name}.svg").read_bytes()).decode()}
             for name, caption in drawn.get(a["name"], [])
         ]
-        analyses.append({**a, "figures": figures, "rows": _rows(a["results"])})
+        analyses.append({**a, "figures": figures, "rows": _numbers(run[a["name"]])})
     deck = run.summary["deck"]
     settings = {k: v for k, v in deck["resolved"].items() if isinstance(v, dict)}
     asked = deck["resolved"].get("analysis", [])
     settings |= {a["name"]: keys for a, keys in zip(run.analyses, asked, strict=False)}
-    return (
-        jinja2.Environment(autoescape=True)
-        .from_string(TEMPLATE)
-        .render(
-            title=deck.get("title") or deck["path"] or "extrados run",
-            note=deck.get("note", ""),
-            analyses=analyses,
-            deck=deck,
-            resolved=_rows(settings),
-            made=run.summary["extrados"],
-        )
+    environment = jinja2.Environment(autoescape=True)
+    environment.filters["cell"] = _cell
+    return environment.from_string(TEMPLATE).render(
+        outcomes=OUTCOMES,
+        title=deck.get("title") or deck["path"] or "extrados run",
+        note=deck.get("note", ""),
+        analyses=analyses,
+        deck=deck,
+        resolved=_rows(settings),
+        made=run.summary["extrados"],
     )

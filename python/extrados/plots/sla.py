@@ -8,15 +8,18 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 
 from extrados.plots import style
+from extrados.results.model import Array
+from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 
 LOST, ENVELOPE = "#d9822b", "#1f4e79"
 CORNERS = {3: 3, 6: 3, 4: 4, 8: 4}
+#: What the names of the figures of each sense of the load have in them
+SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
 
 
 def _polygons(run: Stored, name: str, xy: np.ndarray) -> list[np.ndarray]:
-    blocks = [a for n, a in sorted(run.arrays[name].items()) if n.startswith("elements_") and n[9:].isdigit()]
-    return [p for a in blocks for p in xy[a.data[:, : CORNERS[a.data.shape[1]]]]]
+    return [p for a in run.series(name, "elements") for p in xy[a.data[:, : CORNERS[a.data.shape[1]]]]]
 
 
 def _scale(span: np.ndarray, moved: np.ndarray, part: float = 0.06) -> float:
@@ -40,13 +43,11 @@ def _wall(ax: Axes, polygons: list[np.ndarray], **options) -> PolyCollection:
 def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
     figures = [_curve(run, name, folder)]
-    for prefix in ("", "minus_"):
+    for prefix in PREFIXES:
         if f"{prefix}state_event" in run.arrays[name]:
             figures += [_cracks(run, name, folder, prefix), _stresses(run, name, folder, prefix)]
-    i = 0
-    while f"section_{i}_y" in run.arrays[name]:
-        figures.append(_section(run, name, folder, i))
-        i += 1
+    sections = zip(*(run.series(name, f"section_{what}") for what in ("y", "lo", "hi")), strict=True)
+    figures += [_section(run, name, folder, i, *arrays) for i, arrays in enumerate(sections)]
     figures.append(_energy(run, name, folder))
     return figures
 
@@ -58,28 +59,28 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             grid, rows = get("scatter_displacement") * 1e3, get("scatter_load") / 1e3
             ax.fill_between(grid, rows.min(axis=0), rows.max(axis=0), color="#dfe7ef", label=f"{len(rows)} repetitions")
             ax.plot(grid, rows.mean(axis=0), color="#7b93ab", linestyle=":", label="their mean")
-        for prefix, numbers in (("", r), ("minus_", r.get("minus"))):
+        for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
             if numbers is None:
                 continue
             d, p = get(f"{prefix}event_displacement") * 1e3, get(f"{prefix}event_load") / 1e3
             fine = get(f"{prefix}event_equilibrium") > 0
             color = style.THRUST if not prefix else style.SAFE
-            begin = 1e3 * numbers["displacement_of_constant_loads_m"]
+            begin = 1e3 * numbers.displacement_of_constant_loads_m
             ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.35, alpha=0.55)
             if (~fine).any():
                 ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
-                    linewidth=1.4, label=f"envelope, load to {numbers['sense']}")  # fmt: skip
-            idea = numbers.get("bilinear")
+                    linewidth=1.4, label=f"envelope, load to {numbers.sense}")  # fmt: skip
+            idea = numbers.bilinear
             if idea:
                 shift = get(f"{prefix}envelope_displacement")[0]
                 ax.plot(
-                    (shift + np.array([0, idea["yield_displacement_m"], idea["ultimate_displacement_m"]])) * 1e3,
-                    np.array([0, idea["yield_load_N"], idea["yield_load_N"]]) / 1e3,
+                    (shift + np.array([0, idea.yield_displacement_m, idea.ultimate_displacement_m])) * 1e3,
+                    np.array([0, idea.yield_load_N, idea.yield_load_N]) / 1e3,
                     color=ENVELOPE, linestyle="--", linewidth=0.9, label="bilinear of equal area" if not prefix else None,
                 )  # fmt: skip
         # Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve
-        there = [p for p in ("", "minus_") if f"{p}envelope_load" in run.arrays[name]]
+        there = [p for p in PREFIXES if f"{p}envelope_load" in run.arrays[name]]
         far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
         loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
         ax.set_xlim(1.05e3 * min(far.min(), 0.0), 1.05e3 * max(far.max(), 1e-12))
@@ -142,13 +143,13 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
                 fig.colorbar(drawn, ax=ax, shrink=0.7, label="crack width [mm]")
             style.section_axes(ax)
             ax.set_title(f"event {event}, {load / 1e3:.4g} kN, displacements x {factor:g}")
-        title = style.save(fig, folder, f"{name}-{prefix.replace('_', '-')}cracks")
+        title = style.save(fig, folder, f"{name}{SENSES[prefix]}-cracks")
     return title, "Cracks on the deformed wall, at the peak and at the end; colour and thickness give the width."
 
 
 def _at_points(run: Stored, name: str, moved: np.ndarray) -> np.ndarray:
     """Displacements carried from the nodes to the points: the mean of their element's corners."""
-    blocks = [a.data for n, a in sorted(run.arrays[name].items()) if n.startswith("elements_") and n[9:].isdigit()]
+    blocks = [a.data for a in run.series(name, "elements")]
     per_element = np.concatenate([moved[c[:, : CORNERS[c.shape[1]]]].mean(axis=1) for c in blocks])
     return per_element[run.array(name, "point_element")]
 
@@ -178,13 +179,14 @@ def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             fig.colorbar(drawn, ax=ax, shrink=0.7, label="stress [MPa]")
             style.section_axes(ax)
             ax.set_title(f"{title} principal stress")
-        title = style.save(fig, folder, f"{name}-{prefix.replace('_', '-')}stress")
+        title = style.save(fig, folder, f"{name}{SENSES[prefix]}-stress")
     return title, f"Principal stresses at the peak load ({load[s] / 1e3:.4g} kN); tension is positive."
 
 
-def _section(run: Stored, name: str, folder: Path, i: int) -> tuple[str, str]:
-    y, about = run.array(name, f"section_{i}_y"), run.arrays[name][f"section_{i}_y"].about
-    lo, hi = (run.array(name, f"section_{i}_{end}") / 1e3 for end in ("lo", "hi"))
+def _section(
+    run: Stored, name: str, folder: Path, i: int, height: Array, least: Array, greatest: Array
+) -> tuple[str, str]:
+    y, about, lo, hi = height.data, height.about, least.data / 1e3, greatest.data / 1e3
     events = run.array(name, "state_event")
     # A section that is cracked through admits everything: nothing to show
     shown = np.flatnonzero((np.isfinite(lo) | np.isfinite(hi)).any(axis=1))[:6]
@@ -234,5 +236,5 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
         f"Energy ledger: stored and dissipated energy make up the work of the loads to "
-        f"{run[name]['energy_residual_ratio']:.1e}."
+        f"{run[name].energy_residual_ratio:.1e}."
     )

@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from extrados.plots import style
+from extrados.results.statistics import OverDurations
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -12,7 +13,7 @@ from extrados.schema.constants import GRAVITY
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Histogram (Fig. 6-7), curve over intensity with its stripes, incremental curves, or Fig. 6-8."""
     arrays = run.arrays[name]
-    if "duration" in arrays:
+    if isinstance(run[name], OverDurations):
         return _durations(run, name, folder)
     found = []
     if "stripe_level" in arrays:
@@ -25,7 +26,7 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
 def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     r = run[name]
     edges, counts = run.array(name, "bin_edge"), run.array(name, "bin_count")
-    n = max(r["count"], 1)
+    n = max(r.count, 1)
     with style.figure(6.0, 3.8) as (fig, (ax,)):
         width = edges[1] - edges[0]
         ax.bar(
@@ -39,7 +40,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
         ax.bar(
             [1.0 + width],
-            [100 * r["collapsed"] / n],
+            [100 * r.collapsed / n],
             width=1.6 * width,
             align="edge",
             color=style.THRUST,
@@ -48,7 +49,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
         ax.set_xlabel("greatest rotation over the critical rotation")
         ax.set_ylabel("share of the motions [%]")
-        ax.set_title(f"{r['count']} runs, {100 * r['collapse_probability']:.1f} % collapse")
+        ax.set_title(f"{r.count} runs, {100 * r.collapse_probability:.1f} % collapse")
         ax.legend()
         return style.save(
             fig, folder, f"{name}-histogram"
@@ -83,7 +84,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 grid,
                 run.array(name, "curve"),
                 color=style.THRUST,
-                label=f"lognormal, median {r['median']:.3g}, dispersion {r['dispersion']:.2f}",
+                label=f"lognormal, median {r.median:.3g}, dispersion {r.dispersion:.2f}",
             )
         if "curve_lower" in arrays:
             ax.fill_between(
@@ -102,11 +103,11 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             )
         ax.set_xlim(0.0, 1.1 * level[-1])
         ax.set_ylim(-0.02, 1.02)
-        ax.set_xlabel(f"{r['intensity']}{f' [{unit}]' if unit else ''}")
+        ax.set_xlabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         ax.set_ylabel("probability")
         ax.legend(loc="best")
         return style.save(fig, folder, f"{name}-curve"), (
-            f"Counted probabilities with {100 * r['confidence']:g} % Wilson intervals, the fitted curve and its bootstrap band."
+            f"Counted probabilities with {100 * r.confidence:g} % Wilson intervals, the fitted curve and its bootstrap band."
         )
 
 
@@ -132,12 +133,12 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
         ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
         ax.set_xlabel("greatest rotation over the critical rotation (collapse drawn at 1.05)")
-        ax.set_ylabel(f"{r['intensity']}{f' [{unit}]' if unit else ''}")
+        ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         if len(i):
             ax.legend(loc="upper left")
         return style.save(
             fig, folder, f"{name}-incremental"
-        ), f"Incremental curves of {len(ratio)} motions; {r['resurrections']} of {r['motions']} have resurrections."
+        ), f"Incremental curves of {len(ratio)} motions; {r.resurrections} of {r.motions} have resurrections."
 
 
 def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -179,7 +180,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-motion"),
-                f"The motion that feeds most energy under a cap of {r['cap_g']:.3f} g, and the response to it (Fig. 6-2).",
+                f"The motion that feeds most energy under a cap of {r.cap_g:.3f} g, and the response to it (Fig. 6-2).",
             )
         )
     if "least_cap_ratio" not in arrays:
@@ -194,7 +195,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         lines = ax.contour(x, aspect, table, levels=np.linspace(0.05, 0.5, 10), colors="k", linewidths=0.5)
         ax.clabel(lines, fontsize=7)
         fig.colorbar(drawn, ax=ax, label="least acceleration over uplift")
-        ax.plot(r["initial_rotation_ratio"], 0.5, "k+")
+        ax.plot(r.initial_rotation_ratio, 0.5, "k+")
         ax.set_xlabel("initial rotation over the critical one")
         ax.set_ylabel("B/H")
         ax.grid(False)
@@ -220,7 +221,7 @@ def draw_resonance(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found.append(
             (
                 style.save(fig, folder, f"{name}-impulse"),
-                f"Energy that one sine impulse of {r['impulse_amplitude_g']:.3f} g adds to free rocking (Fig. 6-4 a from a quarter of the critical rotation, b with T_p = T_n/2).",
+                f"Energy that one sine impulse of {r.impulse_amplitude_g:.3f} g adds to free rocking (Fig. 6-4 a from a quarter of the critical rotation, b with T_p = T_n/2).",
             )
         )
     return found
@@ -230,7 +231,7 @@ def draw_rocking_spectrum(run: Stored, name: str, folder: Path) -> list[tuple[st
     """Peak rotation over 2 pi/p for each slenderness."""
     period, ratio, over = (run.array(name, k) for k in ("period", "peak_ratio", "overturned"))
     with style.figure(7.0, 4.0) as (fig, (ax,)):
-        for member, row, fell in zip(run[name]["family"], ratio, over, strict=True):
+        for member, row, fell in zip(run[name].family, ratio, over, strict=True):
             line = ax.plot(period, row, ".-", markersize=3, label=member)[0]
             ax.plot(period[fell == 1], np.full(int(fell.sum()), 1.03), "x", color=line.get_color(), markersize=5)
         ax.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle=":")
@@ -253,21 +254,21 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
 
         ax.pcolormesh(f, a, fell.T, cmap=ListedColormap([style.MODES[3]]), shading="nearest", rasterized=True)
         fig.colorbar(drawn, ax=ax, label="greatest rotation over the critical one")
-        ax.axhline(r["uplift_acceleration_g"], color=style.EDGE, linestyle="--", linewidth=0.8)
+        ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.8)
         ax.plot([], [], "s", color=style.MODES[3], label="overturned")
         ax.legend(loc="upper left", frameon=True)
         ax.set_xlabel("frequency [Hz]")
         ax.set_ylabel("amplitude [g]")
         ax.grid(False)
-        return [(style.save(fig, folder, name), f"Harmonic motion of {r['cycles']} cycles; dashed: uplift.")]
+        return [(style.save(fig, folder, name), f"Harmonic motion of {r.cycles} cycles; dashed: uplift.")]
 
 
 def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Demand over capacity of each rule."""
     rows = [
-        (rule, c["demand"] / c["capacity"])
-        for rule, c in run[name]["checks"].items()
-        if c["demand"] is not None and c["capacity"] > 0.0
+        (rule, c.demand / c.capacity)
+        for rule, c in run[name].checks.items()
+        if c.demand is not None and c.capacity > 0.0
     ]
     if not rows:
         return []

@@ -1,7 +1,11 @@
-"""Finished batches of a long sweep beside the results folder, so that a killed run can be resumed."""
+"""Finished batches of a long computation beside the results folder, so that a killed run can be resumed.
+
+The name of a batch ends in the SHA-256 of its bytes: one that was damaged is seen, told and computed again.
+"""
 
 import contextlib
 import hashlib
+import io
 import json
 import os
 import shutil
@@ -19,7 +23,10 @@ HEAD = "deck.json"
 
 
 def fingerprint(value: Any) -> str:
-    """SHA-256 of what a sweep computes: numbers, text, arrays, lists, dictionaries and dataclasses of them."""
+    """SHA-256 of what a sweep computes: numbers, text, arrays, lists, dictionaries and dataclasses of them.
+
+    Fields of a dataclass that do not take part in comparisons are caches and do not count.
+    """
     digest = hashlib.sha256()
     _feed(digest, value)
     return digest.hexdigest()
@@ -39,7 +46,7 @@ def _feed(digest: Any, value: Any) -> None:
         for item in value:
             _feed(digest, item)
     elif is_dataclass(value):
-        for item in fields(value):
+        for item in (item for item in fields(value) if item.compare):
             _feed(digest, item.name)
             _feed(digest, getattr(value, item.name))
     else:
@@ -87,27 +94,37 @@ class Checkpoint:
         except OSError as error:
             raise StoreError(f"{self.folder}: cannot write here: {error.strerror or error}") from None
 
-    def load(self, name: str) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
-        """(first member, arrays) of every batch of a sweep that was kept."""
+    def load(self, name: str, warnings: list[str]) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
+        """(first member, arrays) of every batch of a sweep that was kept whole; `warnings` tells of damaged ones."""
         for path in sorted((self.folder / name).glob("*.npz")):
             try:
-                with np.load(path, allow_pickle=False) as store:
-                    arrays = {key: store[key] for key in store.files}
-                yield int(path.stem), arrays
-            except (OSError, ValueError, KeyError, EOFError):
-                path.unlink()  # not worth more than the second it takes to run again
+                content = path.read_bytes()
+            except OSError as error:
+                raise StoreError(f"{path}: cannot be read: {error.strerror or error}") from None
+            first, _, digest = path.stem.partition("-")
+            if digest == _digest(content):
+                with np.load(io.BytesIO(content), allow_pickle=False) as store:
+                    yield int(first), {key: store[key] for key in store.files}
+            else:
+                warnings.append(f"a kept batch was damaged and is computed again: {path.parent.name}/{path.name}")
+                path.unlink()
 
-    def keep(self, name: str, first: int, arrays: dict[str, np.ndarray]) -> None:
+    def keep(self, name: str, first: int, arrays: dict[str, np.ndarray]) -> Path:
         """Store a batch; it is there whole or not at all."""
-        import io
-
-        content = io.BytesIO()
-        np.savez(content, **arrays)
+        stream = io.BytesIO()
+        np.savez(stream, **arrays)
+        content = stream.getvalue()
+        path = self.folder / name / f"{first:012d}-{_digest(content)}.npz"
         try:
-            (self.folder / name).mkdir(exist_ok=True)
-            _write(self.folder / name / f"{first:012d}.npz", content.getvalue())
+            path.parent.mkdir(exist_ok=True)
+            _write(path, content)
         except OSError as error:
-            raise StoreError(f"{self.folder / name}: a batch could not be kept: {error.strerror or error}") from None
+            raise StoreError(f"{path.parent}: a batch could not be kept: {error.strerror or error}") from None
+        return path
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:32]
 
 
 def discard(out: Path) -> None:

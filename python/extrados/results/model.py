@@ -5,15 +5,22 @@ from typing import Any
 
 import numpy as np
 
+from extrados.results.assumptions import Assumption
+from extrados.results.verdict import KindResults, Verdict
+
 
 @dataclass(frozen=True)
 class Array:
-    """A named, dimensioned array; `dims` names its axes, `unit` in SI ("" where it has none)."""
+    """A named, dimensioned array; `dims` names its axes, `unit` in SI ("" where it has none).
+
+    series: what arrays of one kind are called together where there are several, in their order.
+    """
 
     data: np.ndarray
     dims: tuple[str, ...]
     unit: str = ""
     about: str = ""
+    series: str = ""
 
 
 @dataclass(frozen=True)
@@ -30,8 +37,9 @@ class Result:
 
     status: ok, refused (the structure or the question does not allow it), failed (the computation did
     not succeed) or interrupted (partial results are kept); `reason` says why. `answer` is the result in
-    words an engineer reads. `results` holds numbers and words whose keys end in their unit. `files` maps
-    the name of a further file (VTU, PVD, AT2, MP4) to its bytes.
+    words an engineer reads. `results` holds numbers and words whose keys end in their unit, in the typed model of the
+    kind; it is empty where there is no result. `verdict` concludes; `assumptions` are the properties of the building
+    that it rests on, by their keys. `files` maps the name of a further file (VTU, PVD, AT2, MP4) to its bytes.
     """
 
     kind: str
@@ -39,7 +47,9 @@ class Result:
     reason: str = ""
     seconds: float = 0.0
     answer: str = ""
-    results: dict[str, Any] = field(default_factory=dict)
+    results: KindResults = field(default_factory=KindResults)
+    verdict: Verdict | None = None
+    assumptions: dict[str, Assumption] = field(default_factory=dict)
     arrays: dict[str, Array] = field(default_factory=dict)
     tables: dict[str, TableData] = field(default_factory=dict)
     files: dict[str, bytes] = field(default_factory=dict)

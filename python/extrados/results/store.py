@@ -9,41 +9,31 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pydantic import ValidationError
 
+from extrados.results.fields import plain
 from extrados.results.model import Array, Result, TableData
+from extrados.results.typed import typed
+from extrados.results.verdict import KindResults
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
 REPORT = "report.html"
+#: What an array says of itself, in the order of Array's fields
+MARKS = ("unit", "about", "series")
 #: Further names that the report writes
 DRAWN = ("figures/", ".drawing-")
 
 
 class StoreError(Exception):
     """Results cannot be written or read; the text names the file and the reason."""
-
-
-def _plain(value: Any) -> Any:
-    """Values as JSON knows them; NaN and infinity become null, which summary.json cannot hold otherwise."""
-    if isinstance(value, dict):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, list | tuple):
-        return [_plain(v) for v in value]
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, np.generic):
-        return _plain(value.item())
-    if isinstance(value, float):
-        return value if np.isfinite(value) else None
-    if isinstance(value, Path):
-        return str(value)
-    return value
 
 
 def group_names(kinds: list[str]) -> list[str]:
@@ -54,6 +44,31 @@ def group_names(kinds: list[str]) -> list[str]:
         seen[kind] = seen.get(kind, 0) + 1
         names.append(kind if seen[kind] == 1 else f"{kind}-{seen[kind]}")
     return names
+
+
+def rows(results: list[Result]) -> list[dict[str, Any]]:
+    """What summary.json says of each analysis."""
+    return [
+        plain({
+            "name": name, "kind": r.kind, "status": r.status, "reason": r.reason, "seconds": round(r.seconds, 6),
+            "answer": r.answer, "warnings": r.warnings, "verdict": r.verdict and r.verdict.as_json(),
+            "assumptions": {key: a.as_json() for key, a in r.assumptions.items()}, "results": r.results.as_json(),
+        })
+        for name, r in zip(group_names([r.kind for r in results]), results, strict=True)
+    ]  # fmt: skip
+
+
+def typed_of(results: list[Result]) -> dict[str, KindResults]:
+    """The results of each analysis by its name."""
+    return dict(zip(group_names([r.kind for r in results]), (r.results for r in results), strict=True))
+
+
+def arrays_of(results: list[Result]) -> dict[str, dict[str, Array]]:
+    """The arrays of each analysis by its name; a reader of the folder finds the same."""
+    return {
+        name: {title: replace(a, data=np.asarray(a.data)) for title, a in r.arrays.items()}
+        for name, r in zip(group_names([r.kind for r in results]), results, strict=True)
+    }
 
 
 def prepare(out: Path) -> None:
@@ -160,19 +175,13 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
                 target.write_bytes(content)
         summary = {
             **head,
-            "analyses": [
-                {
-                    "name": name, "kind": r.kind, "status": r.status, "reason": r.reason, "seconds": round(r.seconds, 6),
-                    "answer": r.answer, "warnings": r.warnings, "results": r.results,
-                }
-                for name, r in zip(names, results, strict=True)
-            ],
+            "analyses": rows(results),
             "files": {
                 str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
                 for p in sorted(folder.rglob("*")) if p.is_file()
             },
         }  # fmt: skip
-        text = json.dumps(_plain(summary), indent=1, ensure_ascii=False)
+        text = json.dumps(plain(summary), indent=1, ensure_ascii=False)
         (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
     except OSError as error:
         raise StoreError(f"{folder}: results could not be written: {reason(error)}") from None
@@ -215,6 +224,7 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                 store = group.create_dataset(title, data=data)
                 store.attrs["unit"] = store.attrs["units"] = array.unit
                 store.attrs["about"] = array.about
+                store.attrs["series"] = array.series
                 if array.dims == (title,):
                     store.make_scale(title)
             sizes = {d: n for a in result.arrays.values() for d, n in zip(a.dims, np.shape(a.data), strict=True)}
@@ -228,24 +238,59 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
     path.write_bytes(image.getbuffer())
 
 
-@dataclass(frozen=True)
 class Stored:
-    """A run read back: `summary` as written, `arrays[analysis][name]`, and the analyses by name."""
+    """What a run gave, as figures and users read it; read back from its folder, or never yet written.
 
-    folder: Path
-    summary: dict[str, Any]
-    arrays: dict[str, dict[str, Array]]
+    folder: where it lies, None in memory; head: says what summary.json tells of program and deck; analyses: the rows
+    of its analyses; arrays[analysis][name]. typed: the results of each analysis, where they are at hand.
+    """
 
-    @property
-    def analyses(self) -> list[dict[str, Any]]:
-        return self.summary["analyses"]
+    def __init__(
+        self,
+        folder: Path | None,
+        head: Callable[[], dict[str, Any]],
+        analyses: list[dict[str, Any]],
+        arrays: dict[str, dict[str, Array]],
+        typed: dict[str, KindResults] | None = None,
+    ):
+        self.folder, self.head, self.analyses, self.arrays = folder, head, analyses, arrays
+        self._typed = dict(typed or {})
 
-    def __getitem__(self, name: str) -> dict[str, Any]:
-        """The results of an analysis by its name, for instance run["tilt"]["collapse_acceleration_g"]."""
-        for analysis in self.analyses:
-            if analysis["name"] == name:
-                return analysis["results"]
-        raise KeyError(f"{self.folder}: no analysis '{name}'; there are {', '.join(a['name'] for a in self.analyses)}")
+    @cached_property
+    def summary(self) -> dict[str, Any]:
+        """What summary.json holds (its `files` only for a run that was read back)."""
+        return plain({**self.head(), "analyses": self.analyses})
+
+    def __getitem__(self, name: str) -> KindResults:
+        """The results of an analysis by its name, for instance run["tilt"].collapse_acceleration_g.
+
+        They read as a mapping too: run["tilt"]["collapse_acceleration_g"]. StoreError where they are not what this
+        version gives.
+        """
+        if name not in self._typed:
+            self._typed[name] = self._read(self.analysis(name))
+        return self._typed[name]
+
+    def analysis(self, name: str) -> dict[str, Any]:
+        """All that summary.json says of an analysis: kind, status, reason, answer, verdict, assumptions, results."""
+        for row in self.analyses:
+            if row["name"] == name:
+                return row
+        raise KeyError(f"{self._place}no analysis '{name}'; there are {', '.join(a['name'] for a in self.analyses)}")
+
+    def _read(self, analysis: dict[str, Any]) -> KindResults:
+        try:
+            return typed(analysis["kind"], analysis["results"])
+        except (ValidationError, KeyError) as error:
+            first = error.errors()[0] if isinstance(error, ValidationError) else {"loc": [error], "msg": "unknown kind"}
+            place = ".".join(str(part) for part in first["loc"])
+            raise StoreError(
+                f"{self._place}the results of '{analysis['name']}' are not what this version gives: {place}: {first['msg']}"
+            ) from None
+
+    def series(self, analysis: str, name: str) -> list[Array]:
+        """The arrays of an analysis that make up a series, in order; none where there is no such series."""
+        return [array for array in self.arrays[analysis].values() if array.series == name]
 
     def array(self, analysis: str, name: str) -> np.ndarray:
         return self.arrays[analysis][name].data
@@ -259,6 +304,10 @@ class Stored:
             {n: (a.dims, a.data, {"units": a.unit, "about": a.about}) for n, a in arrays.items()},
             attrs={"kind": analysis, "extrados": self.summary["extrados"]["version"]},
         )
+
+    @property
+    def _place(self) -> str:
+        return "" if self.folder is None else f"{self.folder}: "
 
 
 def _check_shape(summary: dict[str, Any]) -> None:
@@ -289,8 +338,9 @@ def read(folder: str | Path) -> Stored:
                         continue
                     data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
                     dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
-                    arrays[name][title] = Array(data, dims, store.attrs["unit"], store.attrs["about"])
-        return Stored(folder, summary, arrays)
+                    arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
+        head = {key: value for key, value in summary.items() if key != "analyses"}
+        return Stored(folder, lambda: head, summary["analyses"], arrays)
     except FileNotFoundError as error:
         raise StoreError(f"{error.filename}: not found; {folder} holds no results of extrados") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:

@@ -8,10 +8,10 @@ import math
 import re
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 import pint
-from pydantic import BeforeValidator
+from pydantic import BaseModel, BeforeValidator
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
 FACTOR = r"[A-Za-z_%°]\w*(?:(?:\*\*|\^)-?\d)?"
@@ -99,3 +99,17 @@ Energy = quantity("N/m")
 Stiffness = quantity("Pa/m")
 Area = quantity("m^2")
 FlowRate = quantity("m^3/s")
+
+
+@lru_cache(maxsize=1024)
+def unit_of(model: type[BaseModel], name: str) -> str:
+    """Unit of a key of a table; "" where it has none, or is a table itself."""
+    field = model.model_fields.get(name)
+    if field is None:
+        return ""
+    marks, places = list(field.metadata), [field.annotation]
+    while places:
+        place = places.pop()
+        marks += getattr(place, "__metadata__", ())
+        places += [p for p in get_args(place) if not isinstance(p, str)]
+    return next((mark.si for mark in marks if isinstance(mark, Unit)), "")

@@ -1,5 +1,7 @@
 """code-checks: rules of codes for rocking bodies, and for walls as piers, beside the computed rocking."""
 
+from typing import Any
+
 import numpy as np
 
 from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, ntc, piers, west
@@ -9,6 +11,7 @@ from extrados.building.templates.block import BlockAssembly
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
 from extrados.motions.impulse import primary_impulses
+from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -17,18 +20,23 @@ def run(context: Context, options: CodeChecks) -> Result:
     """All rules that apply, with the computed rocking of the deck's motion beside them."""
     structure = context.deck.structure
     result = Result("code-checks")
+    demands: dict[str, Any] = {}
     if structure.kind == "panel":
         lines = _panel(context, options)
     else:
         block = context.building.rocker().model.block
-        lines = _block(context, options, block, result)
+        lines, demands = _block(context, options, block)
         if options.axial_load is not None:
             lines += _pier(context, options, block.toe_right + block.toe_left, 2.0 * block.centre_height,
                            options.thickness or block.depth, float(block.mass[0]) * GRAVITY)  # fmt: skip
-    result.results |= {
-        "checks": {line.rule: {"capacity": line.capacity, "demand": line.demand, "unit": line.unit, "verdict": line.verdict,
-                               "source": line.source, "note": line.note} for line in lines},
+    checks = {
+        line.rule: out.Check(
+            capacity=line.capacity, demand=line.demand, unit=line.unit, verdict=line.verdict, source=line.source,
+            note=line.note,
+        ) for line in lines
     }  # fmt: skip
+    r = out.CodeChecks(checks=checks, **demands)
+    result.results = r
     demand = np.array([np.nan if x.demand is None else x.demand for x in lines])
     capacity = np.array([x.capacity for x in lines])
     result.tables["code_checks"] = TableData({
@@ -42,11 +50,10 @@ def run(context: Context, options: CodeChecks) -> Result:
     }
     said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]
     words = ["; ".join(said) + "."] if said else []
-    fate = result.results.get("dynamic_outcome")
-    if fate:
-        ratio = result.results["dynamic_peak_rotation_ratio"]
+    if r.dynamic_outcome:
+        ratio = r.dynamic_peak_rotation_ratio
         spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and stays up",
-                  "no-hinging": "does not rock"}[fate]  # fmt: skip
+                  "no-hinging": "does not rock"}[r.dynamic_outcome]  # fmt: skip
         words.append(f"Computed under the motion itself, the block {spoken}.")
     strengths = [x for x in lines if x.unit == "N"]
     if strengths:
@@ -56,13 +63,15 @@ def run(context: Context, options: CodeChecks) -> Result:
     return result
 
 
-def _block(context: Context, options: CodeChecks, block: BlockAssembly, result: Result) -> list[Line]:
+def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple[list[Line], dict[str, Any]]:
+    """The rules of rocking bodies, and the results that stand beside them."""
     rocker = context.building.rocker()
     model = rocker.model
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
     pga = options.peak_acceleration / GRAVITY if options.peak_acceleration else None
     pgv, pulse, sd, sa = options.peak_velocity, None, None, None
+    beside: dict[str, Any] = {}
     if context.deck.motion is not None:
         motion = context.motion
         context.warnings += motion.notes
@@ -88,14 +97,15 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly, result: 
             model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
             start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
         )  # fmt: skip
-        result.results |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
-    result.results |= {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
+        beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
+    beside |= {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
     alpha = float(model.alpha.min())
-    return [
+    lines = [
         west(float(np.tan(alpha)), pga), housner(float(model.frequency[0]), alpha, pga, pulse),
         *ishiyama(width, height, pga, pgv), *ntc(model, pga, options.behaviour_factor, options.confidence_factor, sd),
         asce43(width, height, sa),
     ]  # fmt: skip
+    return lines, beside
 
 
 def _panel(context: Context, options: CodeChecks) -> list[Line]:

@@ -6,6 +6,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.tables import DemParameters
+from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
 
 
@@ -18,15 +19,15 @@ def run(context: Context, options: DemParameters) -> Result:
         name: impact_rules.damping_constant(float(v.impact.of(name).max())) for name in ("rotation", "corner", "edge")
     }
     ratios = v.ratios()
-    result.results = {
-        "joint_stiffness_min_Pa_per_m": float(v.stiffness.min()),
-        "joint_stiffness_max_Pa_per_m": float(v.stiffness.max()),
+    result.results = out.DemParameters(
+        joint_stiffness_min_Pa_per_m=float(v.stiffness.min()),
+        joint_stiffness_max_Pa_per_m=float(v.stiffness.max()),
         **{f"{name}_frequency_rad_s": float(v.impact.of(name).max()) for name in ("rotation", "corner", "edge")},
         **{f"critical_beta_{name}_s": constants[name] for name in constants},
-        "beta_s": v.beta,
+        beta_s=v.beta,
         **{f"damping_ratio_{name}": ratios[name] for name in ratios},
-        "convention": context.building.joints.stiffness_rule,
-    }
+        convention=context.building.joints.stiffness_rule,
+    )
     result.warnings = dem_model.warnings(model, options)
     columns = {
         "joint": list(model.assembly.joint_names),

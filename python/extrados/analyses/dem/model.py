@@ -1,7 +1,6 @@
 """A deck's structure as a discrete-element model: bodies, joint types, damping."""
 
 import itertools
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +14,6 @@ from extrados.building.geometry.rigid import RigidBodies
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem
-from extrados.core.errors import Cancelled, status_code
 from extrados.schema.constants import GRAVITY
 
 
@@ -162,18 +160,3 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
 def settle_time(model: Model) -> float:
     """Long enough for the structure to come to rest or down after a pulse [s]."""
     return 15.0 * float(np.sqrt(model.size / GRAVITY))
-
-
-def many(tasks: list[Callable[[], dem.Run]], threads: int, tick: Callable[[int], None]) -> list[dem.Run]:
-    """Independent runs on several threads; the answer does not depend on their number."""
-    from concurrent.futures import ThreadPoolExecutor
-
-    with ThreadPoolExecutor(max(1, threads)) as pool:
-        waiting = [pool.submit(task) for task in tasks]
-        runs = []
-        for one in waiting:
-            runs.append(one.result())
-            tick(len(runs))
-    if any(run.interrupted for run in runs):
-        raise Cancelled(status_code("cancelled"), "discrete elements interrupted")
-    return runs

@@ -15,6 +15,7 @@ from extrados.limit.equilibrium import Disconnected
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.results.limit import Hinge, Reaction
 from extrados.results.model import Array
 
 #: Bounds and mechanism must agree this closely, relative to gamma, or the answer is not given.
@@ -146,18 +147,18 @@ def graphic_arrays(answer: Answer, name: str, state: State, about: str) -> dict[
     }
 
 
-def hinge_rows(assembly: Assembly, hinges: list[tuple[int, str]], pivot: np.ndarray) -> list[dict[str, Any]]:
-    """Hinges as results tell them: joint, side, name and place."""
+def hinge_rows(assembly: Assembly, hinges: list[tuple[int, str]], pivot: np.ndarray) -> list[Hinge]:
+    """Hinges as results tell them."""
     rows = []
     for j, side in hinges:
         x, y = assembly.p[j] + pivot[j] * (assembly.q[j] - assembly.p[j])
-        rows.append({"joint": j, "side": side, "name": assembly.joint_names[j], "x_m": float(x), "y_m": float(y)})
+        rows.append(Hinge(joint=j, side=side, name=assembly.joint_names[j], x_m=x, y_m=y))
     return rows
 
 
-def reaction_rows(answer: Answer, state: State) -> list[dict[str, Any]]:
-    """Forces of the ground on the structure [N]."""
+def reaction_rows(answer: Answer, state: State) -> list[Reaction]:
+    """Forces of the ground on the structure."""
     return [
-        {"joint": j, "name": answer.assembly.joint_names[j], "horizontal_N": float(f[0]), "vertical_N": float(f[1])}
+        Reaction(joint=j, name=answer.assembly.joint_names[j], horizontal_N=f[0], vertical_N=f[1])
         for j, f in answer.reactions(state).items()
     ]

@@ -1,15 +1,76 @@
 """moving-load: the point or axle load that brings a vault down, at every place along its span."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
+from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import answer_of, block_under, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import MovingLoad
 from extrados.analyses.limit.variation import signature, spoken
+from extrados.building.geometry.assembly import Assembly
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
-from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+
+
+@dataclass(frozen=True)
+class Places:
+    """Member k is the load with its first axle at places[k] [m]; `shares` of the weight of `dead` [N] at `axles`
+    behind it [m], as far as they stand on the `span` [m]."""
+
+    assembly: Assembly
+    friction: float | np.ndarray | None
+    strength: float | None
+    associated: bool
+    dead: np.ndarray
+    places: np.ndarray
+    axles: np.ndarray
+    shares: np.ndarray
+    span: tuple[float, float]
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(self._member, first, count)
+
+    def collapse(self, k: int) -> tuple[State, Mechanism] | None:
+        """State and mechanism of collapse; None where the load brings nothing down."""
+        low, high = self.span
+        live = np.zeros_like(self.dead)
+        for axle, share in zip(self.places[k] - self.axles, self.shares, strict=True):
+            if low <= axle <= high:
+                block, y = block_under(self.assembly, float(axle))
+                live += forces_at(len(live), block, np.array([axle, y]), (0.0, -share * self.weight))
+        if not live.any():
+            return None
+        limit = LimitAnalysis(
+            self.assembly,
+            self.friction,
+            strength=self.strength,
+            associated=self.associated,
+            loads=Loads(self.dead, live),
+        )
+        try:
+            return limit.collapse(1)
+        except NoEquilibrium:
+            return None
+
+    @property
+    def weight(self) -> float:
+        return float(np.abs(self.dead[:, 1]).sum())
+
+    def _member(self, k: int) -> dict[str, np.ndarray]:
+        found = self.collapse(k)
+        if found is None:
+            return {"capacity": np.array(np.inf), "mechanism": np.array(""), "gap": np.array(0.0)}
+        state, mechanism = found
+        return {
+            "capacity": np.array(state.gamma * self.weight),
+            "mechanism": np.array(spoken(signature(self.assembly, mechanism))),
+            "gap": np.array(abs(state.gamma - mechanism.upper_bound)),
+        }
 
 
 def run(context: Context, options: MovingLoad) -> Result:
@@ -25,52 +86,33 @@ def run(context: Context, options: MovingLoad) -> Result:
     shares = np.array(options.shares or np.ones(len(axles)))
     shares = shares / shares.sum()
     dead = loads_of(assembly, options).dead
-    weight = float(np.abs(dead[:, 1]).sum())
     # A hair inside, so that the ends still lie on a voussoir.
     places = np.linspace(low, high + np.ptp(axles), options.count)
     places[0], places[-1] = places[0] + 1e-9 * (high - low), places[-1] - 1e-9 * (high - low)
-    capacity = np.full(len(places), np.inf)
-    mechanisms, gap = [""] * len(places), 0.0
-    worst = None
-    for i, x in enumerate(places):
-        context.progress(i, len(places), "moving load")
-        live = np.zeros_like(dead)
-        for axle, share in zip(x - axles, shares, strict=True):
-            if low <= axle <= high:
-                block, y = block_under(assembly, float(axle))
-                live += forces_at(len(live), block, np.array([axle, y]), (0.0, -share * weight))
-        if not live.any():
-            continue
-        limit = LimitAnalysis(
-            assembly, context.building.friction(), strength=context.building.material.compressive_strength,
-            associated=options.friction_rule == "associated", loads=Loads(dead, live),
-        )  # fmt: skip
-        try:
-            state, mechanism = limit.collapse(1)
-        except NoEquilibrium:
-            continue
-        capacity[i] = state.gamma * weight
-        mechanisms[i] = spoken(signature(assembly, mechanism))
-        gap = max(gap, abs(state.gamma - mechanism.upper_bound))
-        if worst is None or capacity[i] < capacity[worst[0]]:
-            worst = i, state, mechanism
-    if worst is None:
+    job = Places(
+        assembly, context.building.friction(), context.building.material.compressive_strength,
+        options.friction_rule == "associated", dead, places, axles, shares, (low, high),
+    )  # fmt: skip
+    swept = sweep(context, "moving-load", job, len(places), "moving load", slow=True).whole()
+    capacity, mechanisms, gap = swept["capacity"], swept["mechanism"].tolist(), float(swept["gap"].max())
+    k = int(capacity.argmin())
+    if not np.isfinite(capacity[k]):
         raise Refused("no load of this kind brings the structure down: it only presses the joints together")
-    k, state, mechanism = worst
+    state, mechanism = job.collapse(k)
     result = Result("moving-load")
-    result.results = {
-        "chain": chain,
-        "collapse_load_N": float(capacity[k]),
-        "collapse_load_kN_per_m": float(capacity[k] / assembly.depth / 1e3),
-        "worst_place_m": float(places[k]),
-        "worst_place_over_span": float((places[k] - low) / (high - low)),
-        "hinges": [{"joint": j, "side": side, "name": assembly.joint_names[j]} for j, side in mechanism.hinges],
-        "places_without_limit": int(np.isinf(capacity).sum()),
-        "duality_gap": gap,
-    }
-    if options.force is not None:
-        result.results["load_N"] = options.force
-        result.results["safety_factor"] = float(capacity[k] / options.force)
+    asked = {} if options.force is None else {"load_N": options.force, "safety_factor": capacity[k] / options.force}
+    r = out.MovingLoad(
+        chain=chain,
+        collapse_load_N=float(capacity[k]),
+        collapse_load_kN_per_m=float(capacity[k] / assembly.depth / 1e3),
+        worst_place_m=float(places[k]),
+        worst_place_over_span=float((places[k] - low) / (high - low)),
+        hinges=[out.NamedHinge(joint=j, side=side, name=assembly.joint_names[j]) for j, side in mechanism.hinges],
+        places_without_limit=int(np.isinf(capacity).sum()),
+        duality_gap=gap,
+        **asked,
+    )
+    result.results = r
     result.arrays = {
         **geometry_arrays(assembly),
         "place": Array(places, ("place",), "m", "x of the first axle"),

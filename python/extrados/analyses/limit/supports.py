@@ -7,6 +7,7 @@ from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.limit.tables import Supports
 from extrados.limit.programme import NoEquilibrium
 from extrados.limit.supports import support_movement
+from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
 SHOWN = (0.0, 0.25, 0.5, 0.75, 1.0)  # of the movement at the fall
@@ -30,22 +31,23 @@ def run(context: Context, options: Supports) -> Result:
     touched = np.minimum(last.position, 1.0 - last.position) < 1e-5
     fourth = [int(k) for k in np.flatnonzero(touched) if k not in {h[0] for h in last.hinges}]
     result = Result("supports")
-    result.results = {
-        "movement_at_fall_m": float(movement[-1]),
-        "movement_at_fall_over_span": float(movement[-1] / span),
-        "span_change_at_fall_ratio": float(
+    r = out.Supports(
+        movement_at_fall_m=float(movement[-1]),
+        movement_at_fall_over_span=float(movement[-1] / span),
+        span_change_at_fall_ratio=float(
             movement[-1] * options.spread / np.hypot(options.spread, options.settle) / span
         ),
-        "thrust_at_rest_N": float(force[0, 0]),
-        "thrust_at_fall_N": float(force[-1, 0]),
-        "hinges_at_rest": [{"joint": k, "side": side} for k, side in states[0].hinges],
-        "hinges_at_fall": [{"joint": k, "side": side} for k, side in last.hinges],
-        "joints_touched_at_fall": fourth,
-        "stages": [
-            {"movement_m": float(movement[i]), "hinges": [f"{side} of joint {k}" for k, side in states[i].hinges]}
+        thrust_at_rest_N=float(force[0, 0]),
+        thrust_at_fall_N=float(force[-1, 0]),
+        hinges_at_rest=[out.JointHinge(joint=k, side=side) for k, side in states[0].hinges],
+        hinges_at_fall=[out.JointHinge(joint=k, side=side) for k, side in last.hinges],
+        joints_touched_at_fall=fourth,
+        stages=[
+            out.Stage(movement_m=movement[i], hinges=[f"{side} of joint {k}" for k, side in states[i].hinges])
             for i in stages
         ],
-    }
+    )
+    result.results = r
     shown = [int(np.abs(movement - share * movement[-1]).argmin()) for share in SHOWN]
     result.arrays = {
         **geometry_arrays(arch),

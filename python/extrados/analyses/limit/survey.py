@@ -2,16 +2,20 @@
 
 import csv
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.tables import Survey
-from extrados.analyses.limit.variation import Outcome, changed, evaluate, spoken
+from extrados.analyses.limit.variation import Outcome, changed, evaluate, outcomes_of, spoken
 from extrados.analyses.limit.variation import read_table as read_section
+from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
+from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
 LARGEST_FILE = 50_000_000  # bytes
@@ -58,6 +62,35 @@ def _value(cell: str) -> Any:
     return cell
 
 
+def _column(header: list[str], rows: list[list[str]], name: str) -> list[str]:
+    return [row[header.index(name)] for row in rows] if name in header else [""] * len(rows)
+
+
+@dataclass(frozen=True)
+class Sections:
+    """Member k is the structure of table `data` with the keys of rows[k] in their place."""
+
+    building: Building
+    data: dict[str, Any]
+    header: list[str]
+    rows: list[list[str]]
+    options: Survey
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(lambda k: self._outcome(self.rows[k]).row(), first, count)
+
+    def _outcome(self, row: list[str]) -> Outcome:
+        data = self.data
+        for name, cell in zip(self.header, row, strict=True):
+            if name != "name" and cell:
+                data = changed(data, name, _value(cell))
+        try:
+            building = self.building.apart().having(structure=read_section(type(self.building.structure), data))
+        except BadGeometry as error:
+            return Outcome(reason=str(error))
+        return evaluate(building, self.options, fracture=self.options.fracture)
+
+
 def run(context: Context, options: Survey) -> Result:
     """The deck's structure with the keys of each row in their place; empty cells leave the deck's value."""
     model = type(context.deck.structure)
@@ -69,24 +102,9 @@ def run(context: Context, options: Survey) -> Result:
                 f"it has {', '.join(k for k in model.model_fields if k != 'kind')}, and 'name'"
             )
     begin = time.perf_counter()
-    outcomes: list[Outcome] = []
-    names = []
-    for i, row in enumerate(rows):
-        if i % 50 == 0:
-            context.progress(i, len(rows), "survey")
-        data = context.deck.data["structure"]
-        names.append(f"section {i + 1}")
-        for name, cell in zip(header, row, strict=True):
-            if name == "name":
-                names[-1] = cell or names[-1]
-            elif cell:
-                data = changed(data, name, _value(cell))
-        try:
-            building = context.building.having(structure=read_section(model, data))
-        except BadGeometry as error:
-            outcomes.append(Outcome(reason=str(error)))
-            continue
-        outcomes.append(evaluate(building, options, fracture=options.fracture))
+    names = [cell or f"section {i + 1}" for i, cell in enumerate(_column(header, rows, "name"))]
+    job = Sections(context.building, context.deck.data["structure"], header, rows, options)
+    outcomes = outcomes_of(sweep(context, "survey", job, len(rows), "survey", slow=True).whole())
     seconds = time.perf_counter() - begin
     gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
     columns: dict[str, Any] = {
@@ -103,20 +121,21 @@ def run(context: Context, options: Survey) -> Result:
     columns["reason"] = ["; ".join([o.reason] if o.reason else o.notes) for o in outcomes]
     stand = np.isfinite(gamma)
     result = Result("survey")
-    result.results = {
-        "sections": len(rows),
-        "standing": int(stand.sum()),
-        "without_answer": [
-            {"row": i + 2, "name": n, "reason": o.reason}
+    r = out.Survey(
+        sections=len(rows),
+        standing=int(stand.sum()),
+        without_answer=[
+            out.NoAnswerRow(row=i + 2, name=n, reason=o.reason)
             for i, (n, o) in enumerate(zip(names, outcomes, strict=True))
             if o.reason
         ][:100],
-        "weakest": names[int(np.nanargmin(gamma))] if stand.any() else None,
-        "weakest_collapse_acceleration_g": float(np.nanmin(gamma)) if stand.any() else None,
-        "median_collapse_acceleration_g": float(np.nanmedian(gamma)) if stand.any() else None,
-        "sections_per_second": len(rows) / max(seconds, 1e-9),
-        "duality_gap": max(o.gap for o in outcomes),
-    }
+        weakest=names[int(np.nanargmin(gamma))] if stand.any() else None,
+        weakest_collapse_acceleration_g=float(np.nanmin(gamma)) if stand.any() else None,
+        median_collapse_acceleration_g=float(np.nanmedian(gamma)) if stand.any() else None,
+        sections_per_second=len(rows) / max(seconds, 1e-9),
+        duality_gap=max(o.gap for o in outcomes),
+    )
+    result.results = r
     result.arrays = {
         "gamma": Array(gamma, ("section",), "g", "collapse acceleration to +x; NaN without an answer"),
         "section_name": Array(np.array(names, dtype=object), ("section",), "", "names of the sections"),
@@ -126,8 +145,8 @@ def run(context: Context, options: Survey) -> Result:
     text = f"{int(stand.sum())} of {len(rows)} sections stand"
     if stand.any():
         text += (
-            f"; the weakest is {result.results['weakest']} with {result.results['weakest_collapse_acceleration_g']:.4f} g, "
-            f"the median {result.results['median_collapse_acceleration_g']:.4f} g"
+            f"; the weakest is {r.weakest} with {r.weakest_collapse_acceleration_g:.4f} g, "
+            f"the median {r.median_collapse_acceleration_g:.4f} g"
         )
     result.answer = text + f". {len(rows) - int(stand.sum())} rows carry a reason in survey.csv."
     return result

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import packed
 from extrados.analyses.limit.tables import Sweep
@@ -14,14 +15,16 @@ from extrados.analyses.limit.variation import (
     Signature,
     changed,
     evaluate,
-    measures_of,
+    outcomes_of,
     read_table,
     spoken,
 )
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.limit.motion import finite_motion
+from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.schema.quantities import unit_of
 from extrados.schema.table import Table
 
 # Of the range: how closely changes of mechanism and the optimum are found.
@@ -47,7 +50,22 @@ class Range:
             table = read_table(type(getattr(self.building, self.table)), data)
         except BadGeometry as error:
             return Outcome(reason=str(error))
-        return evaluate(self.building.having(**{self.table: table}), self.options, fracture=fracture, explain=explain)
+        return evaluate(
+            self.building.apart().having(**{self.table: table}), self.options, fracture=fracture, explain=explain
+        )
+
+
+@dataclass(frozen=True)
+class Values:
+    """Member k is the question put at values[k]."""
+
+    ask: Range
+    values: np.ndarray
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(
+            lambda k: self.ask.at(self.values[k], fracture=self.ask.options.fracture, explain=True).row(), first, count
+        )
 
 
 def _placed(vary: str) -> tuple[str, str]:
@@ -73,12 +91,6 @@ def _is_whole(model: Table, table: str, path: str) -> bool:
     return "int" in text and "float" not in text
 
 
-def _unit(model: Table, path: str) -> str:
-    """Unit of a key of the table itself, none where it has none."""
-    about = type(model).model_json_schema()["properties"].get(path, {})
-    return next((b["unit"] for b in (about, *about.get("anyOf", [])) if "unit" in b), "")
-
-
 def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
     table, path = _placed(options.vary)
@@ -88,10 +100,8 @@ def run(context: Context, options: Sweep) -> Result:
     values = np.unique(np.round(values)) if whole else np.sort(values)
     data = {**context.deck.data.get(table, {}), **(options.model_dump(exclude_none=True).get(table) or {})}
     ask = Range(context.building, table, path, data, options, whole)
-    outcomes = []
-    for i, value in enumerate(values):
-        context.progress(i, len(values), f"sweep of {options.vary}")
-        outcomes.append(ask.at(value, fracture=options.fracture, explain=True))
+    swept = sweep(context, "sweep", Values(ask, values), len(values), f"sweep of {options.vary}", slow=True)
+    outcomes = outcomes_of(swept.whole())
     if all(o.gamma is None for o in outcomes):
         raise Refused(f"no value of {options.vary} gives a structure that stands: {outcomes[-1].reason}")
     changes = _changes(ask, values, outcomes) if options.locate and not whole else []
@@ -106,30 +116,33 @@ def run(context: Context, options: Sweep) -> Result:
     result = Result("sweep")
     stable = [c for c in changes if not c["before"] or not c["after"]]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
-    result.results = {
-        "vary": options.vary,
-        "unit": _unit(model, path),
-        "mechanisms": [{"number": n, "hinges": spoken(s)} for s, n in numbers.items()],
-        "changes": [
-            {
-                "value": c["value"],
-                "from": "locked" if c["before"] == LOCKED else numbers.get(c["before"], 0),
-                "to": "locked" if c["after"] == LOCKED else numbers.get(c["after"], 0),
-                "collapse_acceleration_g": c["gamma"],
-            }
+    fractured = [o.fractured for o in outcomes]
+    r = out.Sweep(
+        vary=options.vary,
+        unit=unit_of(type(model), path),
+        mechanisms=[out.Mechanism(number=n, hinges=spoken(s)) for s, n in numbers.items()],
+        changes=[
+            out.Change(
+                value=c["value"],
+                before="locked" if c["before"] == LOCKED else numbers.get(c["before"], 0),
+                after="locked" if c["after"] == LOCKED else numbers.get(c["after"], 0),
+                collapse_acceleration_g=c["gamma"],
+            )
             for c in changes
         ],
-        "stable_limits": [c["value"] for c in stable],
-        "locked_limits": locks,
-        "optimum_value": best,
-        "optimum_collapse_acceleration_g": best_gamma,
-        "optimum_tilt_angle_deg": float(np.degrees(np.arctan(best_gamma))),
-        "optimum_inside": bool(values[0] < best < values[-1]),
-        "values": values.tolist(),
-        "collapse_accelerations_g": [o.gamma for o in outcomes],
-        "gaps": [{"value": float(v), "reason": o.reason} for v, o in zip(values, outcomes, strict=True) if o.reason],
-        "duality_gap": max(o.gap for o in outcomes),
-    }
+        stable_limits=[c["value"] for c in stable],
+        locked_limits=locks,
+        optimum_value=best,
+        optimum_collapse_acceleration_g=best_gamma,
+        optimum_tilt_angle_deg=float(np.degrees(np.arctan(best_gamma))),
+        optimum_inside=bool(values[0] < best < values[-1]),
+        values=values.tolist(),
+        collapse_accelerations_g=[o.gamma for o in outcomes],
+        gaps=[out.Gap(value=v, reason=o.reason) for v, o in zip(values, outcomes, strict=True) if o.reason],
+        duality_gap=max(o.gap for o in outcomes),
+        **({"fractured_collapse_accelerations_g": fractured} if options.fracture else {}),
+    )
+    result.results = r
     gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
     number = np.array([numbers.get(o.signature, 0) for o in outcomes])
     columns: dict[str, Any] = {
@@ -145,24 +158,22 @@ def run(context: Context, options: Sweep) -> Result:
         "change": Array(np.array([c["value"] for c in changes]), ("change",), "", "where the mechanism changes"),
     }
     if options.fracture:
-        cracked = np.array([np.nan if o.fractured is None else o.fractured for o in outcomes])
-        result.results["fractured_collapse_accelerations_g"] = [o.fractured for o in outcomes]
+        cracked = np.array([np.nan if f is None else f for f in fractured])
         result.arrays["fractured"] = Array(cracked, ("value",), "g", "with the leeward buttress cracked")
         columns["fractured_collapse_acceleration"] = cracked
-    names = next((o.assembly.measures for o in outcomes if o.assembly is not None), {})
-    for name in names:
-        columns[name] = [measures_of(o.assembly).get(name, np.nan) for o in outcomes]
+    for name in next((o.measures for o in outcomes if o.measures), {}):
+        columns[name] = [o.measures.get(name, np.nan) for o in outcomes]
     columns["reason"] = [o.reason for o in outcomes]
     units = {
-        options.vary: result.results["unit"],
+        options.vary: r.unit,
         "collapse_acceleration": "g",
         "fractured_collapse_acceleration": "g",
         "tilt_angle": "deg",
     }
     result.tables = {"sweep": TableData(columns, units)}
-    result.arrays.update(_examples(outcomes, numbers))
+    result.arrays.update(_examples(ask, values, outcomes, numbers))
     result.warnings = list(dict.fromkeys(note for o in outcomes for note in o.notes))[:5]
-    result.answer = _words(options, result.results, numbers)
+    result.answer = _words(options, r)
     return result
 
 
@@ -215,43 +226,51 @@ def _optimum(ask: Range, values: np.ndarray, outcomes: list[Outcome], closely: b
     return best[1], best[0]
 
 
-def _examples(outcomes: list[Outcome], numbers: dict[Signature, int]) -> dict[str, Array]:
+def _examples(
+    ask: Range, values: np.ndarray, outcomes: list[Outcome], numbers: dict[Signature, int]
+) -> dict[str, Array]:
     """One section of each mechanism, in the middle of where it governs, with its mechanism carried on."""
     outlines: dict[str, np.ndarray] = {}
     moved: dict[str, np.ndarray] = {}
+    blocks: dict[int, int] = {}
     for signature, number in numbers.items():
-        same = [o for o in outcomes if o.signature == signature]
+        same = [v for v, o in zip(values, outcomes, strict=True) if o.signature == signature]
         if not same:
             continue
-        one = same[len(same) // 2]
+        one = ask.at(same[len(same) // 2])
         pose = finite_motion(one.assembly, one.mechanism)
+        blocks[number] = len(pose)
         for i, (outline, c, p) in enumerate(zip(one.assembly.outlines, one.assembly.centroid, pose, strict=True)):
             cos, sin = np.cos(p[2]), np.sin(p[2])
             outlines[f"{number}/{i}"] = outline
             moved[f"{number}/{i}"] = (outline - c) @ np.array([[cos, sin], [-sin, cos]]) + p[:2]
+    of = [number for number, count in blocks.items() for _ in range(count)]
     return {
+        "example_mechanism": Array(
+            np.array(of, dtype=int), ("example_path",), "", "number of the mechanism of each block"
+        ),
         **packed("example", outlines, "m", "blocks of one section of each mechanism (number/block)"),
         **packed("example_moved", moved, "m", "the same, moved"),
     }
 
 
-def _words(options: Sweep, results: dict[str, Any], numbers: dict[Signature, int]) -> str:
-    best = f"{results['optimum_value']:.4g}"
-    where = "an optimum at" if results["optimum_inside"] else "greatest at the end of the range,"
-    if results["locked_limits"]:
+def _words(options: Sweep, r: out.Sweep) -> str:
+    best = f"{r.optimum_value:.4g}"
+    where = "an optimum at" if r.optimum_inside else "greatest at the end of the range,"
+    if r.locked_limits:
         where = "greatest where it is nearly locked, at"
     text = (
-        f"{options.vary} from {results['values'][0]:.4g} to {results['values'][-1]:.4g}: {where} {best} with "
-        f"{results['optimum_collapse_acceleration_g']:.4f} g ({results['optimum_tilt_angle_deg']:.2f} degrees). "
-        f"{len(numbers)} mechanism{'s' if len(numbers) != 1 else ''}"
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}: {where} {best} with "
+        f"{r.optimum_collapse_acceleration_g:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
+        f"{len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
-    moves = [f"{c['from']} to {c['to']} at {c['value']:.4g}" for c in results["changes"] if c["from"] and c["to"]]
-    locked = ", ".join(f"{v:.4g}" for v in results["locked_limits"])
+    moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]
+    locked = ", ".join(f"{v:.4g}" for v in r.locked_limits)
     text += f"; changes {', '.join(moves[:8])}." if moves else "."
     if locked:
         text += f" At {locked} it locks: past that no load of this kind brings it down."
-    if results["stable_limits"]:
-        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in results['stable_limits'])}."
-    elif results["gaps"]:
-        text += f" {len(results['gaps'])} of {len(results['values'])} values give no structure that stands."
+    if r.stable_limits:
+        text += f" The range in which it stands ends at {', '.join(f'{v:.4g}' for v in r.stable_limits)}."
+    elif r.gaps:
+        text += f" {len(r.gaps)} of {len(r.values)} values give no structure that stands."
     return text

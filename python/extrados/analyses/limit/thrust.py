@@ -14,6 +14,7 @@ from extrados.analyses.limit.tables import Thrust
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.answer import CannotStand, assess
 from extrados.limit.programme import NoEquilibrium, State
+from extrados.results import limit as out
 from extrados.results.model import Result, TableData
 
 
@@ -39,39 +40,42 @@ def run(context: Context, options: Thrust) -> Result:
         ) from None
     states = {"least": least, "most": most, "central": central}
     result = Result("thrust")
-    result.results = {
-        "gamma_g": options.gamma,
-        "chain": chain,
-        "admissible_interval_g": [low, high],
-        "geometric_safety_factor": 1.0 / part,
-        "least_part_of_joints": part,
-        "weight_N": answer.loads.scale,
-        "depth_m": assembly.depth,
-        "duality_gap": answer.gap,
-    }
+    lines = {}
     for name, state in states.items():
         thrust = limit.horizontal(state, springing)
-        result.results[name] = {
-            "horizontal_N": thrust,
-            "horizontal_kN_per_m": thrust / assembly.depth / 1e3,
-            "over_weight": thrust / answer.loads.scale,
-            "required_friction": float(state.friction.max()),
-            "required_friction_joint": assembly.joint_names[int(state.friction.argmax())],
-            "greatest_eccentricity_ratio": float(np.abs(state.position - 0.5).max()),
-            "reactions": reaction_rows(answer, state),
-        }
+        lines[name] = out.ThrustLine(
+            horizontal_N=thrust,
+            horizontal_kN_per_m=thrust / assembly.depth / 1e3,
+            over_weight=thrust / answer.loads.scale,
+            required_friction=state.friction.max(),
+            required_friction_joint=assembly.joint_names[int(state.friction.argmax())],
+            greatest_eccentricity_ratio=np.abs(state.position - 0.5).max(),
+            reactions=reaction_rows(answer, state),
+        )
         result.tables[f"thrust_{name}"] = _table(assembly, state)
+    r = out.Thrust(
+        gamma_g=options.gamma,
+        chain=chain,
+        admissible_interval_g=[low, high],
+        geometric_safety_factor=1.0 / part,
+        least_part_of_joints=part,
+        weight_N=answer.loads.scale,
+        depth_m=assembly.depth,
+        duality_gap=answer.gap,
+        **lines,
+    )
+    result.results = r
     result.arrays = geometry_arrays(assembly)
     about = {"least": "of least thrust", "most": "of greatest thrust", "central": "that is most central"}
     for name, state in states.items():
         result.arrays.update(state_arrays(assembly, name, state, about[name]))
         result.arrays.update(graphic_arrays(answer, name, state, about[name]))
-    r = result.results
+    needed = np.inf if r.central.required_friction is None else r.central.required_friction
     result.answer = (
-        f"At {options.gamma:g} g the thrust of the {chain} lies between {r['least']['horizontal_kN_per_m']:.4g} and "
-        f"{r['most']['horizontal_kN_per_m']:.4g} kN per metre of depth at its left springing; the most central line "
-        f"({r['central']['horizontal_kN_per_m']:.4g} kN/m) keeps to the middle {100 * part:.1f} % of the joints "
-        f"(geometric safety factor {1 / part:.2f}) and needs a friction of {r['central']['required_friction']:.2f}. "
+        f"At {options.gamma:g} g the thrust of the {chain} lies between {r.least.horizontal_kN_per_m:.4g} and "
+        f"{r.most.horizontal_kN_per_m:.4g} kN per metre of depth at its left springing; the most central line "
+        f"({r.central.horizontal_kN_per_m:.4g} kN/m) keeps to the middle {100 * part:.1f} % of the joints "
+        f"(geometric safety factor {1 / part:.2f}) and needs a friction of {needed:.2f}. "
         f"Lines are admissible from {low:.4f} to {high:.4f} g."
     )
     return result

@@ -19,6 +19,7 @@ from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import NoEquilibrium
+from extrados.results import limit as out
 from extrados.results.model import Array, Result
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
@@ -39,30 +40,32 @@ def run(context: Context, options: Tilt) -> Result:
     assembly: Assembly = context.building.blocks()
     answer = answer_of(context.building, options)
     state, mechanism = answer.collapse_state, answer.mechanism
-    hinges = hinge_rows(assembly, mechanism.hinges, mechanism.pivot)
     result = Result("tilt")
-    result.results = {
-        "collapse_acceleration_g": state.gamma,
-        "collapse_acceleration_opposite_g": -answer.back_state.gamma,
-        "tilt_angle_deg": degrees(state.gamma),
-        "tilt_angle_opposite_deg": degrees(-answer.back_state.gamma),
-        "admissible_interval_g": [answer.back_state.gamma, state.gamma],
-        "load_direction": "+x",
-        "hinges": hinges,
-        "sliding_joints": mechanism.sliding,
-        "hinges_opposite": hinge_rows(assembly, answer.back_mechanism.hinges, answer.back_mechanism.pivot),
-        "touching_joints": answer.touching,
-        "required_friction": float(state.friction.max()),
-        "required_friction_joint": int(state.friction.argmax()),
-        "geometric_safety_factor": answer.safety,
-        "weight_N": answer.loads.scale,
-        "depth_m": assembly.depth,
-        "reactions": reaction_rows(answer, state),
+    fracture = _fracture(context.building, options, answer, result) if options.fracture else {}
+    found = out.Tilt(
+        collapse_acceleration_g=state.gamma,
+        collapse_acceleration_opposite_g=-answer.back_state.gamma,
+        tilt_angle_deg=degrees(state.gamma),
+        tilt_angle_opposite_deg=degrees(-answer.back_state.gamma),
+        admissible_interval_g=[answer.back_state.gamma, state.gamma],
+        load_direction="+x",
+        hinges=hinge_rows(assembly, mechanism.hinges, mechanism.pivot),
+        sliding_joints=mechanism.sliding,
+        hinges_opposite=hinge_rows(assembly, answer.back_mechanism.hinges, answer.back_mechanism.pivot),
+        touching_joints=answer.touching,
+        required_friction=float(state.friction.max()),
+        required_friction_joint=int(state.friction.argmax()),
+        geometric_safety_factor=answer.safety,
+        weight_N=answer.loads.scale,
+        depth_m=assembly.depth,
+        reactions=reaction_rows(answer, state),
         **_thrusts(answer),
         **assembly.measures,
-        "duality_gap": answer.gap,
-    }
-    result.arrays = {
+        duality_gap=answer.gap,
+        **fracture,
+    )
+    result.results = found
+    result.arrays |= {
         **geometry_arrays(assembly),
         **state_arrays(assembly, "collapse", state, "at collapse, load to +x"),
         **graphic_arrays(answer, "collapse", state, "at collapse, load to +x"),
@@ -78,10 +81,8 @@ def run(context: Context, options: Tilt) -> Result:
             about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
             result.arrays.update(state_arrays(assembly, word, state_of, about))
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
-    if options.fracture:
-        _fracture(context.building, options, answer, result)
-    result.answer = _words(assembly, answer, hinges, result)
-    needed = result.results["required_friction"]
+    result.answer = _words(assembly, answer, found)
+    needed = found.required_friction or 0.0
     if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
             f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): it slides "
@@ -101,17 +102,17 @@ def _thrusts(answer: Answer) -> dict[str, object]:
         return abs(float(state.force(answer.assembly)[answer.assembly.chains[name][0], 0]))
 
     table = {
-        name: {"min_N": horizontal(name, answer.least[name]), "max_N": horizontal(name, answer.most[name])}
+        name: out.ChainThrust(min_N=horizontal(name, answer.least[name]), max_N=horizontal(name, answer.most[name]))
         for name in answer.assembly.chains
     }
     if not table:
         return {}
     first = next(iter(table.values()))
-    return {"thrust_min_N": first["min_N"], "thrust_max_N": first["max_N"], "thrusts": table}
+    return {"thrust_min_N": first.min_N, "thrust_max_N": first.max_N, "thrusts": table}
 
 
-def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> None:
-    """Add the capacity with a cracked buttress beside the monolithic one."""
+def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> dict[str, out.Fracture]:
+    """The key of the capacity with a cracked buttress beside the monolithic one; its arrays go to `result`."""
     assembly = building.blocks()
     block = assembly.buttresses[-1] if assembly.buttresses else None
     try:
@@ -119,23 +120,10 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
         if found is not None and found.gamma <= 0.0:
             raise NoEquilibrium
     except NoEquilibrium:
-        result.results["fracture"] = {"stands": False}
         result.warnings.append("with its leeward buttress cracked the structure cannot stand upright")
-        return
+        return {"fracture": out.Fracture(stands=False)}
     if found is None:
-        result.results["fracture"] = {"cracks": False, "collapse_acceleration_g": answer.gamma, "ratio": 1.0}
-        return
-    result.results["fracture"] = {
-        "cracks": True,
-        "buttress": assembly.block_names[block],
-        "collapse_acceleration_g": found.gamma,
-        "tilt_angle_deg": degrees(found.gamma),
-        "ratio": found.gamma / answer.gamma,
-        "crack_height_m": found.height,
-        "crack_height_ratio": found.height_ratio,
-        "resultant_from_outer_face_ratio": found.section_ratio,
-        "hinges": hinge_rows(found.assembly, found.mechanism.hinges, found.mechanism.pivot),
-    }
+        return {"fracture": out.Fracture(cracks=False, collapse_acceleration_g=answer.gamma, ratio=1.0)}
     outlines = found.assembly.outlines
     result.arrays.update(
         {
@@ -154,6 +142,18 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
             "crack_point": Array(found.state.points(found.assembly), ("joint", "axis"), "m", "thrust line, cracked"),
         }
     )  # fmt: skip
+    told = out.Fracture(
+        cracks=True,
+        buttress=assembly.block_names[block],
+        collapse_acceleration_g=found.gamma,
+        tilt_angle_deg=degrees(found.gamma),
+        ratio=found.gamma / answer.gamma,
+        crack_height_m=found.height,
+        crack_height_ratio=found.height_ratio,
+        resultant_from_outer_face_ratio=found.section_ratio,
+        hinges=hinge_rows(found.assembly, found.mechanism.hinges, found.mechanism.pivot),
+    )
+    return {"fracture": told}
 
 
 def _some(names: list[str]) -> str:
@@ -161,15 +161,15 @@ def _some(names: list[str]) -> str:
     return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
 
 
-def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Result) -> str:
+def _words(assembly: Assembly, answer: Answer, found: out.Tilt) -> str:
     gamma, back = answer.gamma, -answer.back_state.gamma
     what = {"arch": "arch", "vault": "vault on its buttresses", "nave": "church section"}.get(
         next(iter(assembly.chains), ""), "structure"
     )
     if assembly.chains:
-        where = _some([f"{h['side']} of {h['name']}" for h in hinges])
+        where = _some([f"{h.side} of {h.name}" for h in found.hinges])
     else:
-        where = _some([f"joint {h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges])
+        where = _some([f"joint {h.name} (x = {h.x_m:.2f}, y = {h.y_m:.2f} m)" for h in found.hinges])
     slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
     moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
     text = (
@@ -178,16 +178,17 @@ def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Resul
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
         text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
-    text += f"Friction of {result.results['required_friction']:.2f} is needed" + (
+    needed = np.inf if found.required_friction is None else found.required_friction
+    text += f"Friction of {needed:.2f} is needed" + (
         f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."
     )
-    fracture = result.results.get("fracture", {})
-    if fracture.get("cracks"):
+    fracture = found.fracture
+    if fracture and fracture.cracks:
         text += (
-            f" With the leeward buttress cracked from {fracture['crack_height_m']:.2f} m above its base down to the toe it "
-            f"bears only {fracture['collapse_acceleration_g']:.4f} g ({fracture['tilt_angle_deg']:.2f} degrees), "
-            f"{fracture['ratio']:.2f} of that."
+            f" With the leeward buttress cracked from {fracture.crack_height_m:.2f} m above its base down to the toe it "
+            f"bears only {fracture.collapse_acceleration_g:.4f} g ({fracture.tilt_angle_deg:.2f} degrees), "
+            f"{fracture.ratio:.2f} of that."
         )
-    elif fracture.get("cracks") is False:
+    elif fracture and fracture.cracks is False:
         text += " The leeward buttress does not crack before that."
     return text

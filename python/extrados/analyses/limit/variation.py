@@ -1,11 +1,14 @@
 """One section among many: its structure from changed deck keys, its capacity, mechanism or the reason for none."""
 
 import copy
+import json
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
+from extrados.analyses.batches import Swept
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import fracture_of, limit_of
 from extrados.analyses.limit.tables import LimitAnalysisTable
@@ -35,6 +38,32 @@ class Outcome:
     mechanism: Mechanism | None = None
     notes: list[str] = field(default_factory=list)
     locked: bool = False  # no load of the kind brings it down: it stands, but has no capacity to give
+    measures: dict[str, float] = field(default_factory=dict)  # derived lengths of the section [m]
+
+    def row(self) -> dict[str, np.ndarray]:
+        """What a sweep keeps of it: all but the assembly and its mechanism."""
+        words = [self.signature, self.reason, self.notes, self.measures]
+        numbers = [
+            np.nan if self.gamma is None else self.gamma,
+            np.nan if self.fractured is None else self.fractured,
+            self.gap,
+        ]
+        return {"numbers": np.array(numbers), "locked": np.array(self.locked), "words": np.array(json.dumps(words))}
+
+
+def outcome_of(row: dict[str, np.ndarray]) -> Outcome:
+    """The outcome of a kept row."""
+    gamma, fractured, gap = (None if np.isnan(x) else float(x) for x in row["numbers"])
+    marks, reason, notes, measures = json.loads(str(row["words"]))
+    return Outcome(
+        gamma, fractured, tuple((name, mark) for name, mark in marks), gap or 0.0, reason, notes=notes,
+        locked=bool(row["locked"]), measures=measures,
+    )  # fmt: skip
+
+
+def outcomes_of(swept: Swept) -> list[Outcome]:
+    """The outcomes of all members."""
+    return [outcome_of({name: rows[k] for name, rows in swept.arrays.items()}) for k in range(len(swept.members))]
 
 
 def signature(assembly: Assembly, mechanism: Mechanism) -> Signature:
@@ -98,11 +127,15 @@ def evaluate(
         if state.gamma <= 0.0:
             raise NoEquilibrium
     except Immovable as error:
-        return Outcome(signature=LOCKED, reason=f"cannot be brought down: {error}", assembly=assembly, locked=True)
+        return Outcome(
+            signature=LOCKED, reason=f"cannot be brought down: {error}", assembly=assembly, locked=True,
+            measures=measures_of(assembly),
+        )  # fmt: skip
     except NoEquilibrium:
-        return Outcome(reason=_reason(limit) if explain else "cannot stand", assembly=assembly)
+        reason = _reason(limit) if explain else "cannot stand"
+        return Outcome(reason=reason, assembly=assembly, measures=measures_of(assembly))
     except NoAnswer as error:
-        return Outcome(reason=str(error), assembly=assembly)
+        return Outcome(reason=str(error), assembly=assembly, measures=measures_of(assembly))
     cracked, notes = None, []
     if fracture:
         try:
@@ -115,7 +148,7 @@ def evaluate(
             notes.append(f"with the buttress cracked: {error}")
     return Outcome(
         state.gamma, cracked, signature(assembly, mechanism), abs(state.gamma - mechanism.upper_bound), "",
-        assembly, mechanism, notes,
+        assembly, mechanism, notes, measures=measures_of(assembly),
     )  # fmt: skip
 
 
@@ -126,6 +159,6 @@ def _reason(limit: LimitAnalysis) -> str:
         return f"cannot stand: {error}"
 
 
-def measures_of(assembly: Assembly | None) -> dict[str, float]:
-    """Derived lengths of a section, none where it could not be built."""
-    return {} if assembly is None else {k: float(v) for k, v in assembly.measures.items()}
+def measures_of(assembly: Assembly) -> dict[str, float]:
+    """Derived lengths of a section."""
+    return {k: float(v) for k, v in assembly.measures.items()}

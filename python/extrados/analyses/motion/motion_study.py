@@ -1,6 +1,7 @@
 """motion: what a ground motion is, alone or as a set: peaks, measures, spectra, pulses, export."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.measures import fourier_spectrum, spectral_measures
 from extrados.motions.motion import Motion
 from extrados.motions.wavelet_pulse import classify
+from extrados.results import motion as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -42,11 +44,11 @@ def _series(motion: Motion) -> tuple[np.ndarray, float]:
     return acceleration, float(time[1] - time[0])
 
 
-def _impulse(i: Impulse) -> dict[str, float]:
-    return {
-        "amplitude_g": i.amplitude / GRAVITY, "period_s": i.period, "start_s": i.start, "goodness_of_fit": i.goodness,
-        "explained": i.explained,
-    }  # fmt: skip
+def _impulse(i: Impulse) -> out.Impulse:
+    return out.Impulse(
+        amplitude_g=i.amplitude / GRAVITY, period_s=i.period, start_s=i.start, goodness_of_fit=i.goodness,
+        explained=i.explained,
+    )  # fmt: skip
 
 
 def _study(motion: Motion, options: MotionStudy) -> dict:
@@ -74,11 +76,10 @@ def _study(motion: Motion, options: MotionStudy) -> dict:
         "time_step_s": step,
         "primary_impulse": _impulse(impulses[0]) if impulses else None,
         "impulses": [_impulse(i) for i in impulses],
-        "wavelet_pulse": {
-            "indicator": pulse.indicator, "period_s": pulse.period, "peak_velocity_m_s": pulse.peak_velocity,
-            "pgv_ratio": pulse.pgv_ratio, "energy_ratio": pulse.energy_ratio, "early": pulse.early,
-            "pulse_like": pulse.pulse_like,
-        },
+        "wavelet_pulse": out.WaveletPulse(
+            indicator=pulse.indicator, period_s=pulse.period, peak_velocity_m_s=pulse.peak_velocity,
+            pgv_ratio=pulse.pgv_ratio, energy_ratio=pulse.energy_ratio, early=pulse.early, pulse_like=pulse.pulse_like,
+        ),
     }  # fmt: skip
 
 
@@ -89,8 +90,8 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     periods = _periods(options, step)
     spectra = core.response_spectra(a, step, periods, options.dampings, threads=context.threads)
     frequency, amplitude = fourier_spectrum(a, step)
-    result = Result("motion", results=_study(motion, options), warnings=list(motion.notes))
-    r = result.results
+    result = Result("motion", warnings=list(motion.notes))
+    r = _study(motion, options)
     if abs(velocity[-1]) > 0.1 * np.abs(velocity).max() or abs(displacement[-1]) > 0.5 * np.abs(displacement).max(
         initial=1e-300
     ):
@@ -116,7 +117,10 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
             motion.sample(motion.ground.start + time, 1), ("time",), "m/s^2", "vertical acceleration"
         )
         r["vertical_pga_g"] = float(np.abs(result["vertical"]).max()) / GRAVITY
-    rotd = _all_directions(context, options, periods, result) if motion.horizontal is not None else {}
+    rotd: dict[str, np.ndarray] = {}
+    if motion.horizontal is not None:
+        rotd = _all_directions(context, options, periods, result)
+        r |= {**_rotd_peaks(motion), "rotd_damping": _damping(options)}
     result.tables = {
         "motion": TableData(
             {"time": time, "acceleration": a, "velocity": velocity, "displacement": displacement},
@@ -137,7 +141,8 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     result.files = {
         name: write(motion.name, a, step) for name, write in (writers[e] for e in dict.fromkeys(options.export))
     }
-    result.answer = describe(motion.name, r)
+    result.results = out.OneMotion(**r)
+    result.answer = describe(motion.name, result.results)
     return result
 
 
@@ -152,7 +157,6 @@ def _all_directions(
     """What both horizontal components give over all directions, into `result`; columns for the table of spectra."""
     horizontal, step, damping = context.motion.horizontal, context.motion.ground.step, _damping(options)
     psa = directions.spectra(horizontal, step, periods, damping, context.threads)
-    result.results |= {**_rotd_peaks(context.motion), "rotd_damping": damping}
     found = {}
     for name, values in zip(("rotd50", "rotd100"), psa, strict=True):
         result.arrays[f"psa_{name}"] = Array(
@@ -168,24 +172,24 @@ def _rotd_peaks(motion: Motion) -> dict[str, float]:
     return {"rotd50_pga_g": float(peaks[0]), "rotd100_pga_g": float(peaks[1])}
 
 
-def describe(name: str, r: dict) -> str:
+def describe(name: str, r: out.OneMotion) -> str:
     """The numbers of one motion in words."""
     text = (
-        f"{name}: peak {r['pga_g']:.4g} g at {r['pga_time_s']:.2f} s, {100 * r['pgv_m_s']:.3g} cm/s, {100 * r['pgd_m']:.3g} cm; "
-        f"Arias intensity {r['arias_m_s']:.3g} m/s over {r['duration_5_95_s']:.3g} s (5 to 95 %). "
+        f"{name}: peak {r.pga_g:.4g} g at {r.pga_time_s:.2f} s, {100 * r.pgv_m_s:.3g} cm/s, {100 * r.pgd_m:.3g} cm; "
+        f"Arias intensity {r.arias_m_s:.3g} m/s over {r.duration_5_95_s:.3g} s (5 to 95 %). "
     )
-    if "rotd100_pga_g" in r:
-        text += f"Over all directions the peak is {r['rotd50_pga_g']:.4g} g (RotD50), {r['rotd100_pga_g']:.4g} g at most (RotD100). "
-    if first := r["primary_impulse"]:
+    if r.rotd100_pga_g is not None:
+        text += f"Over all directions the peak is {r.rotd50_pga_g:.4g} g (RotD50), {r.rotd100_pga_g:.4g} g at most (RotD100). "
+    if first := r.primary_impulse:
         text += (
-            f"Primary impulse {abs(first['amplitude_g']):.3g} g over {first['period_s']:.3g} s from {first['start_s']:.2f} s "
-            f"(explains {100 * first['goodness_of_fit']:.0f} % of the motion over its span). "
+            f"Primary impulse {abs(first.amplitude_g):.3g} g over {first.period_s:.3g} s from {first.start_s:.2f} s "
+            f"(explains {100 * first.goodness_of_fit:.0f} % of the motion over its span). "
         )
-    pulse = r["wavelet_pulse"]
-    kind = "pulse-like" if pulse["pulse_like"] else "not pulse-like"
+    pulse = r.wavelet_pulse
+    kind = "pulse-like" if pulse.pulse_like else "not pulse-like"
     return (
         text
-        + f"By Baker's classification it is {kind} (indicator {pulse['indicator']:.2f}, period {pulse['period_s']:.2f} s)."
+        + f"By Baker's classification it is {kind} (indicator {pulse.indicator:.2f}, period {pulse.period_s:.2f} s)."
     )
 
 
@@ -257,7 +261,7 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     psa, impulses = np.array(psa), np.array(impulses)
     count = len(rows["name"])
     result = Result("motion", warnings=warnings)
-    result.results = {
+    r = {
         "count": count,
         "damping": damping,
         **{f"median_{n}": float(np.median(v)) for n, v in rows.items() if n != "name"},
@@ -277,7 +281,10 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         "psa_shown": Array(psa[:SHOWN], ("shown", "period"), "m/s^2"),
         "impulse_amplitude": Array(impulses[:, 0], ("studied",), "g", "primary impulses"),
         "impulse_period": Array(impulses[:, 1], ("studied",), "s"),
-        **{f"shown_{k + 1}": Array(a, (f"point_{k + 1}",), "m/s^2", name) for k, (name, a, _) in enumerate(shown)},
+        **{
+            f"shown_{k + 1}": Array(a, (f"point_{k + 1}",), "m/s^2", name, "shown")
+            for k, (name, a, _) in enumerate(shown)
+        },
         "shown_step": Array(np.array([s for _, _, s in shown]), ("shown",), "s"),
     }
     if squares is not None:
@@ -286,17 +293,18 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
             np.sqrt(squares / len(psa)), ("frequency",), "m/s", "root mean square Fourier amplitude"
         )
     if isinstance(model, models.Generated):
-        _compare_with_intensity(result, model, context)
+        r |= _compare_with_intensity(result, r, model, context)
     elif isinstance(model, models.Compatible):
         known = periods <= (model.longest if model.code == "table" else np.inf)
         target = np.full_like(periods, np.nan)
         target[known] = compatible_set(model, folder).target(periods[known])
-        _compare_with_target(result, model, periods, psa, target)
+        r |= _compare_with_target(result, r, model, periods, psa, target)
     else:
         result.answer = (
-            f"{count} records: median peaks {result['median_pga_g']:.3g} g and {100 * result['median_pgv_m_s']:.3g} cm/s, "
-            f"largest {result['largest_pga_g']:.3g} g; median Arias intensity {result['median_arias_m_s']:.3g} m/s."
+            f"{count} records: median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s, "
+            f"largest {r['largest_pga_g']:.3g} g; median Arias intensity {r['median_arias_m_s']:.3g} m/s."
         )
+    result.results = out.MotionSet(**r)
     for k, (name, a, step) in enumerate(shown):
         if "AT2" in options.export:
             result.files[f"motion_{k + 1}.AT2"] = export.at2(name, a, step)
@@ -312,12 +320,13 @@ def _components(motion: Motion) -> dict[str, float]:
     return {"vertical_pga_g": up, **_rotd_peaks(motion)}
 
 
-def _compare_with_intensity(result: Result, model: models.Generated, context: Context) -> None:
-    """PGA, PGV and Arias of the set beside the medians of its intensity."""
+def _compare_with_intensity(
+    result: Result, r: dict[str, Any], model: models.Generated, context: Context
+) -> dict[str, Any]:
+    """PGA, PGV and Arias of the set (r, its results so far) beside the medians of its intensity; further results."""
     made = generated_set(model, context.deck.folder)
     expected = made.expected()
-    r = result.results
-    r |= {
+    further = {
         "mmi": model.mmi,
         "seed": model.seed,
         "expected_pga_g": expected["pga"] / GRAVITY,
@@ -333,37 +342,43 @@ def _compare_with_intensity(result: Result, model: models.Generated, context: Co
         "line_spectrum": Array(made.spectrum, ("line",), "m/s", "target Fourier amplitude"),
         "line_amplitude": Array(made.amplitude, ("line",), "m/s^2", "amplitude of the sine"),
     }
-    ratio = r["pga_over_expected"]
+    ratio = further["pga_over_expected"]
     result.answer = (
         f"{r['count']} generated motions of intensity {model.mmi:g}: median peaks {r['median_pga_g']:.3g} g and "
         f"{100 * r['median_pgv_m_s']:.3g} cm/s, Arias intensity {r['median_arias_m_s']:.3g} m/s. Records of that intensity have "
-        f"medians of {r['expected_pga_g']:.3g} g and {100 * r['expected_pgv_m_s']:.3g} cm/s (Worden et al. 2012), and the "
-        f"spectrum an Arias intensity of {r['expected_arias_m_s']:.3g} m/s: the set is {ratio:.2f} times as strong by PGA."
+        f"medians of {further['expected_pga_g']:.3g} g and {100 * further['expected_pgv_m_s']:.3g} cm/s (Worden et al. 2012), and the "
+        f"spectrum an Arias intensity of {further['expected_arias_m_s']:.3g} m/s: the set is {ratio:.2f} times as strong by PGA."
     )
     if not 0.5 <= ratio <= 2.0:
         result.warnings.append(
             f'the set\'s PGA is {ratio:.2f} times the median of intensity {model.mmi:g}: scaling = "{model.scaling}" with '
             f"factor {model.factor:g} does not stand for that intensity (see the documentation of Eq. 6.6)"
         )
+    return further
 
 
 def _compare_with_target(
-    result: Result, model: models.Compatible, periods: np.ndarray, psa: np.ndarray, target: np.ndarray
-) -> None:
-    """The set's spectra against the target over its band."""
+    result: Result,
+    r: dict[str, Any],
+    model: models.Compatible,
+    periods: np.ndarray,
+    psa: np.ndarray,
+    target: np.ndarray,
+) -> dict[str, Any]:
+    """The set's spectra (r, its results so far) against the target over its band; further results."""
     band = (periods >= model.shortest) & (periods <= model.longest)
     off = np.abs(psa[:, band] / target[band] - 1.0)
     mean_low = float(np.min(psa.mean(axis=0)[band] / target[band]))
     result.arrays["target"] = Array(target, ("period",), "m/s^2", "target spectrum")
-    result.results |= {
+    result.answer = (
+        f"{len(psa)} motions match the spectrum of {model.code} within {100 * off.max():.1f} % from {model.shortest:g} to "
+        f"{model.longest:g} s ({100 * model.damping:g} % damping); their mean is nowhere below {100 * mean_low:.0f} % of it. "
+        f"Median peaks {r['median_pga_g']:.3g} g and {100 * r['median_pgv_m_s']:.3g} cm/s."
+    )
+    return {
         "largest_deviation": float(off.max()),
         "mean_over_target_least": mean_low,
         "seed": model.seed,
         "shortest_s": model.shortest,
         "longest_s": model.longest,
     }
-    result.answer = (
-        f"{len(psa)} motions match the spectrum of {model.code} within {100 * off.max():.1f} % from {model.shortest:g} to "
-        f"{model.longest:g} s ({100 * model.damping:g} % damping); their mean is nowhere below {100 * mean_low:.0f} % of it. "
-        f"Median peaks {result['median_pga_g']:.3g} g and {100 * result['median_pgv_m_s']:.3g} cm/s."
-    )

@@ -1,5 +1,7 @@
 """shake-table: capacity curves (thesis Fig. C-1), drive displacement, scales that make a motion fit."""
 
+from typing import Any
+
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
@@ -7,6 +9,7 @@ from extrados.analyses.motion.tables import ShakeTable
 from extrados.core import motion as core
 from extrados.motions import export
 from extrados.motions.shake_table import Table, fit, make_drive
+from extrados.results import motion as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -22,7 +25,7 @@ def run(context: Context, options: ShakeTable) -> Result:
     corners = [table.corner_frequencies(mass) for mass in options.masses]
     capacity = np.array([np.min(list(c.values()), axis=0) for c in curves])
     result = Result("shake-table")
-    result.results = {
+    r = {
         "max_velocity_m_s": velocity,
         "masses_kg": list(options.masses),
         "stroke_to_flow_Hz": corners[0]["stroke_to_flow"],
@@ -59,11 +62,13 @@ def run(context: Context, options: ShakeTable) -> Result:
         + "."
     )
     if context.deck.motion is not None:
-        _play(context, options, table, result)
+        r |= _play(context, options, table, result)
+    result.results = out.ShakeTable(**r)
     return result
 
 
-def _play(context: Context, options: ShakeTable, table: Table, result: Result) -> None:
+def _play(context: Context, options: ShakeTable, table: Table, result: Result) -> dict[str, Any]:
+    """Whether the motion fits and what makes it fit: arrays, tables and words into `result`; the further results."""
     motion = context.motion
     time, acceleration = motion.series()
     step = float(time[1] - time[0])
@@ -79,8 +84,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
     inside = (drive.time >= 0.0) & (drive.time <= time[-1] + 0.5 * step)
     wanted = core.measures(acceleration, step)
     missing = drive.acceleration[inside][: len(acceleration)] - acceleration
-    r = result.results
-    r |= {
+    r = {
         "fits": all(f.fits for f in fits),
         "low_cut_Hz": options.low_cut,
         "peak_displacement_m": float(np.abs(drive.displacement).max()),
@@ -89,7 +93,7 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
         "motion_peak_acceleration_g": float(wanted.pga[0]) / GRAVITY,
         "rms_taken_out_ratio": float(np.sqrt(np.mean(missing**2) / max(np.mean(acceleration**2), 1e-300))),
         "use_of_limits": [
-            {"mass_kg": m, "stroke": f.stroke, "flow": f.flow, "force": f.force, "governing": f.governing}
+            out.UseOfLimits(mass_kg=m, stroke=f.stroke, flow=f.flow, force=f.force, governing=f.governing)
             for m, f in zip(options.masses, fits, strict=True)
         ],
         "time_scale": chosen.time_scale,
@@ -124,10 +128,11 @@ def _play(context: Context, options: ShakeTable, table: Table, result: Result) -
     )
     if r["fits"]:
         result.answer += f" {motion.name} fits: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} cm/s."
-        return
+        return r
     worst = max(fits, key=lambda f: max(f.stroke, f.flow, f.force))
     result.answer += (
         f" {motion.name} does not fit: it needs {100 * r['peak_displacement_m']:.3g} cm and {100 * r['peak_velocity_m_s']:.3g} cm/s, "
         f"{max(worst.stroke, worst.flow, worst.force):.2f} times the {worst.governing}. "
         f"It fits with time scaled by {chosen.time_scale:.3f} and acceleration by {chosen.amplitude:.3f}."
     )
+    return r

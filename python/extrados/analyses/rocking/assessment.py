@@ -6,7 +6,8 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.criterion import Fit, fit_arch, interpolated
 from extrados.analyses.rocking.tables import Assessment
 from extrados.building.rockers.arch import ArchModel
-from extrados.motions.impulse import primary_impulses
+from extrados.motions.impulse import Impulse, primary_impulses
+from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -34,44 +35,28 @@ def run(context: Context, options: Assessment) -> Result:
             "curve fitted to this arch is used alone"
         )
     fit = table or own
-    result.results = {
-        "uplift_acceleration_g": gamma,
-        "peak_ground_acceleration_g": context.motion.peak / GRAVITY,
-        "static_verdict": "fails" if context.motion.peak > gamma * GRAVITY else "stands",
-        "coefficients": _coefficients(fit),
-        "coefficients_source": "Table 5.3, regenerated and interpolated" if table else "fitted to this arch",
-        "coefficients_of_this_arch": _coefficients(own),
-        "restitution": model.restitution,
-        "impulses": [],
-    }
-    for k, impulse in enumerate(impulses):
-        needed = float(fit.amplitude(impulse.period, arch.radius))
-        own_needed = float(own.amplitude(impulse.period, arch.radius))
-        amplitude = abs(impulse.amplitude) / GRAVITY
-        result.results["impulses"].append(
-            {
-                "rank": k + 1,
-                "amplitude_g": impulse.amplitude / GRAVITY,
-                "period_s": impulse.period,
-                "start_s": impulse.start,
-                "explained": impulse.explained,
-                "goodness_of_fit": impulse.goodness,
-                "failing_amplitude_g": needed if np.isfinite(needed) else None,
-                "failing_amplitude_own_g": own_needed if np.isfinite(own_needed) else None,
-                "margin": needed / amplitude if np.isfinite(needed) else None,
-                "verdict": "fails" if amplitude >= needed else "stands",
-            }
-        )
-    rows = result.results["impulses"]
-    worst = min(rows, key=lambda r: r["margin"] if r["margin"] is not None else np.inf, default=None)
-    fails = [r for r in rows if r["verdict"] == "fails"]
-    result.results["verdict"] = "fails" if fails else "stands"
-    result.results["margin"] = worst["margin"] if worst else None
-    result.results["primary_impulse"] = (
-        {k: rows[0][k] for k in ("amplitude_g", "period_s", "start_s", "goodness_of_fit")} if rows else None
+    rows = [_row(k + 1, impulse, fit, own, arch.radius) for k, impulse in enumerate(impulses)]
+    worst = min(rows, key=lambda r: np.inf if r.margin is None else r.margin, default=None)
+    r = out.Assessment(
+        uplift_acceleration_g=gamma,
+        peak_ground_acceleration_g=context.motion.peak / GRAVITY,
+        static_verdict="fails" if context.motion.peak > gamma * GRAVITY else "stands",
+        coefficients=_coefficients(fit),
+        coefficients_source="Table 5.3, regenerated and interpolated" if table else "fitted to this arch",
+        coefficients_of_this_arch=_coefficients(own),
+        restitution=model.restitution,
+        impulses=rows,
+        verdict="fails" if any(row.verdict == "fails" for row in rows) else "stands",
+        margin=worst.margin if worst else None,
+        primary_impulse=out.PrimaryImpulse(**{k: rows[0][k] for k in out.PrimaryImpulse.model_fields})
+        if rows
+        else None,
     )
+    result.results = r
+    columns = ("rank", "amplitude_g", "period_s", "start_s", "explained", "goodness_of_fit", "failing_amplitude_g",
+               "failing_amplitude_own_g", "margin", "verdict")  # fmt: skip
     result.tables["assessment"] = TableData(
-        {name: [np.nan if r[name] is None else r[name] for r in rows] for name in (rows[0] if rows else {})}
+        {name: [np.nan if row[name] is None else row[name] for row in rows] for name in (columns if rows else ())}
     )
     periods = np.geomspace(0.12, 1.6, 200) * np.sqrt(arch.radius)
     result.arrays = {
@@ -88,38 +73,52 @@ def run(context: Context, options: Assessment) -> Result:
         "computed_period": Array(own_periods * np.sqrt(arch.radius), ("computed",), "s"),
         "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of this arch, computed"),
     }
-    result.answer = _answer(result.results, worst)
+    result.answer = _answer(r, worst)
     return result
 
 
-def _coefficients(fit: Fit) -> dict[str, float]:
-    return {"C1": fit.c1, "C2": fit.c2, "T_min_s": fit.t_min, "gamma": fit.gamma}
+def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:
+    """An impulse against the failure curves; an infinite failing amplitude becomes None."""
+    needed = float(fit.amplitude(impulse.period, radius))
+    amplitude = abs(impulse.amplitude) / GRAVITY
+    return out.AssessedImpulse(
+        rank=rank,
+        amplitude_g=impulse.amplitude / GRAVITY,
+        period_s=impulse.period,
+        start_s=impulse.start,
+        explained=impulse.explained,
+        goodness_of_fit=impulse.goodness,
+        failing_amplitude_g=needed,
+        failing_amplitude_own_g=own.amplitude(impulse.period, radius),
+        margin=needed / amplitude,
+        verdict="fails" if amplitude >= needed else "stands",
+    )
 
 
-def _answer(r: dict, worst: dict | None) -> str:
+def _coefficients(fit: Fit) -> out.Coefficients:
+    return out.Coefficients(C1=fit.c1, C2=fit.c2, T_min_s=fit.t_min, gamma=fit.gamma)
+
+
+def _answer(r: out.Assessment, worst: out.AssessedImpulse | None) -> str:
     if worst is None:
         return "The motion holds no impulse in the range of periods asked for: it is too short for it, or zero."
-    first = r["primary_impulse"]
+    first = r.primary_impulse
     text = (
-        f"The primary impulse of the motion is {abs(first['amplitude_g']):.3f} g over {first['period_s']:.3f} s, "
-        f"starting at {first['start_s']:.2f} s. "
+        f"The primary impulse of the motion is {abs(first.amplitude_g):.3f} g over {first.period_s:.3f} s, "
+        f"starting at {first.start_s:.2f} s. "
     )
     which = (
-        "it"
-        if worst["rank"] == 1
-        else f"impulse {worst['rank']} ({abs(worst['amplitude_g']):.3f} g, {worst['period_s']:.3f} s)"
+        "it" if worst.rank == 1 else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
     )
-    if worst["margin"] is None:
+    if worst.margin is None:
         text += "All impulses are too short to bring the arch down. "
-    elif r["verdict"] == "fails":
-        text += (
-            f"The arch is predicted to fail: {which} reaches {1 / worst['margin']:.2f} times the failing amplitude. "
-        )
+    elif r.verdict == "fails":
+        text += f"The arch is predicted to fail: {which} reaches {1 / worst.margin:.2f} times the failing amplitude. "
     else:
-        text += f"The arch is predicted to stand: {which} would have to be {worst['margin']:.2f} times stronger. "
-    also = "also " if r["static_verdict"] == r["verdict"] else ""
-    static = f"{also}predicts failure" if r["static_verdict"] == "fails" else f"{also}predicts that it stands"
+        text += f"The arch is predicted to stand: {which} would have to be {worst.margin:.2f} times stronger. "
+    also = "also " if r.static_verdict == r.verdict else ""
+    static = f"{also}predicts failure" if r.static_verdict == "fails" else f"{also}predicts that it stands"
     return (
         text
-        + f"A static check ({r['peak_ground_acceleration_g']:.3f} g against {r['uplift_acceleration_g']:.3f} g) {static}."
+        + f"A static check ({r.peak_ground_acceleration_g:.3f} g against {r.uplift_acceleration_g:.3f} g) {static}."
     )

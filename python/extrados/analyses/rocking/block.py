@@ -29,17 +29,21 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     friction = np.abs(tangential) / np.maximum(normal, 1e-300)
     flying = normal <= 0.0
     c_v = model.restitution
-    result = rocking_result(context, response, "the block", friction[:, None])
-    result.results |= {
-        "restitution": float(c_v[0]),
-        "restitution_to_left": float(c_v[1]),
-        "energy_ratio": float(c_v[0] ** 2 * model.block.toe_inertia[0] / model.block.toe_inertia[1]),
-        "critical_rotation_rad": float(model.alpha[0]),
-        "critical_rotation_left_rad": float(model.alpha[1]),
-        "frequency_parameter_rad_s": float(model.frequency[0]),
-        "uplift_acceleration_g": float(model.uplift.min()),
-        "required_friction": float(friction[~flying].max(initial=0.0)),
-    }
+    needed = float(friction[~flying].max(initial=0.0))
+    result = rocking_result(
+        context,
+        response,
+        "the block",
+        friction[:, None],
+        restitution=c_v[0],
+        restitution_to_left=c_v[1],
+        energy_ratio=c_v[0] ** 2 * model.block.toe_inertia[0] / model.block.toe_inertia[1],
+        critical_rotation_rad=model.alpha[0],
+        critical_rotation_left_rad=model.alpha[1],
+        frequency_parameter_rad_s=model.frequency[0],
+        uplift_acceleration_g=model.uplift.min(),
+        required_friction=needed,
+    )
     if flying.any():
         first = response.time[flying.argmax()]
         result.warnings.append(
@@ -49,7 +53,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = (
         answer(context, response, "The block", "overturns", float(model.uplift.min()))
-        + f" It slides instead where friction is below {result.results['required_friction']:.2f}."
+        + f" It slides instead where friction is below {needed:.2f}."
     )
     return result
 

@@ -6,6 +6,7 @@ first and each first failing cell refined, never bisected blindly over the whole
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -16,9 +17,11 @@ from extrados.analyses.rocking.tables import FailureDomain
 from extrados.analyses.runs import RunsJob, runs_job
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
+from extrados.core.calls import interruptible
 from extrados.core.rocking import Body
 from extrados.motions import pulses
 from extrados.motions.motion import Motion
+from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -62,7 +65,7 @@ def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
 
 
 class Mapper:
-    """Runs pulses of many durations and amplitudes on one structure."""
+    """Runs pulses of many durations and amplitudes on one structure; with a context through the batch layer."""
 
     def __init__(
         self,
@@ -72,8 +75,10 @@ class Mapper:
         settle: float,
         threads: int,
         start_rotation: float = 0.0,
+        context: Context | None = None,
     ):
         self.body = body
+        self.context = context
         self.motions = [unit_pulse(pulse, t) for t in durations]
         self.settle = settle
         self.threads = threads
@@ -87,8 +92,11 @@ class Mapper:
         )
 
     def codes(self, index: np.ndarray, amplitude: np.ndarray) -> np.ndarray:
-        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]."""
+        """Outcome codes for pulses `index` of the given amplitudes [m/s^2]; Unfinished where some are missing."""
         job = self.job(index, amplitude)
+        if self.context is not None:
+            swept = sweep(self.context, "failure-domain", job, len(index), "failure domain").whole()
+            return codes_of(swept["outcome"], swept["half_cycles"])
         parts = []
         for first in range(0, len(index), BATCH):
             rows = job.run(first, min(BATCH, len(index) - first), self.threads)
@@ -100,13 +108,6 @@ def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray
     """Map and curves; `accuracy` [m/s^2] of the lowest failing amplitudes within their cell of the map."""
     nd, na = len(durations), len(amplitudes)
     codes = mapper.codes(np.repeat(np.arange(nd), na), np.tile(amplitudes, nd)).reshape(nd, na)
-    return curves_of(mapper, durations, amplitudes, codes, accuracy)
-
-
-def curves_of(
-    mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray, codes: np.ndarray, accuracy: float
-) -> Curves:
-    """The curves of a map that has been run."""
     grid = np.broadcast_to(amplitudes, codes.shape)
     refined = [_refine(mapper.codes, codes, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II)]
     # The pocket is the first safe amplitude above a failing one: the same search with the roles exchanged.
@@ -196,59 +197,42 @@ def run(context: Context, options: FailureDomain) -> Result:
     unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
-    mapper = Mapper(model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation)
-    job = mapper.job(np.repeat(np.arange(len(durations)), len(amplitudes)), np.tile(amplitudes, len(durations)))
+    mapper = Mapper(
+        model.body, options.pulse, durations, 40.0 * unit, context.threads, model.start_rotation, context
+    )  # fmt: skip
+    with interruptible():  # Ctrl-C between two rounds stops the next one
+        curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY)
     result = Result("failure-domain")
-    swept = sweep(context, "failure-domain", job, len(job.scale), "failure domain")
-    if not swept.complete:
-        result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
-        return result
-    codes = codes_of(swept["outcome"], swept["half_cycles"]).reshape(len(durations), len(amplitudes))
-    curves = curves_of(mapper, durations, amplitudes, codes, options.accuracy * GRAVITY)
     names = {"mode_I": curves.mode_i, "mode_II": curves.mode_ii}
-    gamma = model.uplift
-    result.results = {
-        "pulse": options.pulse,
+    gamma, slender = model.uplift, model.what != "arch"
+    r = out.FailureDomain(
+        pulse=options.pulse,
         **{
-            name: {"durations_s": durations, "amplitudes_g": [None if np.isnan(a) else a / GRAVITY for a in curve]}
+            name: out.ModeCurve(
+                durations_s=durations,
+                amplitudes_g=curve / GRAVITY,
+                **({"amplitude_ratios": curve / GRAVITY / gamma} if slender else {}),
+            )
             for name, curve in names.items()
         },
-        "pocket_begins_g": [None if np.isnan(a) else a / GRAVITY for a in curves.pocket],
-        "uplift_acceleration_g": gamma,
-        "restitution": model.restitution,
-        "natural_time_s": unit if model.what == "arch" else model.time_unit,
-        "safe_pockets": int(
-            (((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()
-        ),
-    }
-    if options.at_amplitudes:
-        at = np.array(options.at_amplitudes)
-        found = shortest_durations(
-            model.body, options.pulse, at, np.linspace(durations.min(), durations.max(), 200), 40.0 * unit,
-            options.accuracy, context.threads,
-        )  # fmt: skip
-        result.results["at_amplitudes"] = {
-            "amplitudes_g": at / GRAVITY,
-            "mode_I_durations_s": [None if np.isnan(t) else t for t in found[0]],
-            "mode_II_durations_s": [None if np.isnan(t) else t for t in found[1]],
-        }
+        pocket_begins_g=curves.pocket / GRAVITY,
+        uplift_acceleration_g=gamma,
+        restitution=model.restitution,
+        natural_time_s=unit if model.what == "arch" else model.time_unit,
+        safe_pockets=int((((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()),
+        **_at_amplitudes(context, options, model, durations, 40.0 * unit),
+        **(_over_uplift(durations, curves.pocket / GRAVITY, model) if slender else {}),
+    )
+    result.results = r
     columns = {
         "duration": durations,
         **{f"{n}_amplitude": c / GRAVITY for n, c in names.items()},
         "pocket_begins": curves.pocket / GRAVITY,
     }
-    if model.what != "arch":
-        # omega/p and a/(g tan alpha), the axes of overturning spectra
-        ratio = 2.0 * np.pi / durations * model.time_unit
-        columns |= {"frequency_ratio": ratio, **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()}}
-        result.results["frequency_ratio"] = ratio
-        result.results["pocket_begins_ratio"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curves.pocket]
-        for name, curve in names.items():
-            result.results[name]["amplitude_ratios"] = [None if np.isnan(a) else a / GRAVITY / gamma for a in curve]
-        result.results["mode_names"] = (
-            "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact (mode 1, with "
-            "impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)"
-        )
+    if slender:
+        columns |= {
+            "frequency_ratio": np.array(r.frequency_ratio), **{f"{n}_ratio": c / GRAVITY / gamma for n, c in names.items()},
+        }  # fmt: skip
     result.tables["failure_domain"] = TableData(
         columns, {"duration": "s", "mode_I_amplitude": "g", "mode_II_amplitude": "g", "pocket_begins": "g"}
     )
@@ -264,8 +248,31 @@ def run(context: Context, options: FailureDomain) -> Result:
             curves.mode_ii / GRAVITY, ("duration",), "g", "lowest amplitude of collapse in the first half cycle"
         ),
     }
-    result.answer = _answer(model, options, durations, curves, result.results["safe_pockets"])
+    result.answer = _answer(model, options, durations, curves, r.safe_pockets)
     return result
+
+
+def _at_amplitudes(
+    context: Context, options: FailureDomain, model: Rocker, durations: np.ndarray, settle: float
+) -> dict[str, out.AtAmplitudes]:
+    """The key of the shortest failing durations at the amplitudes that the deck asks for; none where it asks none."""
+    if not options.at_amplitudes:
+        return {}
+    at = np.array(options.at_amplitudes)
+    tried = np.linspace(durations.min(), durations.max(), 200)
+    found = shortest_durations(model.body, options.pulse, at, tried, settle, options.accuracy, context.threads)
+    rows = out.AtAmplitudes(amplitudes_g=at / GRAVITY, mode_I_durations_s=found[0], mode_II_durations_s=found[1])
+    return {"at_amplitudes": rows}
+
+
+def _over_uplift(durations: np.ndarray, pocket: np.ndarray, model: Rocker) -> dict[str, Any]:
+    """omega/p and a/(g tan alpha), the axes of overturning spectra of blocks; `pocket` [g]."""
+    return {
+        "frequency_ratio": 2.0 * np.pi / durations * model.time_unit,
+        "pocket_begins_ratio": pocket / model.uplift,
+        "mode_names": "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact "
+        "(mode 1, with impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)",
+    }
 
 
 def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves: Curves, pockets: int) -> str:

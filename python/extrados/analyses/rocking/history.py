@@ -7,6 +7,7 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core.rocking import Body, Response, history
+from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -42,10 +43,10 @@ def run_history(
         room = response.events_found
 
 
-def rocking_result(context: Context, response: Response, of: str, friction: np.ndarray) -> Result:
+def rocking_result(context: Context, response: Response, of: str, friction: np.ndarray, **further: Any) -> Result:
     """Results, tables and arrays that every rocking structure has; `of` says whose rotation it is.
 
-    friction (times, joints): coefficient of friction needed.
+    friction (times, joints): coefficient of friction needed. further: the results that only this structure has.
     """
     impacts = [(t, v) for kind, t, v in response.events if kind == "impact"]
     collapse = response.outcome == "collapse"
@@ -59,24 +60,26 @@ def rocking_result(context: Context, response: Response, of: str, friction: np.n
         result.warnings.append(
             f"it still rocks at the end time of {response.stop_time:g} s: the outcome is open, give a longer end_time"
         )
-    result.results = {
-        "rotation_of": of,
-        "outcome": response.outcome,
-        "settled": response.settled,
-        "collapse_half_cycle": response.half_cycles if collapse else None,
-        "collapse_time_s": response.stop_time if collapse else None,
-        "half_cycles": response.half_cycles,
-        "impacts": response.impacts,
-        "impact_times_s": [t for t, _ in impacts],
-        "peak_rotation_rad": response.peak,
-        "peak_rotation_ratio": response.peak_ratio,
-        "peak_ground_acceleration_g": context.motion.peak / GRAVITY,
-        "energy_supplied_J": response.work,
-        "energy_lost_at_impacts_J": response.loss,
-        "energy_residual_ratio": float(np.abs(energy - response.ledger).max(initial=0.0)) / scale,
-        "steps": response.steps,
-        "rejected_steps": response.rejected,
-    }
+    r = out.Rocking(
+        rotation_of=of,
+        outcome=response.outcome,
+        settled=response.settled,
+        collapse_half_cycle=response.half_cycles if collapse else None,
+        collapse_time_s=response.stop_time if collapse else None,
+        half_cycles=response.half_cycles,
+        impacts=response.impacts,
+        impact_times_s=[t for t, _ in impacts],
+        peak_rotation_rad=response.peak,
+        peak_rotation_ratio=response.peak_ratio,
+        peak_ground_acceleration_g=context.motion.peak / GRAVITY,
+        energy_supplied_J=response.work,
+        energy_lost_at_impacts_J=response.loss,
+        energy_residual_ratio=float(np.abs(energy - response.ledger).max(initial=0.0)) / scale,
+        steps=response.steps,
+        rejected_steps=response.rejected,
+        **further,
+    )
+    result.results = r
     result.tables["rocking"] = TableData(
         {
             "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,

@@ -9,6 +9,7 @@ from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.results.model import Array, Result
+from extrados.results.rocking import RockingHinge
 
 #: After the motion it rocks itself to rest within this many of its own time units
 SETTLE = 40.0
@@ -30,17 +31,17 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     needed = float(friction.max(initial=0.0))
     known = any(one.determinate for one in model.linkages)
     side = 0 if response.peak >= 0.0 else 1
-    result = rocking_result(context, response, model.driver(side), friction)
-    result.results |= {
-        "restitution": model.restitution[1],
-        "restitution_to_left": model.restitution[0],
-        "critical_rotation_rad": model.critical[0],
-        "critical_rotation_left_rad": model.critical[1],
-        "uplift_acceleration_g": rocker.uplift,
-        "required_friction": needed if known and np.isfinite(needed) else None,
-        "hinges": _hinges(model, 0),
-        "hinges_opposite": _hinges(model, 1),
-    }
+    result = rocking_result(
+        context, response, model.driver(side), friction,
+        restitution=model.restitution[0],
+        restitution_to_left=model.restitution[1],
+        critical_rotation_rad=model.critical[0],
+        critical_rotation_left_rad=model.critical[1],
+        uplift_acceleration_g=rocker.uplift,
+        required_friction=needed if known and np.isfinite(needed) else None,
+        hinges=_hinges(model, 0),
+        hinges_opposite=_hinges(model, 1),
+    )  # fmt: skip
     if not np.isfinite(needed):
         result.warnings.append(
             "a hinge comes under tension during the motion: the assumed mechanism does not hold there"
@@ -58,10 +59,10 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     return result
 
 
-def _hinges(model: MechanismModel, side: int) -> list[dict[str, object]]:
+def _hinges(model: MechanismModel, side: int) -> list[RockingHinge]:
     """Where the mechanism of one side turns."""
     one = model.linkages[side]
     return [
-        {"joint": int(j), "name": model.assembly.joint_names[j], "x_m": float(x), "y_m": float(y)}
+        RockingHinge(joint=j, name=model.assembly.joint_names[j], x_m=x, y_m=y)
         for j, (x, y) in zip(one.joint, one.point, strict=True)
     ]

@@ -27,7 +27,7 @@ def run(context: Context, options: Rocking) -> Result:
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
     result = kinds[type(rocker.model)](context, options, rocker)
-    needed, given = result.results["required_friction"], context.building.joints.coefficient
+    needed, given = result.results.required_friction, context.building.joints.coefficient
     if given is not None and needed is not None and needed > given:
         result.warnings.append(
             f"a coefficient of friction of {needed:.2f} is needed, the joints have {given:g}: it slides, which rocking "
@@ -49,16 +49,19 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
     thrust = _thrust(model, response)
     needed = max(float(thrust.friction.max(initial=0.0)), _onset_friction(model, context, response))
     thesis, projection = model.restitutions
-    result = rocking_result(context, response, "link AB", thrust.friction)
-    result.results |= {
-        "restitution": model.restitution,
-        "restitution_thesis": thesis,
-        "restitution_energy_safe": projection,
-        "critical_rotation_rad": model.limits.critical,
-        "uplift_acceleration_g": gamma,
-        "required_friction": needed if np.isfinite(needed) else None,
-        "thrust_line_residual_m": float(thrust.miss.max(initial=0.0)),
-    }
+    result = rocking_result(
+        context,
+        response,
+        "link AB",
+        thrust.friction,
+        restitution=model.restitution,
+        restitution_thesis=thesis,
+        restitution_energy_safe=projection,
+        critical_rotation_rad=model.limits.critical,
+        uplift_acceleration_g=gamma,
+        required_friction=needed,
+        thrust_line_residual_m=thrust.miss.max(initial=0.0),
+    )
     result.warnings += _warnings(thrust, response, needed)
     result.arrays |= {
         **geometry_arrays(model.arch),

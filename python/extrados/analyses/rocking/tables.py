@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from extrados.analyses.table import BuildingAnalysis
+from extrados.building.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
 from extrados.schema.table import key
@@ -15,6 +16,7 @@ class RockingTable(BuildingAnalysis):
 
     view: ClassVar = "rocker"
     uses: ClassVar = ("material.density", "joints.restitution", "joints.friction", "initial.rotation_ratio")
+    method: ClassVar = {"joints.friction": NO_SLIDING}
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963"
     )

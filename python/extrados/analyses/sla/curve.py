@@ -4,6 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+#: Displacements at which an envelope is given, and at most as many points: with the peak and the start
+BINS = 400
+MOST_ENVELOPE = BINS + 2
+
 
 @dataclass(frozen=True)
 class Bilinear:
@@ -21,7 +25,7 @@ class Bilinear:
 
 
 def envelope(
-    displacement: np.ndarray, load: np.ndarray, start: float = 0.0, bins: int = 400
+    displacement: np.ndarray, load: np.ndarray, start: float = 0.0, bins: int = BINS
 ) -> tuple[np.ndarray, np.ndarray]:
     """Monotone envelope of the polyline through (start, 0) and the equilibrium points: at each of `bins`
     displacements the greatest load on it. Displacements count positive in the sense they have, from the start, at

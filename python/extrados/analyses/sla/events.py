@@ -1,4 +1,8 @@
-"""One event curve: stages A and B in batches, with the states that are wanted."""
+"""One event curve: stages A and B in batches, with the states that are wanted.
+
+Every KEPT events the factor is made anew and the state is kept, in every run: one that is resumed there gives the
+same bits as one that was never interrupted.
+"""
 
 import time
 from collections.abc import Callable
@@ -6,27 +10,22 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.contact import settle
 from extrados.analyses.sla.curve import envelope
+from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
 
 BATCH_SECONDS = 0.7
+#: Events between two states that are kept; a new factor takes as long as some tens of events of a large wall.
+KEPT = 1000
+#: The peak's state is run again from the damage at the multiple of this number before it.
+GRID = 100
 NOTHING = np.zeros(0)
-
-
-@dataclass
-class State:
-    """The wall at one event: event number (0-based, of stage B), multiplier, displacements (nodes, 2) [m], and the
-    report of all points."""
-
-    event: int
-    load: float
-    displacement: np.ndarray
-    report: dict[str, np.ndarray]
 
 
 @dataclass
@@ -69,8 +68,12 @@ def run_curves(
     threads: int,
     progress: Callable[[float, float, str], None],
     damage: np.ndarray | None = None,
+    chain: Callable[[int], Chain] | None = None,
 ) -> list[Curve]:
-    """The curves of all senses of B, each from the state that A leaves (or from a stored damage)."""
+    """The curves of all senses of B, each from the state that A leaves (or from a stored damage).
+
+    chain: where the states of the curve of a sense, +1 or -1, are kept on its way; none are without it.
+    """
     curves = []
     with model.open(options, threads) as core_model:
         stage_a, warnings = None, []
@@ -90,16 +93,15 @@ def run_curves(
             sign = 1 if sense == "+" else -1
             if number:
                 core_model.set_damage(start)
-            begin = time.perf_counter()
             core_model.loads(
                 model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger
             )
             watch = model.control
             before = sign * float(watch.share @ core_model.displacement(0.0)[watch.node, watch.direction])
             curve = _reference_stage(
-                core_model, model, options, sign, progress, bool(stage_a is None and damage is None)
-            )
-            curve.seconds = time.perf_counter() - begin
+                core_model, model, options, sign, progress, bool(stage_a is None and damage is None),
+                chain and chain(sign),
+            )  # fmt: skip
             curve.stage_a, curve.before = stage_a, before
             curve.damage_start = start
             curve.warnings += warnings if not number else []
@@ -148,22 +150,38 @@ def _reference_stage(
     sign: int,
     progress: Callable[[float, float, str], None],
     fresh: bool,
+    chain: Chain | None,
 ) -> Curve:
     """Events under A + lambda B; states at the wanted events, at the peak and at the end."""
+    begin = time.perf_counter()
     target = np.inf if options.target_displacement is None else options.target_displacement
     stop = core.Stop(
         displacement=target, fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
         refuse_overload=fresh and bool(np.any(model.constant)),
     )  # fmt: skip
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
-    states: list[State] = []
-    parts: list[core.Events] = []
-    done, batch = 0, 50
-    best, before_best = -np.inf, (core_model.damage(), 0)
-    while done < options.events:
-        # The event chosen last is not applied yet: a run from this damage records it again first
-        start = (core_model.damage(), max(done - 1, 0))
-        room = min(batch, options.events - done)
+    way = UnderWay((core_model.damage(), 0))
+    if chain is not None and chain.state is not None:
+        kept = chain.state[1]
+        way = UnderWay.of(kept)
+        core_model.renew(kept["damage"], kept["standing"])
+    before = way.seconds
+    batch, start = GRID, way.before_best
+    while (done := way.done) < options.events:
+        if done % KEPT == 0 and done:
+            damage, standing = core_model.damage(), core_model.standing()
+            try:
+                core_model.renew(damage, standing)
+            except core.Mechanism:
+                way.parts[-1].reason = "mechanism"
+                break
+            way.seconds = before + time.perf_counter() - begin
+            if chain is not None:
+                chain.keep(done, way.arrays(damage, standing))
+        if done % GRID == 0:
+            # The event chosen last is not applied yet: a run from this damage records it again first
+            start = (core_model.damage(), max(done - 1, 0))
+        room = min(batch, GRID - done % GRID, options.events - done)
         ahead = [e for e in wanted if e >= done]
         if ahead:
             room = min(room, ahead[0] + 1 - done)
@@ -178,19 +196,19 @@ def _reference_stage(
                 "them: let constant_damage = true bring them on with damage, or lower them"
             ) from None
         spent = time.perf_counter() - clock
-        parts.append(part)
+        way.parts.append(part)
         if len(part):
             load = np.where(part.equilibrium, part.load, -np.inf)
-            if load.max() > best:
-                best, before_best = float(load.max()), start
+            if load.max() > way.best:
+                way.best, way.before_best = float(load.max()), start
         done += len(part)
         if done and done - 1 in wanted:
-            states.append(_state(core_model, done - 1, float(part.load[-1])))
+            way.states.append(_state(core_model, done - 1, float(part.load[-1])))
         progress(done, options.events, f"event {done}, load {part.load[-1] * model.unit:.4g} N" if len(part) else "")
         if part.reason or part.interrupted or not len(part):
             break
-        batch = int(np.clip(batch * BATCH_SECONDS / max(spent, 1e-3), 10, 100_000)) if room == batch else batch
-    events = core.Events.join(parts)
+        batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
+    events, states = core.Events.join(way.parts), way.states
     events.monitors *= sign  # positive in the sense of the load
     collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
     if collapsed and model.mesh.has_joints:
@@ -206,12 +224,13 @@ def _reference_stage(
             states.append(_state(core_model, len(events) - 1, float(events.load[-1])))
         peak = curve.peak
         if peak >= 0 and peak not in {s.event for s in states} and not events.interrupted:
-            state = _replay(core_model, model, sign, events, peak, before_best)
+            state = _replay(core_model, model, sign, events, peak, way.before_best)
             if state is None:
                 curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
             else:
                 states.append(state)
         states.sort(key=lambda s: s.event)
+    curve.seconds = before + time.perf_counter() - begin
     return curve
 
 

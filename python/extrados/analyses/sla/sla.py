@@ -6,14 +6,20 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import Chain, stacked, sweep
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.sla.curve import bilinear
-from extrados.analyses.sla.events import Curve, State, damage_before, run_curves
+from extrados.analyses.sla.curve import MOST_ENVELOPE, bilinear
+from extrados.analyses.sla.events import Curve, damage_before, run_curves
+from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.model import SlaModel, build, strength_factors
 from extrados.analyses.sla.tables import Sla
+from extrados.building.building import Building
 from extrados.core.calls import interruptible
+from extrados.core.errors import Cancelled, status_code
 from extrados.core.sla import EVENTS, Plane, teeth
+from extrados.results import sla as out
 from extrados.results.model import Array, Result, TableData
+from extrados.results.sla import PREFIXES
 from extrados.results.store import StoreError, read
 from extrados.results.vtu import pvd, vtu
 from extrados.schema.constants import GRAVITY
@@ -21,7 +27,6 @@ from extrados.schema.constants import GRAVITY
 UNBOUNDED = 1e300
 #: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
 HINGE, WIDE = 0.95, 0.1
-PREFIXES = ("", "minus_")  # of the arrays of the first curve, whatever its sense, and of the second, to -
 
 
 LEDGER = ("external", "dissipated", "crack")
@@ -52,17 +57,20 @@ def _run(context: Context, options: Sla) -> Result:
     model = build(mesh, options, strength_factors(mesh, options, options.strength_seed))
     damage, earlier = _resume(context, options, model)
 
-    def progress(done: float, total: float, text: str) -> None:
-        context.progress(done, total, text)
+    def chain(sign: int) -> Chain:
+        mesh_of = [model.mesh.xy, [group.connect for group in model.mesh.groups], model.constant, model.reference]
+        return Chain(context, "sla", [options, sign, damage, model.freedoms, *mesh_of])
 
-    curves = run_curves(model, options, context.threads, progress, damage)
+    curves = run_curves(model, options, context.threads, context.progress, damage, chain)
     for curve in curves:
         _carry(curve, earlier, model.unit)
-    _describe(result, model, options, curves)
+    numbers = _describe(result, model, options, curves)
     if options.seeds and not curves[-1].events.interrupted:
-        _scatter(context, options, result)
+        numbers |= _scatter(context, options, result)
+    result.results = out.Sla(**numbers)
     if any(c.events.interrupted for c in curves):
-        result.status, result.reason = "interrupted", "interrupted; the events up to then are kept"
+        again = "; --resume goes on from them" if context.checkpoint is not None else ""
+        result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
     return result
 
 
@@ -204,9 +212,10 @@ def _tooth_counts(model: SlaModel) -> list[int]:
     return [min(counts), max(counts)] if counts else [0, 0]
 
 
-def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]) -> None:
+def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]) -> dict[str, Any]:
+    """Arrays, tables, files and words of all curves into `result`; their numbers."""
     first = curves[0]
-    result.results = {
+    numbers = {
         **_numbers(model, options, first),
         "reference_load_N": model.unit,
         "teeth": _tooth_counts(model),
@@ -216,7 +225,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         "points": first.points,
     }
     for curve in curves[1:]:
-        result.results["minus"] = _numbers(model, options, curve)
+        numbers["minus"] = _numbers(model, options, curve)
     for curve in curves:
         result.warnings += curve.warnings
         events, sense = curve.events, f" (load to {curve.sense})"
@@ -231,10 +240,11 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     _sections(result, model, options, first)
     _fields(result, model, curves)
     if model.mesh.has_joints:
-        result.results["hinges"] = _joints(result, model, first)
-        result.answer = _answer_of_stones(result.results, len(curves) > 1)
+        numbers["hinges"] = _joints(result, model, first)
+        result.answer = _answer_of_stones(numbers, len(curves) > 1)
     else:
-        result.answer = _answer(result.results, len(curves) > 1)
+        result.answer = _answer(numbers, len(curves) > 1)
+    return numbers
 
 
 def _joints(result: Result, model: SlaModel, curve: Curve) -> list[str]:
@@ -301,8 +311,9 @@ def _mesh_arrays(model: SlaModel) -> dict[str, Array]:
     arrays = {"node": Array(model.mesh.xy, ("nodes", "axis"), "m", "nodes of the mesh")}
     for i, group in enumerate(model.mesh.groups):
         arrays[f"elements_{i}"] = Array(
-            group.connect, (f"elements_of_{i}", f"corner_{i}"), "", f"nodes of the {group.kind} elements, from 0"
-        )
+            group.connect, (f"elements_of_{i}", f"corner_{i}"), "", f"nodes of the {group.kind} elements, from 0",
+            "elements",
+        )  # fmt: skip
     arrays["point_xy"] = Array(model.point_xy, ("points", "axis"), "m", "integration points")
     per = [len(model.point_xy) and b.gauss[0] * b.gauss[1] for b in model.mesh.groups]
     per = [{"T3": 1, "T6": 3}.get(b.kind, n) for b, n in zip(model.mesh.groups, per, strict=True)]
@@ -429,7 +440,7 @@ def _sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> No
         near = np.flatnonzero(away <= away.min() + 1e-6 * model.mesh.size)
         near = near[np.argsort(model.point_xy[near, 1], kind="stable")]
         result.arrays[f"section_{i}_y"] = Array(
-            model.point_xy[near, 1], (f"section_{i}",), "m", f"points at x = {x:g} m"
+            model.point_xy[near, 1], (f"section_{i}",), "m", f"points at x = {x:g} m", "section_y"
         )
         for end in ("lo", "hi"):
             rows = np.stack([s.report[f"lambda_{end}"][near] for s in curve.states])
@@ -438,6 +449,7 @@ def _sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> No
                 ("states", f"section_{i}"),
                 "N",
                 "least admitted load" if end == "lo" else "greatest admitted load",
+                f"section_{end}",
             )
 
 
@@ -466,42 +478,67 @@ def _fields(result: Result, model: SlaModel, curves: list[Curve]) -> None:
         result.files[f"{name}.pvd"] = pvd(series)
 
 
-def _scatter(context: Context, options: Sla, result: Result) -> None:
-    """The curve again with other seeds of mesh and strength: a band."""
+@dataclass(frozen=True)
+class Repetitions:
+    """Member k is the first curve again with the k-th seed of mesh or strength."""
+
+    building: Building
+    options: Sla
+    random_mesh: bool
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(lambda k: self._member(self.options.seeds[k], threads), first, count)
+
+    def _member(self, seed: int, threads: int) -> dict[str, np.ndarray]:
+        options = self.options.model_copy(update={"directions": self.options.directions[:1], "states": []})
+        mesh = self.building.mesh(options.mesh, seed if self.random_mesh else None)
+        model = build(mesh, options, strength_factors(mesh, options, seed))
+        curve = run_curves(model, options, threads, lambda done, total, text: None)[0]
+        if curve.events.interrupted:
+            raise Cancelled(status_code("cancelled"), "repetition interrupted")
+        d, p = curve.envelope(model.unit)
+        rows = {
+            name: np.pad(values, (0, MOST_ENVELOPE - len(d)), constant_values=np.nan)
+            for name, values in (("d", d), ("p", p))
+        }
+        return {
+            **rows,
+            "points": np.array(len(d)),
+            "peak_load": np.array(curve.events.load[curve.peak] * model.unit),
+            "peak_displacement": np.array(curve.events.monitors[curve.peak, 0]),
+        }
+
+
+def _scatter(context: Context, options: Sla, result: Result) -> dict[str, out.Scatter]:
+    """The curve again with other seeds of mesh and strength: its key, the band into `result`."""
     random_mesh = options.mesh.pattern == "random" or bool(getattr(context.deck.structure, "outline", None))
     if not random_mesh and options.strength_variation == 0.0:
         raise Refused('seeds ask for a random mesh (mesh.pattern = "random") or for strength_variation above 0')
-    peaks, curves = [], []
-    single = options.model_copy(update={"directions": options.directions[:1], "states": []})
-    for seed in options.seeds:
-        mesh = context.building.mesh(options.mesh, seed if random_mesh else None)
-        model = build(mesh, options, strength_factors(mesh, options, seed))
-        curve = run_curves(
-            model, single, context.threads, lambda d, t, text, seed=seed: context.progress(d, t, f"seed {seed}: {text}")
-        )[0]
-        if curve.events.interrupted:
-            result.status, result.reason = "interrupted", "interrupted among the repetitions; what was done is kept"
-            break
-        e = curve.events
-        peaks.append((float(e.load[curve.peak] * model.unit), float(e.monitors[curve.peak, 0])))
-        curves.append(curve.envelope(model.unit))
-    if not peaks:
-        return
-    done = options.seeds[: len(peaks)]
-    loads = np.array([p for p, _ in peaks])
-    result.results["scatter"] = {
-        "seeds": done, "peak_loads_N": loads.tolist(), "mean_N": float(loads.mean()),
-        "coefficient_of_variation": float(loads.std(ddof=1) / loads.mean()) if len(loads) > 1 else None,
-        "lowest_N": float(loads.min()), "highest_N": float(loads.max()),
-    }  # fmt: skip
+    swept = sweep(
+        context, "sla-seeds", Repetitions(context.building, options, random_mesh), len(options.seeds), "repetitions",
+        slow=True, parallel=True,
+    )  # fmt: skip
+    if not swept.complete:
+        result.status = "interrupted" if swept.interrupted else "failed"
+        result.reason = f"among the repetitions: {swept.stopped}"
+    if not len(swept.members):
+        return {}
+    done = [options.seeds[k] for k in swept.members]
+    loads = swept["peak_load"]
+    curves = [(d[:n], p[:n]) for d, p, n in zip(swept["d"], swept["p"], swept["points"], strict=True)]
+    scatter = out.Scatter(
+        seeds=done, peak_loads_N=loads, mean_N=loads.mean(), lowest_N=loads.min(), highest_N=loads.max(),
+        coefficient_of_variation=loads.std(ddof=1) / loads.mean() if len(loads) > 1 else None,
+    )  # fmt: skip
     grid = np.linspace(0.0, min(d[-1] for d, _ in curves), 200)
     rows = np.stack([np.interp(grid, d, p) for d, p in curves])
     result.arrays["scatter_displacement"] = Array(grid, ("scatter_grid",), "m", "displacements of the band")
     result.arrays["scatter_load"] = Array(rows, ("seed", "scatter_grid"), "N", "envelopes of the repetitions")
     result.tables["scatter"] = TableData(
-        {"seed": done, "peak_load": loads, "peak_displacement": [d for _, d in peaks]},
+        {"seed": done, "peak_load": loads, "peak_displacement": swept["peak_displacement"]},
         {"peak_load": "N", "peak_displacement": "m"},
     )
     result.answer += (
         f" Over {len(loads)} repetitions the peak lies between {loads.min() / 1e3:.4g} and {loads.max() / 1e3:.4g} kN."
     )
+    return {"scatter": scatter}

@@ -16,6 +16,7 @@ from extrados.building.rockers.rocker import Rocker, make_rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import Body, Ground
+from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -256,7 +257,6 @@ def _describe(
             result.warnings.append(f"{name} has no result: {swept['reason'][np.searchsorted(swept.members, k)]}")
     if len(told) > 5:
         result.warnings.append(f"{len(failures)} members in all have no result, see ensemble.csv")
-    result.results = r
     _tables(job, swept, per_motion, options, result)
     edges = np.linspace(0.0, 1.0, options.bins + 1)
     upright = ok & (swept["outcome"] != COLLAPSE)
@@ -267,7 +267,7 @@ def _describe(
         ),
     }
     if job.levels is not None:
-        _curves(options, base, job, swept, motions, result)
+        r |= _curves(options, base, job, swept, motions, result)
     else:
         p, (low, high) = r["collapse_probability"], r["confidence_interval"]
         result.answer = (
@@ -276,6 +276,7 @@ def _describe(
             f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
             f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
         ) if p is not None else "No motion could be run."  # fmt: skip
+    result.results = out.Ensemble(**r)
 
 
 def _stopped(swept: Swept, result: Result) -> None:
@@ -308,8 +309,10 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
     }
 
 
-def _curves(options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, motions: int, result: Result) -> None:
-    """Stripes, lognormal curves, two stages, incremental curves with their resurrections."""
+def _curves(
+    options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, motions: int, result: Result
+) -> dict[str, Any]:
+    """Stripes, lognormal curves, two stages, incremental curves with their resurrections; the results of levels alone."""
     levels, order = job.levels, np.argsort(job.levels, kind="stable")
     n = len(levels)
     outcome = np.full(motions * n, FAILED)
@@ -330,8 +333,7 @@ def _curves(options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, mo
     result.tables["fragility"] = TableData(table, {"level": unit})
     grid = np.geomspace(levels[0] / 1.5, levels[-1] * 1.5, 200)
     curves = {"grid": Array(grid, ("grid",), unit, name)}
-    r = result.results
-    r["intensity"] = name
+    r: dict[str, Any] = {"intensity": name, "intensity_unit": unit}
     fits: dict[str, Lognormal | None] = {}
     for stage, stage_hits, stage_count, text in (
         ("", hits, count, "collapse"), ("uplift_", lifted, count, "uplift"), ("overturning_given_uplift_", hits, lifted, "collapse after uplift"),
@@ -407,6 +409,7 @@ def _curves(options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, mo
         f"Collapse runs from {100 * np.nanmin(table['collapse_probability']):.1f} % at the lowest to {100 * table['collapse_probability'][-1]:.1f} % at the "
         f"highest level. {r['resurrections']} motions leave the {base.what} standing at a level above one that overturns it."
     )
+    return r
 
 
 def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[float, Swept]], result: Result) -> None:
@@ -419,12 +422,16 @@ def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[floa
     keys = ("mean_peak_rotation_ratio", "deviation_peak_rotation_ratio", "collapse_probability", "uplift_probability")
     values = {k: np.array([np.nan if row[k] is None else row[k] for row in rows], dtype=float) for k in keys}
     total = {k: sum(row[k] for row in rows) for k in ("count", "failed", "collapsed", "uplifted")}
-    result.results = {
-        "durations_s": durations, **values,
-        "confidence_interval": [row["confidence_interval"] for row in rows],
-        **total, "restitution": base.restitution, "critical_rotation_rad": base.critical[0], "initial_rotation_ratio": initial,
-        "median_pga_g": [float(np.nanmedian(s["pga"])) / GRAVITY for _, s in parts],
-    }  # fmt: skip
+    result.results = out.OverDurations(
+        durations_s=durations,
+        **values,
+        confidence_interval=[row["confidence_interval"] for row in rows],
+        **total,
+        restitution=base.restitution,
+        critical_rotation_rad=base.critical[0],
+        initial_rotation_ratio=initial,
+        median_pga_g=[float(np.nanmedian(s["pga"])) / GRAVITY for _, s in parts],
+    )
     intervals = np.array([row["confidence_interval"] for row in rows]).reshape(-1, 2)
     result.tables["durations"] = TableData(
         {

@@ -8,6 +8,7 @@ from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.runs import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
 from extrados.motions import pulses
+from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -36,11 +37,15 @@ def run(context: Context, options: HarmonicMap) -> Result:
     ratio = np.where(over, np.nan, swept["peak_ratio"].reshape(shape))
     lowest = np.where(over.any(axis=1), amplitude[over.argmax(axis=1)], np.nan) / GRAVITY
     pockets = int(((~over) & (amplitude / GRAVITY > lowest[:, None])).sum())
-    result.results = {
-        "cycles": options.cycles, "uplift_acceleration_g": model.uplift, "frequencies_Hz": frequency,
-        "frequency_ratios": 2.0 * np.pi * frequency / p, "lowest_overturning_amplitude_g": [None if np.isnan(a) else a for a in lowest],
-        "safe_pocket_cells": pockets, "restitution": model.restitution,
-    }  # fmt: skip
+    result.results = out.HarmonicMap(
+        cycles=options.cycles,
+        uplift_acceleration_g=model.uplift,
+        frequencies_Hz=frequency,
+        frequency_ratios=2.0 * np.pi * frequency / p,
+        lowest_overturning_amplitude_g=lowest,
+        safe_pocket_cells=pockets,
+        restitution=model.restitution,
+    )
     result.tables["harmonic_map"] = TableData(
         {
             "frequency": np.repeat(frequency, len(amplitude)), "amplitude": np.tile(amplitude, len(frequency)) / GRAVITY,

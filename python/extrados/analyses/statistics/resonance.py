@@ -1,6 +1,7 @@
 """resonance: the motion under a cap that feeds most energy to a rocking structure (thesis 6.2, Figs 6-2 to 6-4)."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from extrados.building.rockers.rocker import Rocker
 from extrados.building.templates.block import make_block
 from extrados.core import rocking as core_rocking
 from extrados.core.rocking import Ground
+from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -128,7 +130,7 @@ def run(context: Context, options: Resonance) -> Result:
     result = Result("resonance")
     spacing = np.diff(optimum.switches)
     collapse = r.outcome == "collapse"
-    result.results = {
+    numbers = {
         "outcome": r.outcome,
         "cap_g": cap / GRAVITY,
         "cap_ratio": cap / GRAVITY / model.uplift,
@@ -168,7 +170,8 @@ def run(context: Context, options: Resonance) -> Result:
         )
     )
     if isinstance(model.model, BlockModel):
-        _block_figures(context, options, model, result)
+        numbers |= _block_figures(context, options, model, result)
+    result.results = out.Resonance(**numbers)
     return result
 
 
@@ -184,18 +187,20 @@ def _default_cap(context: Context, options: Resonance, model: Rocker) -> float:
     return 1.1 * float(least_cap(model.model, _start(context))) * GRAVITY
 
 
-def _block_figures(context: Context, options: Resonance, model: Rocker, result: Result) -> None:
+def _block_figures(context: Context, options: Resonance, model: Rocker, result: Result) -> dict[str, Any]:
+    """Arrays and tables of Figs 6-3 and 6-4 into `result`, a sentence to its answer; the results of a block alone."""
     own, linear = model.model, model.model.linear
     table = np.array([
         least_cap(BlockModel(make_block(aspect, 1.0), own.rule, own.energy_ratio, linear), INITIAL)
         / (np.arctan(aspect) if linear else aspect) for aspect in ASPECTS
     ])  # fmt: skip
     least = float(least_cap(own, _start(context))) if own.block.toe_right == own.block.toe_left else None
+    numbers: dict[str, Any] = {}
     if least is not None and not linear:
-        result.results["cap_ratio_for_collapse_within"] = {
+        numbers["cap_ratio_for_collapse_within"] = {
             str(n): cap_for_collapse_within(own, _start(context), n) / model.uplift for n in (1, 2, 3, 5, 10)
         }
-    result.results |= {
+    numbers |= {
         "least_cap_g": least,
         "least_cap_ratio": None if least is None else least / model.uplift,
         "least_cap_ratios": table,
@@ -233,7 +238,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
         ),
         "energy_by_rotation": Array(by_rotation, ("impulse_rotation", "impulse_start"), "", "the same for T_p = T_n/2"),
     }
-    result.results |= {
+    numbers |= {
         "impulse_amplitude_g": amplitude / GRAVITY,
         "share_of_starts_that_add": {
             f"{tp:g}": float((row > 0.0).mean()) for tp, row in zip(IMPULSE_PERIODS, by_period, strict=True)
@@ -244,6 +249,7 @@ def _block_figures(context: Context, options: Resonance, model: Rocker, result: 
             f" From that start any cap above {least:.3f} g, {least / model.uplift:.2f} of uplift, makes the rotation grow "
             "until it overturns."
         )
+    return numbers
 
 
 def natural_period(model: BlockModel, ratio: float) -> float:

@@ -12,6 +12,7 @@ from extrados.analyses.runs import runs_job
 from extrados.analyses.statistics.tables import RockingSpectrum
 from extrados.building.rockers.rocker import make_rocker
 from extrados.core.rocking import Body, block_body
+from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -55,13 +56,13 @@ def run(context: Context, options: RockingSpectrum) -> Result:
     ratio = np.where(overturned, np.nan, swept["peak_ratio"].reshape(shape))
     rotation = np.where(overturned, np.nan, np.abs(swept["peak"].reshape(shape)))
     longest = [float(periods[row].max()) if row.any() else None for row in overturned]
-    result.results = {
-        "family": family,
-        "overturned": overturned.sum(axis=1),
-        "longest_overturning_period_s": longest,
-        "size_m": sizes,
-        "peak_ground_acceleration_g": motion.peak / GRAVITY,
-    }
+    result.results = out.RockingSpectrum(
+        family=family,
+        overturned=overturned.sum(axis=1),
+        longest_overturning_period_s=longest,
+        size_m=sizes,
+        peak_ground_acceleration_g=motion.peak / GRAVITY,
+    )
     result.tables["rocking_spectrum"] = TableData(
         {
             "family": np.repeat(family, len(periods)), "period": np.tile(periods, len(family)), "size": np.tile(sizes, len(family)),

@@ -66,6 +66,6 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
     model = MechanismModel(made, "energy-safe" if rule == "thesis" else rule)
     critical = model.critical
     return Rocker(
-        structure.kind, model, model.body, min(model.uplift), critical, model.restitution[1], model.time_unit, model.length,
+        structure.kind, model, model.body, min(model.uplift), critical, model.restitution[0], model.time_unit, model.length,
         ratio * critical[0 if ratio >= 0.0 else 1], tuple(model.warnings),
     )  # fmt: skip

@@ -1,0 +1,83 @@
+"""What every result tells beside its numbers: the verdict on the deck's demand, and what was assumed of the building.
+
+Apart from the drivers, so that a changed motion or default recomputes no analysis that does not look at it.
+"""
+
+from dataclasses import replace
+from functools import cached_property
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.table import Analysis
+from extrados.building.building import Building
+from extrados.motions.from_deck import is_set
+from extrados.motions.tables import Pulse, SinePulse, StepPulse
+from extrados.results.assumptions import Assumption, spoken
+from extrados.results.model import Result
+from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import unit_of
+
+
+class MotionDemand:
+    """What the motion of a deck asks (results.verdict.Demand); the motion is made when its peak is asked for."""
+
+    def __init__(self, context: Context):
+        self.context = context
+        self.pulse, self.duration_s, self.amplitude_g = "", 0.0, 0.0
+        match context.deck.motion:
+            case StepPulse() as m:
+                self.pulse, self.duration_s = "step", m.duration
+            case SinePulse() as m:
+                self.pulse, self.duration_s = "sine", m.period
+            case Pulse() as m:
+                self.pulse, self.duration_s = m.shape, m.period
+        if self.pulse:
+            self.amplitude_g = abs(context.deck.motion.amplitude) / GRAVITY
+
+    @cached_property
+    def peak_g(self) -> float | None:
+        """None without a motion, with many, and with one that cannot be read: who needs it has refused by then."""
+        if self.context.deck.motion is None or is_set(self.context.deck.motion):
+            return None
+        try:
+            return self.context.motion.peak / GRAVITY
+        except Refused:
+            return None
+
+
+def concluded(result: Result, options: Analysis, context: Context, building: Building) -> Result:
+    """The result with its verdict, its assumptions, and an answer that tells them; as it is where it has no results.
+
+    building: the building as the analysis saw it.
+    """
+    verdict = result.results.judged(MotionDemand(context))
+    if verdict is None:
+        return result
+    assumptions = assumptions_of(options, context.deck.building, building)
+    answer = f"{result.answer} {spoken(assumptions)}".strip()
+    return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
+
+
+def assumptions_of(options: Analysis, deck: Building, building: Building) -> dict[str, Assumption]:
+    """Key -> assumption for all `uses` of the analysis, but for a key that it varies itself.
+
+    deck: the building as the deck's own tables say it; building: as the analysis sees it.
+    """
+    found = {}
+    for key in options.uses:
+        if key == getattr(options, "vary", None):
+            continue
+        table, name = key.split(".")
+        if key in options.method:
+            found[key] = Assumption(value=options.method[key], unit="", origin="method", exceptions=False)
+            continue
+        own, override = getattr(building, table), getattr(options, table, None)
+        if override is not None and name in override.model_fields_set:
+            origin = "analysis"
+        else:
+            origin = "deck" if name in getattr(deck, table).model_fields_set else "default"
+        differ = building.materials.values() if table == "material" else getattr(own, "types", [])
+        found[key] = Assumption(
+            value=getattr(own, name), unit=unit_of(type(own), name), origin=origin,
+            exceptions=any(getattr(one, name, None) is not None for one in differ),
+        )  # fmt: skip
+    return found

@@ -1,0 +1,190 @@
+"""What is read off a run: openings and slip of joints, hinges, the outcome, restitution, blocks, snapshots."""
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.tables import Dem
+from extrados.core import dem
+from extrados.results.model import Array, TableData
+from extrados.schema.constants import GRAVITY
+
+#: A joint is open where it gapes by more than this fraction of its length.
+OPEN = 5e-4
+#: A joint slides where it slips by more than this fraction of the shortest one.
+SLIDES = 0.01
+#: Blocks whose rotation is reported where none are named.
+MOST_TRACKED = 24
+
+
+def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """How far each joint gapes at its ends p and q, and its slip at the closed end (time, joint) [m].
+
+    Measured from the settled state, along the mean normal of the two faces; NaN where both sides are one body.
+    """
+    a = model.assembly
+    nt, nj = len(run.time), len(a.a)
+    gap_p, gap_q, slip = (np.full((nt, nj), np.nan) for _ in range(3))
+    for j, pair in enumerate(model.rigid.joints):
+        if pair is None:
+            continue
+        ends, turns = [], []
+        for body in pair:
+            place, rest = run.place[:, body], run.settled[body]
+            turn = place[:, 2] - rest[2]
+            c, s = np.cos(turn), np.sin(turn)
+            moved = []
+            for point in (a.p[j], a.q[j]):
+                arm = point - rest[:2]
+                moved.append(place[:, :2] + np.stack([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]], axis=1))
+            ends.append(moved)
+            turns.append(turn)
+        mean = 0.5 * (turns[0] + turns[1])
+        c, s = np.cos(mean), np.sin(mean)
+
+        def turned(v: np.ndarray, c: np.ndarray = c, s: np.ndarray = s) -> np.ndarray:
+            return np.stack([c * v[0] - s * v[1], s * v[0] + c * v[1]], axis=1)
+
+        normal, tangent = turned(a.normal[j]), turned(a.tangent[j])
+        apart = [ends[0][k] - ends[1][k] for k in (0, 1)]
+        gap_p[:, j], gap_q[:, j] = ((d * normal).sum(axis=1) for d in apart)
+        along = [(d * tangent).sum(axis=1) for d in apart]
+        slip[:, j] = np.where(gap_p[:, j] < gap_q[:, j], *along)
+    return gap_p, gap_q, slip
+
+
+def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray, slip: np.ndarray) -> np.ndarray:
+    """State of each joint (time, joint): 0 closed, -1 hinged at p (intrados), 1 at q (extrados), 2 apart."""
+    small = OPEN * model.assembly.length
+    open_p, open_q = np.nan_to_num(gap_p) > small, np.nan_to_num(gap_q) > small
+    apart = (open_p & open_q) | (np.abs(np.nan_to_num(slip)) > 0.5 * model.assembly.length)
+    return np.where(apart, 2, np.where(open_p, 1, np.where(open_q, -1, 0)))
+
+
+def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
+    """Greatest slip of joints that still touch [m]."""
+    return float(np.nanmax(np.abs(np.where(state == 2, 0.0, slip)), initial=0.0))
+
+
+def displacements(model: Model, run: dem.Run) -> np.ndarray:
+    """How far each body is from its settled place (time, body) [m]."""
+    mobile = slice(0, model.rigid.count)
+    return np.hypot(*(run.place[:, mobile, :2] - run.settled[mobile, :2]).transpose(2, 0, 1))
+
+
+def outcome(run: dem.Run, state: np.ndarray, farthest: float, limit: float) -> str:
+    """no-hinging, recovery or collapse: a block moved farther than the limit [m] at some time."""
+    if run.reason in ("collapse", "left") or farthest > limit:
+        return "collapse"
+    return "recovery" if (state != 0).any() else "no-hinging"
+
+
+def collapse_time(run: dem.Run, far: np.ndarray, limit: float) -> float | None:
+    """When a block first moved farther than the limit [s]."""
+    if (far > limit).any():
+        return float(run.time[np.argmax(far > limit)])
+    return run.stop_time if run.reason in ("collapse", "left") else None
+
+
+def moving(run: dem.Run, model: Model) -> bool:
+    """Is there motion worth the name at the end: beside the most there was, and beside the weight times the size?"""
+    kinetic = run.energy["kinetic"]
+    noise = 1e-6 * float(model.rigid.mass.sum()) * GRAVITY * model.size
+    return bool(len(kinetic) and kinetic[-1] > max(1e-3 * kinetic.max(), noise))
+
+
+def restitution(run: dem.Run, state: np.ndarray, ground: np.ndarray) -> float | None:
+    """Median ratio of the rates after and before the impacts of a single block that rocks freely.
+
+    state: of the joints (time, joint); ground: its acceleration (time) [m/s^2]. An impact counts where the block
+    stood on one end of a joint before and on the other after, so that noise about rest and a changing
+    lean do not, and where the ground is still meanwhile: it would change the rates as well. None without one.
+    """
+    angle, rate = run.place[:, 0, 2], run.rate[:, 0, 2]
+    cross = np.flatnonzero(angle[:-1] * angle[1:] < 0.0)
+    limits = [0, *(cross + 1).tolist(), len(angle)]
+    ratios = []
+    for k, c in enumerate(cross):
+        if not 3 < c < len(rate) - 6 or (ground[c - 2 : c + 5] != 0.0).any():
+            continue
+        before = limits[k] + np.abs(angle[limits[k] : limits[k + 1]]).argmax()
+        after = limits[k + 1] + np.abs(angle[limits[k + 1] : limits[k + 2]]).argmax()
+        if (state[before] * state[after] == -1).any() and rate[c - 2] * rate[c + 4] > 0.0:
+            fast = np.abs(rate[c - 3 : c + 1]).max()  # gravity speeds it up until the impact
+            ratios.append((fast, abs(rate[c + 4]) / fast))
+    fastest = max((r for r, _ in ratios), default=0.0)
+    strong = [ratio for r, ratio in ratios if r > 0.2 * fastest]
+    return float(np.median(strong)) if strong else None
+
+
+def tracked(model: Model, options: Dem, run: dem.Run) -> list[int]:
+    """Blocks whose rotation is reported: those named, or those that turn most."""
+    names = model.assembly.block_names
+    for name in options.track:
+        if name not in names:
+            raise Refused(f"track names no block '{name}'; there are {', '.join(names[:8])}")
+    if options.track:
+        return [names.index(name) for name in options.track]
+    n = len(names)
+    turn = np.abs(run.place[:, model.rigid.body_of_block, 2] - run.settled[model.rigid.body_of_block, 2]).max(axis=0)
+    return sorted(np.argsort(-turn, kind="stable")[: min(n, MOST_TRACKED)].tolist())
+
+
+def block_places(model: Model, place: np.ndarray) -> np.ndarray:
+    """Places of the assembly's blocks: those of a group follow its body."""
+    body = model.rigid.body_of_block
+    out = place[:, body].copy()
+    arm = model.assembly.centroid - model.rigid.centroid[body]
+    c, s = np.cos(out[..., 2]), np.sin(out[..., 2])
+    out[..., 0] += c * arm[:, 0] - s * arm[:, 1]
+    out[..., 1] += s * arm[:, 0] + c * arm[:, 1]
+    return out
+
+
+def block_rates(model: Model, run: dem.Run) -> np.ndarray:
+    body = model.rigid.body_of_block
+    out = run.rate[:, body].copy()
+    arm = block_places(model, run.place)[..., :2] - run.place[:, body, :2]
+    out[..., 0] -= out[..., 2] * arm[..., 1]
+    out[..., 1] += out[..., 2] * arm[..., 0]
+    return out
+
+
+def support_arrays(model: Model) -> dict[str, Array]:
+    """Outlines of the supports, for pictures."""
+    r = model.rigid
+    parts = [p for p, o in zip(r.parts, r.owner, strict=True) if o >= r.count]
+    return {
+        "support_outline": Array(np.concatenate(parts), ("support_vertex", "axis"), "m", "outlines of the supports"),
+        "support_start": Array(np.cumsum([0, *map(len, parts)]), ("support_edge",), "", "first vertex of each"),
+    }
+
+
+def snapshot_times(options: Dem, run: dem.Run) -> np.ndarray:
+    """Times of the drawings: those asked for, or six between the first motion and the end of what matters."""
+    if not len(run.time):
+        return np.zeros(0)
+    if options.snapshot_times:
+        return np.clip(np.array(options.snapshot_times), run.time[0], run.time[-1])
+    kinetic = run.energy["kinetic"]
+    lively = np.flatnonzero(kinetic > 0.01 * kinetic.max(initial=0.0))
+    if not len(lively) or kinetic.max() <= 0.0:
+        return run.time[[-1]]
+    return np.linspace(run.time[lively[0]], run.time[lively[-1]], 6)
+
+
+def hinge_table(model: Model, time: np.ndarray, state: np.ndarray) -> TableData:
+    """Changes of the hinges over time."""
+    words = {0: "closed", -1: "hinge at the first end (intrados)", 1: "hinge at the second end (extrados)", 2: "open"}
+    if not len(time):
+        return TableData({"time": np.zeros(0), "joint": [], "state": []}, {"time": "s"})
+    before = np.vstack([np.zeros_like(state[:1]), state[:-1]])
+    when, joint = np.nonzero(state != before)
+    return TableData(
+        {
+            "time": time[when],
+            "joint": [model.assembly.joint_names[j] for j in joint],
+            "state": [words[int(state[t, j])] for t, j in zip(when, joint, strict=True)],
+        },
+        {"time": "s"},
+    )

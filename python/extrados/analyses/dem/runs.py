@@ -1,0 +1,118 @@
+"""Runs of the core as one job of the batch layer: each run is a member, its histories are rows."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.context import Context
+from extrados.core import dem
+from extrados.core.errors import Cancelled, status_code
+from extrados.core.ground import Ground
+
+#: A run of fewer bodies is faster on one thread.
+BODIES_FOR_THREADS = 100
+NUMBERS = ("stop_time", "step", "critical_step", "residual")
+COUNTS = ("steps", "settling_steps", "searches", "most_pairs")
+NO_CONTACTS = dem.Contacts(*(np.zeros(shape) for shape in ((0, 2), (0, 2), (0, 2), 0, 0)))
+
+
+@dataclass(frozen=True)
+class Task:
+    """One run: the number of its bodies in the job, options, the ground times `scale`, displacements at the start
+    (bodies, 3) [m, m, rad] and supports that move."""
+
+    bodies: int
+    options: dem.Options
+    ground: Ground | None = None
+    scale: float = 1.0
+    shift: np.ndarray | None = None
+    moves: tuple[dem.SupportMove, ...] = ()
+
+    @property
+    def times(self) -> np.ndarray:
+        """Output times [s]."""
+        count = round(self.options.end_time / self.options.output_step * (1 - 1e-12)) + 1
+        return np.arange(count) * self.options.output_step
+
+
+@dataclass(frozen=True)
+class Runs:
+    """Member k is tasks[k]; all have as many bodies."""
+
+    bodies: list[dem.Bodies]
+    tasks: list[Task]
+
+    def one(self, k: int, threads: int = 1) -> dem.Run:
+        """A run, however it ends."""
+        task, bodies = self.tasks[k], self.bodies[self.tasks[k].bodies]
+        many = len(bodies.mass) >= BODIES_FOR_THREADS
+        found = dem.run(
+            bodies, replace(task.options, threads=threads if many else 1), task.ground, scale=task.scale,
+            shift=task.shift, moves=task.moves, times=task.times,
+        )  # fmt: skip
+        if task.shift is None:
+            return found
+        # A block that starts rotated does not settle: its place of rest is the one it was drawn in.
+        return replace(found, settled=np.column_stack([bodies.centroid, np.zeros(len(bodies.mass))]))
+
+    def rows(self, found: dem.Run) -> dict[str, np.ndarray]:
+        """The row of a run; histories are as long as the longest that was asked for."""
+        length = max(len(task.times) for task in self.tasks)
+
+        def padded(history: np.ndarray) -> np.ndarray:
+            out = np.full((length, *history.shape[1:]), np.nan)
+            out[: len(history)] = history
+            return out
+
+        return {
+            "reason": np.array(found.reason),
+            "blamed": np.array([*found.blamed, -1, -1][:2]),
+            "points": np.array(len(found.time)),
+            "time": padded(found.time),
+            "place": padded(found.place),
+            "rate": padded(found.rate),
+            "energy": padded(np.stack([found.energy[name] for name in dem.ENERGIES], axis=-1)),
+            "settled": found.settled,
+            "bounces": found.bounces,
+            "airborne": found.airborne,
+            **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
+        }
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        def member(k: int) -> dict[str, np.ndarray]:
+            found = self.one(k, threads)
+            if found.interrupted:
+                raise Cancelled(status_code("cancelled"), "discrete elements interrupted")
+            return self.rows(found)
+
+        return stacked(member, first, count)
+
+
+def run_of(rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
+    """The run of row k, but for the forces in its contacts at the end."""
+    row = {name: values[k] for name, values in rows.items()}
+    points = int(row["points"])
+    return dem.Run(
+        reason=str(row["reason"]),
+        blamed=[int(b) for b in row["blamed"] if b >= 0],
+        time=row["time"][:points],
+        place=row["place"][:points],
+        rate=row["rate"][:points],
+        energy={name: row["energy"][:points, i] for i, name in enumerate(dem.ENERGIES)},
+        settled=row["settled"],
+        bounces=row["bounces"],
+        airborne=row["airborne"],
+        contacts=NO_CONTACTS,
+        **{name: float(row[name]) for name in NUMBERS},
+        **{name: int(row[name]) for name in COUNTS},
+    )
+
+
+def answered(
+    context: Context, name: str, job: Runs, text: str, tell: Callable[[int], None] | None = None
+) -> list[dem.Run]:
+    """All runs of the job, kept by the batch layer; Unfinished where some are missing."""
+    swept = sweep(context, name, job, len(job.tasks), text, slow=True, parallel=True, tell=tell).whole()
+    return [run_of(swept.arrays, k) for k in range(swept.count)]

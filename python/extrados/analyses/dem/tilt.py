@@ -1,0 +1,140 @@
+"""dem as a tilt test: the constant acceleration that brings a structure down."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import measures
+from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.model import Model
+from extrados.analyses.dem.runs import Runs, Task, answered
+from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.trial import core_options
+from extrados.analyses.dem.words import tilt_answer
+from extrados.analyses.limit.common import geometry_arrays
+from extrados.core import dem
+from extrados.core.ground import Ground
+from extrados.results import dem as out
+from extrados.results.model import Array, Result
+from extrados.schema.constants import GRAVITY
+
+#: Time in which the acceleration is brought in [s]; after it the structure is given time to come down.
+RAMP = 2.0
+SENSES = (1.0, -1.0)  # pushed to +x, pushed to -x
+#: Keys of the deck that a tilt test does not look at.
+NOT_IN_TILT = (
+    "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "vtk",
+    "vary_damping", "vary_stiffness", "vary_friction", "find_friction", "slip",
+)  # fmt: skip
+
+
+def run(context: Context, options: Dem, model: Model) -> Result:
+    """The constant acceleration that brings the structure down: brought in slowly, held, bisected, in both senses."""
+    unused = [key for key in NOT_IN_TILT if key in options.model_fields_set]
+    if context.deck.motion:
+        unused.append("the [motion]")
+    if context.building.initial.movements:
+        unused.append("[[initial.movements]]")
+    if context.building.initial.rotation_ratio:
+        unused.append("[initial] rotation_ratio")
+    if unused:
+        context.warnings.append(f"plays no part in a tilt test: {', '.join(unused)}")
+    base = replace(
+        core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
+        output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
+    )  # fmt: skip
+    (collapse, last), (back, back_run) = _capacities(context, options, model, base)
+    state, slip, at, found_hinges = _hinged(model, last)
+    body = model.rigid.body_of_block
+    rotation = -(last.place[:, body, 2] - last.settled[body, 2])
+    peak = np.abs(rotation).argmax(axis=0)
+    result = Result("dem")
+    result.results = out.DemTilt(
+        test="tilt",
+        outcome="collapse",
+        collapse_acceleration_g=collapse,
+        collapse_acceleration_opposite_g=back,
+        tilt_angle_deg=float(np.degrees(np.arctan(collapse))),
+        tilt_angle_opposite_deg=float(np.degrees(np.arctan(back))),
+        load_direction="+x",
+        hinges=found_hinges,
+        hinges_opposite=_hinged(model, back_run)[3],
+        peak_rotation_rad={
+            model.assembly.block_names[i]: float(rotation[peak[i], i]) for i in measures.tracked(model, options, last)
+        },
+        peak_slip_m=float(np.nanmax(np.abs(slip[at]), initial=0.0)),
+        energy_residual_ratio=max(last.residual, back_run.residual),
+        time_step_s=last.step,
+        steps=last.steps,
+        beta_s=model.values.beta,
+    )
+    result.arrays = {
+        **geometry_arrays(model.assembly),
+        "time": Array(last.time, ("time",), "s"),
+        "place": Array(measures.block_places(model, last.place), ("time", "block", "component"), "m, m, rad"),
+        "rate": Array(measures.block_rates(model, last), ("time", "block", "component"), "m/s, m/s, rad/s"),
+        "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
+        "snapshot_time": Array(last.time[[at, -1]], ("snapshot",), "s"),
+        **measures.support_arrays(model),
+    }
+    result.answer = tilt_answer(result.results)
+    return result
+
+
+def _pushed(acceleration: float, end: float) -> Ground:
+    """The ground accelerates to -x, which pushes the structure to +x [m/s^2], until `end` [s]."""
+    return Ground(
+        breaks=np.array([0.0, RAMP, end + 1.0]),
+        linear=np.array([[[0.0, -acceleration / RAMP]], [[-acceleration, 0.0]]]), harmonic=np.zeros((2, 1, 0, 4)),
+    )  # fmt: skip
+
+
+def _capacities(context: Context, options: Dem, model: Model, base: dem.Options) -> list[tuple[float, dem.Run]]:
+    """For each sense the acceleration [g] that brings it down and the last run that fell; both are bisected at once."""
+    wanted = options.tilt_accuracy * GRAVITY
+    total, rounds = 1.0 + float(np.log2(options.tilt_limit / wanted)), 0
+    bodies = [model.bodies()]
+
+    def falls(asked: list[float]) -> list[dem.Run | None]:
+        """The run where an acceleration [m/s^2] brings it down, else None."""
+        nonlocal rounds
+        tasks = [Task(0, base, _pushed(a, base.end_time)) for a in asked]
+        runs = answered(context, "dem-tilt", Runs(bodies, tasks), "", tell=lambda n: None)
+        rounds += 1
+        context.progress(min(rounds, total), total, "tilt test")
+        return [run if dem_model.checked(run, model).reason in ("collapse", "left") else None for run in runs]
+
+    low, high = [0.0, 0.0], [options.tilt_limit, options.tilt_limit]
+    last = falls([sense * options.tilt_limit for sense in SENSES])
+    for sense, run in zip(SENSES, last, strict=True):
+        if run is None:
+            raise Refused(
+                f"stands at {options.tilt_limit / GRAVITY:g} g to {'+x' if sense > 0 else '-x'}: raise tilt_limit"
+            )
+    while True:
+        # as fine as numbers are where the middle is one of the ends
+        wide = [
+            k for k in (0, 1) if high[k] - low[k] > wanted and low[k] < 0.5 * (low[k] + high[k]) < high[k]
+        ]  # fmt: skip
+        if not wide:
+            return [(0.5 * (low[k] + high[k]) / GRAVITY, last[k]) for k in (0, 1)]
+        middle = {k: 0.5 * (low[k] + high[k]) for k in wide}
+        for k, run in zip(wide, falls([SENSES[k] * middle[k] for k in wide]), strict=True):
+            if run is None:
+                low[k] = middle[k]
+            else:
+                high[k], last[k] = middle[k], run
+
+
+def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, list[dict]]:
+    """States and slips of the joints, the output where it begins to go, and the hinges there."""
+    gap_p, gap_q, slip = measures.openings(model, run)
+    state = measures.hinges(model, gap_p, gap_q, slip)
+    begun = np.searchsorted(measures.displacements(model, run).max(axis=1), 0.005 * model.size)
+    at = min(int(begun), len(run.time) - 1)
+    rows = [
+        {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] < 0 else "extrados"}
+        for j in np.flatnonzero(np.abs(state[at]) == 1)
+    ]  # fmt: skip
+    return state, slip, at, rows

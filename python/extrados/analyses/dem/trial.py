@@ -1,0 +1,102 @@
+"""The run that a deck asks for: options of the core, movements of supports, the start, and the same with other joints."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.model import JointValues, Model
+from extrados.analyses.dem.runs import Runs, Task
+from extrados.analyses.dem.tables import Dem
+from extrados.building.templates.block import BlockAssembly
+from extrados.core import dem
+from extrados.core.ground import Ground
+
+
+def collapse_limit(options: Dem, model: Model) -> float:
+    """Displacement that counts as collapse [m]."""
+    return options.collapse_displacement or 0.2 * model.size
+
+
+def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
+    """Options of the core for a run of this deck."""
+    outline = np.concatenate(model.assembly.outlines)
+    reach = options.domain * model.size
+    low, high = outline.min(axis=0) - reach, outline.max(axis=0) + reach
+    moved = [m.start + m.duration for m in context.building.initial.movements]
+    quiet = max([context.motion.end if context.deck.motion else 0.0, *moved])
+    return dem.Options(
+        end_time=options.end_time or quiet + dem_model.settle_time(model),
+        output_step=options.output_step,
+        step=options.time_step or 0.0,
+        fraction=options.fraction,
+        collapse=collapse_limit(options, model) if options.stop_at_collapse else 0.0,
+        domain=(low[0], high[0], low[1], high[1]),
+        stop_at_rest=options.end_time is None,
+        moving_base=options.base == "moving",
+        mass_damping=options.mass_damping,
+    )
+
+
+def _moves(context: Context, model: Model) -> tuple[dem.SupportMove, ...]:
+    """Movements of supports, by the names of joints on them."""
+    names = model.assembly.joint_names
+    found = []
+    for one in context.building.initial.movements:
+        if one.joint not in names:
+            raise Refused(f"initial.movements names no joint '{one.joint}'; there are {', '.join(names[:8])}")
+        j = names.index(one.joint)
+        pair = model.rigid.joints[j]
+        if pair is None or max(pair) < model.rigid.count:
+            raise Refused(f"initial.movements: joint '{one.joint}' is not on the ground")
+        found.append(dem.SupportMove(max(pair), one.dx, one.dy, float(np.radians(one.turn)), one.start, one.duration))
+    return tuple(found)
+
+
+def start(context: Context, model: Model) -> np.ndarray | None:
+    """Initial displacements (bodies, 3) [m, m, rad] of a block that starts rotated about a toe; None: from rest.
+
+    Refused where another structure is to start rotated: its blocks would have to be placed first.
+    """
+    ratio = context.building.initial.rotation_ratio
+    block = model.assembly
+    if not ratio:
+        return None
+    if not isinstance(block, BlockAssembly):
+        raise Refused(
+            "[initial] rotation_ratio: discrete elements start only a block rotated; "
+            "initial.rotation_ratio = 0 within this [[analysis]] starts it from rest"
+        )
+    side = 0 if ratio > 0.0 else 1
+    turn = -ratio * block.alpha[side]  # positive to +x is clockwise
+    toe = np.array([block.toe_right, 0.0]) if side == 0 else np.array([-block.toe_left, 0.0])
+    arm = block.centroid[0] - toe
+    c, s = np.cos(turn), np.sin(turn)
+    shift = np.zeros((len(model.rigid.mass), 3))
+    shift[0, :2] = np.array([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]]) - arm
+    shift[0, 2] = turn
+    return shift
+
+
+class Trial:
+    """What a deck's motion does to its model, with any joint values."""
+
+    def __init__(self, context: Context, options: Dem, model: Model):
+        self.model = model
+        self.options = core_options(context, options, model)
+        self.limit = collapse_limit(options, model)
+        self.ground: Ground | None = context.motion.ground if context.deck.motion else None
+        self.moves = _moves(context, model)
+        self.shift = start(context, model)
+
+    @property
+    def idle(self) -> bool:
+        """Does nothing move it?"""
+        return self.ground is None and not self.moves and self.shift is None
+
+    def job(self, values: list[JointValues], **change: object) -> Runs:
+        """A run with each of these joint values; `change` replaces options of the core."""
+        options = replace(self.options, **change)
+        tasks = [Task(k, options, self.ground, shift=self.shift, moves=self.moves) for k in range(len(values))]
+        return Runs([self.model.bodies(v) for v in values], tasks)

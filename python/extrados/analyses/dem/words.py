@@ -1,0 +1,40 @@
+"""The answers of a run and of a tilt test in words."""
+
+from extrados.analyses.dem.measures import SLIDES
+from extrados.analyses.dem.model import Model
+from extrados.results.dem import DemRun, DemTilt
+
+
+def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
+    if idle and r.outcome == "no-hinging":
+        return "It stands under its own weight; nothing moves it."
+    turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
+    audit = f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %"
+    damping = (
+        f"damping {100 * r.damping_ratio_rotation:.3g} % of critical at rotational and {100 * r.damping_ratio_edge:.3g} % at "
+        f"edge impact"
+    )
+    if r.outcome == "collapse":
+        who = f" ({r.stopped_by[0]} is the first to go)" if r.stopped_by else ""
+        first = f"It collapses{who} at {r.collapse_time_s:.2f} s"
+    elif r.outcome == "no-hinging" and r.peak_slip_m > SLIDES * float(model.assembly.length.min()):
+        first = f"It slides by {r.peak_slip_m:.3g} m; no joint opens"
+    elif r.outcome == "no-hinging":
+        first = "No joint opens"
+    else:
+        first = f"It rocks and stands: greatest displacement {r.peak_displacement_m:.3g} m"
+    return (
+        f"{first}; {turn[0]} turns by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, "
+        f"{r.bounces} bounces; {audit}, {damping}."
+    )
+
+
+def tilt_answer(r: DemTilt) -> str:
+    collapse, back = r.collapse_acceleration_g, r.collapse_acceleration_opposite_g
+    where = ", ".join(f"{h.name} ({h.side})" for h in r.hinges[:6]) or "none"
+    least, sense = min((collapse, "+x"), (back, "-x"))
+    return (
+        f"A constant horizontal acceleration brings it down at {collapse:.4f} g pushed to +x (a tilt of "
+        f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
+        f"Hinges as it goes to +x: {where}."
+    )

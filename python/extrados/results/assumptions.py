@@ -1,0 +1,45 @@
+"""The properties of the building that an answer rests on: their values, and who set them."""
+
+from typing import Any, Literal
+
+from extrados.results.fields import ResultModel, fact
+
+#: The key that every answer which rests on it tells, whatever its value
+FRICTION = "joints.friction"
+NO_SLIDING = "no-sliding"
+
+
+class Assumption(ResultModel):
+    """One property of the building as an analysis used it."""
+
+    value: Any = fact("the value, in `unit`; null where the deck gives none and the analysis does without")
+    unit: str = fact("unit of the value")
+    origin: Literal["default", "deck", "analysis", "method"] = fact(
+        "default, the deck's own table, an override in the table of the analysis, or the method, which knows no other",
+        name="from",
+    )
+    exceptions: bool = fact("whether some joints or parts have values of their own")
+
+
+def spoken(assumptions: dict[str, Assumption]) -> str:
+    """One sentence such as "Friction 0.7 (default), density 2000 kg/m^3 (deck)."; friction first, what is not given or
+    zero by default left out; "" without assumptions."""
+    order = sorted(assumptions, key=lambda name: name != FRICTION)
+    words = [_words(name, assumptions[name]) for name in order if name == FRICTION or not _silent(assumptions[name])]
+    text = ", ".join(words)
+    return text[:1].upper() + text[1:] + "." if text else ""
+
+
+def _silent(one: Assumption) -> bool:
+    return one.value is None or (one.value == 0 and one.origin == "default" and not one.exceptions)
+
+
+def _words(name: str, one: Assumption) -> str:
+    word = name.rpartition(".")[2].replace("_", " ")
+    said = "no sliding" if one.value == NO_SLIDING else f"{word} {shown(one.value)}{f' {one.unit}' if one.unit else ''}"
+    return f"{said} ({one.origin}{', some differ' if one.exceptions else ''})"
+
+
+def shown(value: Any) -> str:
+    """A value as words tell it."""
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

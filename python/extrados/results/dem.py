@@ -1,0 +1,180 @@
+"""Results of discrete elements: dem (a run or a tilt test), dem-domain, dem-parameters."""
+
+from typing import Literal
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.limit import NamedHinge
+from extrados.results.rocking import Outcome, between
+from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+
+
+class Variation(ResultModel):
+    """A run with another damping, stiffness or friction."""
+
+    varied: Literal["damping", "stiffness", "friction"] = fact("what was varied")
+    value: float = fact("factor on damping or stiffness, or the coefficient of friction")
+    beta_s: float = fact("stiffness-proportional damping", "s")
+    stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
+    friction: float = fact("greatest coefficient of friction of the joints")
+    damping_ratio_rotation: float = fact(
+        "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
+    )
+    damping_ratio_edge: float = fact("the same at edge impact", source="thesis Eq. 7.9")
+    outcome: str = fact("no-hinging, recovery or collapse, or why the run is not to be trusted")
+    peak_rotation_rad: float = fact("greatest rotation of any block", "rad")
+    bounces: int = fact("times that blocks left the ground or each other")
+    airborne_time_s: float = fact("longest time that a block was without contact", "s")
+    peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
+    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+
+
+class DemRun(KindResults):
+    """dem: the blocks under a motion."""
+
+    outcome: Outcome = fact("no joint opens, joints open and it stands, or it comes down")
+    collapse_time_s: float | None = fact("when a block first moved farther than the collapse displacement", "s")
+    stopped: str = fact("why the run ended")
+    stopped_by: list[str] = fact("the blocks that ended it")
+    stop_time_s: float = fact("when it ended", "s")
+    still_moving: bool = fact("whether it still moved at the end")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse", "m")
+    peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
+    peak_slip_m: float = fact("greatest slip of joints that still touch", "m")
+    peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
+    friction_loss_J: float = fact("energy lost in friction", "J")
+    damping_loss_J: float = fact("energy lost in damping", "J")
+    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    restitution_measured: float | None = fact("of a single block: median rate after over before its impacts")
+    restitution_housner: float | None = fact("of a block: the momentum balance", source="Housner 1963")
+    bounces: int = fact("times that blocks left the ground or each other")
+    airborne_time_s: float = fact("longest time that a block was without contact", "s")
+    joint_stiffness_min_Pa_per_m: float = fact("least normal stiffness of the joints", "Pa/m")
+    joint_stiffness_max_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
+    beta_s: float = fact("stiffness-proportional damping", "s")
+    damping_ratio_rotation: float = fact(
+        "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
+    )
+    damping_ratio_corner: float = fact("the same at corner impact")
+    damping_ratio_edge: float = fact("the same at edge impact", source="thesis Eq. 7.9")
+    steps: int = fact("time steps")
+    settling_steps: int = fact("time steps until it had settled under its weight")
+    time_step_s: float = fact("time step", "s")
+    critical_step_s: float = fact("greatest stable time step", "s")
+    contact_searches: int = fact("searches for contacts")
+    animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
+    sensitivity: list[Variation] = maybe(
+        "runs with other damping, stiffness or friction", source="thesis Tables 7.1 to 7.7"
+    )
+    friction_threshold: float | None = maybe("least friction at which no joint slides; null where not found")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
+        outcome = "falls" if self.outcome == "collapse" else "open" if self.still_moving else "stands"
+        most, limit = self.peak_displacement_m, self.collapse_displacement_m
+        text = {
+            "falls": f"A block moves farther than the {limit:.3g} m that count as collapse",
+            "stands": f"No block moves farther than {most:.3g} m; {limit:.3g} m count as collapse",
+            "open": "The run ended while it still moved",
+        }[outcome]
+        return judge(f"{text}.", most, limit, "m", outcome)
+
+
+class DemTilt(KindResults):
+    """dem: the constant acceleration that brings the blocks down."""
+
+    test: Literal["tilt"] = fact("the test")
+    outcome: Outcome = fact("it comes down, at these accelerations")
+    collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed to +x", "g")
+    collapse_acceleration_opposite_g: float = fact("the same, pushed to -x", "g")
+    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg")
+    tilt_angle_opposite_deg: float = fact("the same, to -x", "deg")
+    load_direction: Literal["+x"] = fact("sense of the push that the hinges belong to")
+    hinges: list[NamedHinge] = fact("hinges as it goes")
+    hinges_opposite: list[NamedHinge] = fact("hinges as it goes to -x")
+    peak_rotation_rad: dict[str, float] = fact("greatest rotation of each followed block, positive to +x", "rad")
+    peak_slip_m: float = fact("greatest slip as it goes", "m")
+    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    time_step_s: float = fact("time step", "s")
+    steps: int = fact("time steps of the last run")
+    beta_s: float = fact("stiffness-proportional damping", "s")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
+        least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
+        return acceleration("The structure", least, demand)
+
+
+Dem = DemRun | DemTilt
+
+
+class DemCurve(ResultModel):
+    """Shortest failing durations with one set of joints."""
+
+    label: str = fact("what was varied")
+    beta_s: float = fact("stiffness-proportional damping", "s")
+    stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
+    friction: float = fact("greatest coefficient of friction of the joints")
+    damping_ratio_rotation: float = fact("least fraction of critical damping at rotational impact")
+    damping_ratio_corner: float = fact("the same at corner impact")
+    damping_ratio_edge: float = fact("the same at edge impact")
+    shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
+
+
+class DemDomain(KindResults):
+    """dem-domain: the shortest pulses that bring the blocks down."""
+
+    pulse: Literal["step", "sine"] = fact("shape of the pulses")
+    amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
+    shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
+    curves: list[DemCurve] = fact("the same with other damping, stiffness or friction; the first is as given")
+    energy_residual_ratio: float = fact("greatest error of the energy ledgers over the energy that went round")
+    steps: int = fact("time steps of all runs")
+    four_hinge_mode_I_durations_s: list[float | None] = maybe(
+        "of an arch: by the four-hinge mechanism, either mode", "s"
+    )
+    four_hinge_mode_II_durations_s: list[float | None] = maybe("the same without an impact", "s")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """A motion that is such a pulse [s] against the curve between its amplitudes; without one the shortest failing
+        duration of all is told."""
+        if demand.pulse == self.pulse:
+            duration, amplitude = demand.duration_s, demand.amplitude_g
+            capacity = between(self.amplitudes_g, self.shortest_durations_s, amplitude)
+            if capacity is not None:
+                word = "shorter than" if duration < capacity else "at least as long as"
+                return judge(
+                    f"The motion, {amplitude:.3g} g for {duration:.3g} s, is {word} the shortest failing one "
+                    f"({capacity:.3g} s at that amplitude).", duration, capacity, "s",
+                )  # fmt: skip
+        failing = [t for t in self.shortest_durations_s if t is not None]
+        if not failing:
+            return judge("None of the pulses tried brings it down.", None, None, "s")
+        return judge(
+            f"Of the {self.pulse} pulses tried the shortest that brings it down lasts {min(failing):.3g} s.",
+            None, min(failing), "s",
+        )  # fmt: skip
+
+
+class DemParameters(KindResults):
+    """dem-parameters: stiffness, impact frequencies and damping of the joints, without a run."""
+
+    joint_stiffness_min_Pa_per_m: float = fact("least normal stiffness of the joints", "Pa/m")
+    joint_stiffness_max_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
+    rotation_frequency_rad_s: float = fact("greatest frequency of rotational impact", "rad/s", source="thesis Eq. 7.20")
+    corner_frequency_rad_s: float = fact("greatest frequency of corner impact", "rad/s", source="thesis Eq. 7.18")
+    edge_frequency_rad_s: float = fact("greatest frequency of edge impact", "rad/s", source="thesis Eq. 7.19")
+    critical_beta_rotation_s: float = fact(
+        "damping that is critical at rotational impact", "s", source="thesis Eq. 7.17"
+    )
+    critical_beta_corner_s: float = fact("damping that is critical at corner impact", "s", source="thesis Eq. 7.17")
+    critical_beta_edge_s: float = fact("damping that is critical at edge impact", "s", source="thesis Eq. 7.17")
+    beta_s: float = fact("stiffness-proportional damping in use", "s")
+    damping_ratio_rotation: float = fact("least fraction of critical damping at rotational impact")
+    damping_ratio_corner: float = fact("the same at corner impact")
+    damping_ratio_edge: float = fact("the same at edge impact")
+    convention: Literal["consistent", "thesis"] = fact("rule of the default stiffness")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """Nothing is asked of the building."""
+        return judge("Parameters of the joints; nothing is asked of the building.")

@@ -1,0 +1,86 @@
+"""The base of typed results: what an analysis gives, each value with its meaning, its unit and where it comes from.
+
+One definition serves drivers, summary.json and its JSON Schema, `explain`, the manual and the figures.
+"""
+
+import math
+from collections.abc import Iterator, KeysView
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+
+def fact(about: str, unit: str = "", *, source: str = "", name: str | None = None) -> Any:
+    """A value that the analysis always gives: one-sentence meaning, unit ("" where it has none), source of a formula.
+
+    name: the key where Python cannot call it so.
+    """
+    return Field(..., description=about, json_schema_extra=_extra(unit, source), alias=name)
+
+
+def maybe(about: str, unit: str = "", *, source: str = "") -> Any:
+    """A value that is given only where the question or the building asks for it; elsewhere it is None in Python
+    and has no key in summary.json."""
+    return Field(None, description=about, json_schema_extra=_extra(unit, source))
+
+
+def _extra(unit: str, source: str) -> dict[str, Any]:
+    return {k: v for k, v in (("unit", unit), ("source", source)) if v}
+
+
+class ResultModel(BaseModel):
+    """Results of an analysis, or a row within them. They read as attributes and, by the keys of summary.json, as a
+    mapping of what was given.
+
+    A missing or unknown key fails at once. Arrays and numpy's numbers are taken as lists and numbers; what is not
+    finite becomes None, which JSON writes as null, so a value that may be so says `| None`.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True, allow_inf_nan=False, populate_by_name=True)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _taken(cls, values: Any) -> Any:
+        return {name: plain(value) for name, value in values.items()} if isinstance(values, dict) else values
+
+    def keys(self) -> KeysView[str]:
+        """The keys that were given, as summary.json has them."""
+        fields = type(self).model_fields.items()
+        return {field.alias or name: None for name, field in fields if name in self.model_fields_set}.keys()
+
+    def __getitem__(self, key: str) -> Any:
+        for name, field in type(self).model_fields.items():
+            if key == (field.alias or name) and name in self.model_fields_set:
+                return getattr(self, name)
+        raise KeyError(key)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self.keys()
+
+    def get(self, key: str, default: Any = None) -> Any:
+        """The value of a key, `default` where it was not given."""
+        return self[key] if key in self else default
+
+    def items(self) -> Iterator[tuple[str, Any]]:
+        """Keys and values that were given."""
+        return ((key, self[key]) for key in self.keys())
+
+    def as_json(self) -> dict[str, Any]:
+        """What summary.json holds."""
+        return self.model_dump(by_alias=True, exclude_unset=True)
+
+
+def plain(value: Any) -> Any:
+    """Lists, dictionaries and Python's own numbers instead of numpy's; None for NaN and infinity, which JSON lacks."""
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(v) for v in value]
+    return value

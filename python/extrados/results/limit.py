@@ -1,0 +1,271 @@
+"""Results of limit analysis: tilt, thrust, moving-load, supports, sweep, survey."""
+
+from typing import Literal
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+
+Side = Literal["intrados", "extrados"]
+
+
+class JointHinge(ResultModel):
+    """A joint that hinges."""
+
+    joint: int = fact("number of the joint")
+    side: Side = fact("where the stones touch")
+
+
+class NamedHinge(JointHinge):
+    """A joint that hinges, by its name."""
+
+    name: str = fact("name of the joint")
+
+
+class Hinge(NamedHinge):
+    """A hinge of a mechanism, and its place."""
+
+    x_m: float = fact("x of the hinge", "m")
+    y_m: float = fact("y of the hinge", "m")
+
+
+class Reaction(ResultModel):
+    """Force of the ground on the structure at a joint."""
+
+    joint: int = fact("number of the joint on the ground")
+    name: str = fact("its name")
+    horizontal_N: float = fact("to +x", "N")
+    vertical_N: float = fact("upward", "N")
+
+
+class ChainThrust(ResultModel):
+    """Horizontal thrust of an arch of the structure, upright."""
+
+    min_N: float = fact("least", "N")
+    max_N: float = fact("greatest", "N")
+
+
+class Fracture(ResultModel):
+    """Collapse to +x with the leeward buttress cracked."""
+
+    stands: bool = maybe("false where the cracked structure cannot stand upright; nothing else is given then")
+    cracks: bool = maybe("whether the buttress cracks before the structure falls")
+    buttress: str = maybe("name of the cracked buttress")
+    collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
+    tilt_angle_deg: float = maybe("the same as a tilt of the ground", "deg", source="thesis Eq. 3.1")
+    ratio: float = maybe("over the collapse acceleration of the whole structure")
+    crack_height_m: float = maybe("height above the base at which the crack starts", "m")
+    crack_height_ratio: float = maybe("the same over the height of the buttress")
+    resultant_from_outer_face_ratio: float = maybe("distance of the resultant from the outer face over the width there")
+    hinges: list[Hinge] = maybe("hinges of the cracked structure")
+
+
+class Tilt(KindResults):
+    """tilt: the constant horizontal acceleration at which a structure becomes a mechanism."""
+
+    collapse_acceleration_g: float = fact("greatest constant acceleration that is borne, pushed to +x", "g")
+    collapse_acceleration_opposite_g: float = fact("the same, pushed to -x", "g")
+    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg", source="thesis Eq. 3.1")
+    tilt_angle_opposite_deg: float = fact("the same, to -x", "deg")
+    admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
+    load_direction: Literal["+x"] = fact("sense of the push that hinges and friction belong to")
+    hinges: list[Hinge] = fact("hinges of the mechanism")
+    sliding_joints: list[int] = fact("joints that slide or part in the mechanism")
+    hinges_opposite: list[Hinge] = fact("hinges of the mechanism to -x")
+    touching_joints: list[int] = fact("joints whose end the thrust line touches without a hinge")
+    required_friction: float | None = fact("greatest coefficient of friction that the thrust line at collapse needs")
+    required_friction_joint: int = fact("the joint that needs it")
+    geometric_safety_factor: float | None = fact(
+        "upright: one over the least part of the joints that holds a thrust line; null where that was not sought"
+    )
+    weight_N: float = fact("weight of the structure with its fill", "N")
+    depth_m: float = fact("depth out of plane", "m")
+    reactions: list[Reaction] = fact("forces of the ground at collapse")
+    thrust_min_N: float = maybe("least horizontal thrust upright, of the first arch", "N")
+    thrust_max_N: float = maybe("greatest horizontal thrust upright, of the first arch", "N")
+    thrusts: dict[str, ChainThrust] = maybe("least and greatest thrust upright of each arch, by its name")
+    clear_span_m: float = maybe("clear span", "m")
+    rise_m: float = maybe("rise of the intrados", "m")
+    base_width_m: float = maybe("width of the base of a buttress", "m")
+    height_above_ground_m: float = maybe("height of the crown above the ground", "m")
+    overall_width_m: float = maybe("width over the outer buttresses", "m")
+    nave_span_m: float = maybe("clear span of the nave", "m")
+    left_aisle_span_m: float = maybe("clear span of the left aisle", "m")
+    right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
+    duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
+    fracture: Fracture = maybe("collapse with the leeward buttress cracked")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
+        least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
+        return acceleration("The structure", least, demand)
+
+
+class ThrustLine(ResultModel):
+    """One admissible thrust line."""
+
+    horizontal_N: float = fact("horizontal thrust at the left springing", "N")
+    horizontal_kN_per_m: float = fact("the same per metre of depth", "kN/m")
+    over_weight: float = fact("the same over the weight of the structure")
+    required_friction: float | None = fact("greatest coefficient of friction it needs")
+    required_friction_joint: str = fact("the joint that needs it")
+    greatest_eccentricity_ratio: float = fact("greatest distance from the middle of a joint over its length")
+    reactions: list[Reaction] = fact("forces of the ground")
+
+
+class Thrust(KindResults):
+    """thrust: admissible thrust lines at a given horizontal acceleration."""
+
+    gamma_g: float = fact("acceleration to +x at which the lines are drawn", "g")
+    chain: str = fact("the arch whose thrust is least and greatest")
+    admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
+    geometric_safety_factor: float | None = fact("one over the least part of the joints that holds a thrust line")
+    least_part_of_joints: float = fact("the part of the joints, about their middles, that the most central line needs")
+    weight_N: float = fact("weight of the structure with its fill", "N")
+    depth_m: float = fact("depth out of plane", "m")
+    duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
+    least: ThrustLine = fact("the line of least thrust")
+    most: ThrustLine = fact("the line of greatest thrust")
+    central: ThrustLine = fact("the most central line")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The part of the joints that the most central line needs against the whole; the ratio is the safety factor."""
+        part = self.least_part_of_joints
+        return judge(
+            f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0
+        )  # fmt: skip
+
+
+class MovingLoad(KindResults):
+    """moving-load: the load that brings an arch down, at every place along its span."""
+
+    chain: str = fact("the arch that the load crosses")
+    collapse_load_N: float = fact("least load that brings it down", "N")
+    collapse_load_kN_per_m: float = fact("the same per metre of depth", "kN/m")
+    worst_place_m: float = fact("x of the first axle where that is", "m")
+    worst_place_over_span: float = fact("the same from the left springing, over the span")
+    hinges: list[NamedHinge] = fact("hinges of the mechanism there")
+    places_without_limit: int = fact("places where no load of the kind brings it down")
+    duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
+    load_N: float = maybe("the load that the deck gives", "N")
+    safety_factor: float = maybe("collapse load over that load")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The deck's load against the least collapse load [N]."""
+        text = f"The {self.chain} bears {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
+        if self.load_N is None:
+            return judge(f"{text}; the deck gives no load to compare with.", None, self.collapse_load_N, "N")
+        return judge(
+            f"{text}, {self.safety_factor:.3g} times the load of {self.load_N / 1e3:.4g} kN.",
+            self.load_N, self.collapse_load_N, "N",
+        )  # fmt: skip
+
+
+class Stage(ResultModel):
+    """A change of hinges while a support moves."""
+
+    movement_m: float = fact("movement of the support from which on it holds", "m")
+    hinges: list[str] = fact("the three hinges")
+
+
+class Supports(KindResults):
+    """supports: an arch whose right support spreads or settles until it falls."""
+
+    movement_at_fall_m: float = fact("movement of the support at which the arch falls", "m")
+    movement_at_fall_over_span: float = fact("the same over the span")
+    span_change_at_fall_ratio: float = fact("growth of the span at the fall, over the span")
+    thrust_at_rest_N: float = fact("horizontal thrust at the start", "N")
+    thrust_at_fall_N: float = fact("horizontal thrust at the fall", "N")
+    hinges_at_rest: list[JointHinge] = fact("the three hinges at the start")
+    hinges_at_fall: list[JointHinge] = fact("the three hinges at the fall")
+    joints_touched_at_fall: list[int] = fact("joints where the thrust line touches a further end at the fall")
+    stages: list[Stage] = fact("from the start on, each change of hinges")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The movement that the arch can follow [m]; the deck asks for none."""
+        move = self.movement_at_fall_m
+        return judge(
+            f"The arch follows its support by {move:.4g} m, {100.0 * self.movement_at_fall_over_span:.3g} % of the span, "
+            "before it falls.", None, move, "m",
+        )  # fmt: skip
+
+
+class Mechanism(ResultModel):
+    """A mechanism that governs somewhere in a sweep."""
+
+    number: int = fact("its number in the figures")
+    hinges: str = fact("order of the hinges in words")
+
+
+class Change(ResultModel):
+    """A value at which another mechanism begins to govern."""
+
+    value: float = fact("the value of the key, in its unit")
+    before: int | Literal["locked"] = fact(
+        "number of the mechanism below it; 0 where it cannot stand, locked where nothing brings it down", name="from"
+    )
+    after: int | Literal["locked"] = fact("the same above it", name="to")
+    collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
+
+
+class Gap(ResultModel):
+    """A value that gives no structure that stands."""
+
+    value: float = fact("the value of the key, in its unit")
+    reason: str = fact("why")
+
+
+class Sweep(KindResults):
+    """sweep: capacity and mechanism as one key of the deck varies."""
+
+    vary: str = fact("the key that varies")
+    unit: str = fact("its unit")
+    mechanisms: list[Mechanism] = fact("the mechanisms that govern somewhere")
+    changes: list[Change] = fact("where another begins to govern")
+    stable_limits: list[float] = fact("values at which the range ends in which it stands, in the unit of the key")
+    locked_limits: list[float] = fact("values past which no load of the kind brings it down")
+    optimum_value: float = fact("value of the greatest capacity, in the unit of the key")
+    optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
+    optimum_tilt_angle_deg: float = fact("the same as a tilt of the ground", "deg")
+    optimum_inside: bool = fact("whether it lies inside the range")
+    values: list[float] = fact("the values, in the unit of the key")
+    collapse_accelerations_g: list[float | None] = fact("capacity at each value; null where it cannot stand", "g")
+    gaps: list[Gap] = fact("values without a structure that stands")
+    duality_gap: float = fact("greatest difference between the bounds", "g")
+    fractured_collapse_accelerations_g: list[float | None] = maybe("the same with the leeward buttress cracked", "g")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The greatest capacity [g]; a sweep compares, it asks for no demand."""
+        best = self.optimum_collapse_acceleration_g
+        unit = f" {self.unit}" if self.unit else ""
+        return judge(
+            f"Of the values tried, {self.vary} = {self.optimum_value:.4g}{unit} bears most, {best:.3g} g.", None, best, "g"
+        )  # fmt: skip
+
+
+class NoAnswerRow(ResultModel):
+    """A section of a survey that has no capacity."""
+
+    row: int = fact("its line in the file")
+    name: str = fact("its name")
+    reason: str = fact("why")
+
+
+class Survey(KindResults):
+    """survey: many sections from a table."""
+
+    sections: int = fact("sections in the table")
+    standing: int = fact("sections that stand")
+    without_answer: list[NoAnswerRow] = fact("sections without a capacity, the first hundred")
+    weakest: str | None = fact("name of the weakest section that stands")
+    weakest_collapse_acceleration_g: float | None = fact("its capacity", "g")
+    median_collapse_acceleration_g: float | None = fact("median capacity of those that stand", "g")
+    sections_per_second: float = fact("speed of the survey", "1/s")
+    duality_gap: float = fact("greatest difference between the bounds", "g")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The capacity of the weakest section that stands [g]; a survey asks for no demand."""
+        text = f"{self.standing} of {self.sections} sections stand upright"
+        if self.weakest is None:
+            return judge(f"{text}.", None, None, "g")
+        least = self.weakest_collapse_acceleration_g
+        return judge(f"{text}; the weakest of them, {self.weakest}, bears {least:.3g} g.", None, least, "g")

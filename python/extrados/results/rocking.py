@@ -1,0 +1,188 @@
+"""Results of rocking dynamics: rocking, failure-domain, assessment."""
+
+from typing import Literal
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
+
+Outcome = Literal["no-hinging", "recovery", "collapse"]
+Pulse = Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"]
+
+
+class RockingHinge(ResultModel):
+    """A hinge about which parts of a mechanism turn."""
+
+    joint: int = fact("number of the joint")
+    name: str = fact("name of the joint")
+    x_m: float = fact("x of the hinge", "m")
+    y_m: float = fact("y of the hinge", "m")
+
+
+class Rocking(KindResults):
+    """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
+
+    rotation_of: str = fact("whose rotation is told")
+    outcome: Outcome = fact("does not rock, rocks and stays up, or comes down")
+    settled: bool = fact("whether it came to rest, or down, before the run ended; false leaves the outcome open")
+    collapse_half_cycle: int | None = fact("half cycle in which it comes down")
+    collapse_time_s: float | None = fact("when it turned past recall", "s")
+    half_cycles: int = fact("half cycles of rocking")
+    impacts: int = fact("number of impacts")
+    impact_times_s: list[float] = fact("when they happen", "s")
+    peak_rotation_rad: float = fact("greatest rotation, positive to +x", "rad")
+    peak_rotation_ratio: float = fact("the same over the critical rotation, from which gravity takes it down")
+    peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
+    energy_supplied_J: float = fact("work of the ground", "J")
+    energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
+    energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
+    steps: int = fact("steps of the integrator")
+    rejected_steps: int = fact("steps that it tried and refused")
+    restitution: float = fact(
+        "rate after over before an impact; of a block or a mechanism that after which it rocks to +x"
+    )
+    restitution_to_left: float = maybe("of a block or a mechanism: that after which it rocks to -x")
+    energy_ratio: float = maybe("of a block: kinetic energy after over before an impact", source="thesis Eq. 6.2")
+    critical_rotation_rad: float = fact("rotation to +x from which gravity takes it down", "rad")
+    critical_rotation_left_rad: float = maybe("of a block or a mechanism: the same to -x", "rad")
+    frequency_parameter_rad_s: float = maybe("of a block: p", "rad/s", source="Housner 1963")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    required_friction: float | None = fact(
+        "greatest coefficient of friction needed; null where a joint comes under tension"
+    )
+    hinges: list[RockingHinge] = maybe("of a mechanism: where it turns, rocking to +x")
+    hinges_opposite: list[RockingHinge] = maybe("of a mechanism: where it turns, rocking to -x")
+    restitution_thesis: float = maybe("of an arch: by the momentum balance of the thesis", source="thesis Eq. 5.3")
+    restitution_energy_safe: float = maybe("of an arch: by the energy-safe projection")
+    thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The greatest rotation against the critical one; open where the run ended before it settled."""
+        outcome = "falls" if self.outcome == "collapse" else "stands" if self.settled else "open"
+        text = {
+            "falls": "Under the motion it comes down",
+            "stands": f"Under the motion it turns by {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation "
+            "and stays up",
+            "open": "The run ended before it came to rest",
+        }[outcome]
+        return judge(f"{text}.", self.peak_rotation_ratio, 1.0, "", outcome)
+
+
+class ModeCurve(ResultModel):
+    """Lowest failing amplitudes of a mode of collapse."""
+
+    durations_s: list[float] = fact("durations or periods of the pulses", "s")
+    amplitudes_g: list[float | None] = fact("lowest failing amplitude at each; null where none below the cap", "g")
+    amplitude_ratios: list[float | None] = maybe("of a block: the same over the uplift acceleration")
+
+
+class AtAmplitudes(ResultModel):
+    """Shortest failing pulses at given amplitudes."""
+
+    amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
+    mode_I_durations_s: list[float | None] = fact("shortest that brings it down in either mode; null: none", "s")
+    mode_II_durations_s: list[float | None] = fact("shortest that does without an impact; null: none", "s")
+
+
+class FailureDomain(KindResults):
+    """failure-domain: which pulses bring an arch or a block down."""
+
+    pulse: Pulse = fact("shape of the pulses")
+    mode_I: ModeCurve = fact("lowest amplitudes that bring it down in either mode, Mode I after an impact")
+    mode_II: ModeCurve = fact("lowest amplitudes that bring it down in the first half cycle, without an impact")
+    pocket_begins_g: list[float | None] = fact("where the first safe pocket above the curve begins; null: none", "g")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    restitution: float = fact("rate after over before an impact")
+    natural_time_s: float = fact("time by which the curves scale: sqrt(R/g) of an arch, 1/p of a block", "s")
+    safe_pockets: int = fact("durations with safe amplitudes above a failing one")
+    at_amplitudes: AtAmplitudes = maybe("shortest failing durations at the amplitudes that the deck asks for")
+    frequency_ratio: list[float] = maybe("of a block: omega/p of the pulses")
+    pocket_begins_ratio: list[float | None] = maybe("of a block: pocket_begins over the uplift acceleration")
+    mode_names: str = maybe("of a block: how the modes are called elsewhere")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """A motion that is such a pulse [g] against the curve between its durations; without one the lowest failing
+        amplitude of all is told."""
+        durations, curve = self.mode_I.durations_s, self.mode_I.amplitudes_g
+        if demand.pulse == self.pulse:
+            duration, amplitude = demand.duration_s, demand.amplitude_g
+            capacity = between(durations, curve, duration)
+            if capacity is not None:
+                word = "stays below" if amplitude < capacity else "reaches"
+                return judge(
+                    f"The motion, {amplitude:.3g} g for {duration:.3g} s, {word} the failure curve ({capacity:.3g} g there).",
+                    amplitude, capacity, "g",
+                )  # fmt: skip
+        failing = [a for a in curve if a is not None]
+        if not failing:
+            return judge("None of the pulses tried brings it down.", None, None, "g")
+        return judge(
+            f"Over the {self.pulse} pulses tried the lowest amplitude that brings it down is {min(failing):.3g} g.",
+            None, min(failing), "g",
+        )  # fmt: skip
+
+
+def between(places: list[float], values: list[float | None], place: float) -> float | None:
+    """The value at a place, on the straight line between its neighbours; None outside or beside a null."""
+    pairs = sorted(zip(places, values, strict=True), key=lambda pair: pair[0])
+    for (x0, y0), (x1, y1) in zip(pairs, [*pairs[1:], pairs[-1]], strict=True):
+        if x0 <= place <= x1 and y0 is not None and y1 is not None:
+            return y0 if x1 == x0 else y0 + (y1 - y0) * (place - x0) / (x1 - x0)
+    return None
+
+
+class Coefficients(ResultModel):
+    """A failure curve A_p/g = C1 (T_p/sqrt(R) - T_min)^C2 + gamma, T_p in s, R in m."""
+
+    C1: float = fact("factor C1", source="thesis Eq. 5.8")
+    C2: float = fact("exponent C2", source="thesis Eq. 5.8")
+    T_min_s: float = fact("period below which nothing fails, for R = 1 m", "s", source="thesis Eq. 5.8")
+    gamma: float = fact("amplitude that long impulses need, in g", source="thesis Eq. 5.8")
+
+
+class PrimaryImpulse(ResultModel):
+    """The single sine that explains most of a motion."""
+
+    amplitude_g: float = fact("amplitude, with its sign", "g")
+    period_s: float = fact("period", "s")
+    start_s: float = fact("when it starts", "s")
+    goodness_of_fit: float = fact("share of the squared acceleration over its own span that it explains")
+
+
+class AssessedImpulse(PrimaryImpulse):
+    """An impulse of the motion against the failure curve."""
+
+    rank: int = fact("1 for the primary impulse")
+    explained: float = fact("share of the squared acceleration of the whole motion that it explains")
+    failing_amplitude_g: float | None = fact("failing amplitude at its period; null: too short to do harm", "g")
+    failing_amplitude_own_g: float | None = fact("the same by the curve fitted to this arch", "g")
+    margin: float | None = fact("failing amplitude over its amplitude; null: too short to do harm")
+    verdict: Literal["stands", "fails"] = fact("whether it brings the arch down by the criterion")
+
+
+class Assessment(KindResults):
+    """assessment: the primary impulses of a motion against the failure curve of an arch."""
+
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which the arch hinges", "g")
+    peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
+    static_verdict: Literal["stands", "fails"] = fact("what the peak acceleration, taken as constant, would do")
+    coefficients: Coefficients = fact("the failure curve that is used")
+    coefficients_source: str = fact("where it comes from")
+    coefficients_of_this_arch: Coefficients = fact("the failure curve fitted to this arch")
+    restitution: float = fact("rate after over before an impact")
+    impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
+    verdict: Literal["stands", "fails"] = fact("whether one of them brings the arch down by the criterion")
+    margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
+    primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The impulse of the least margin against its failing amplitude [g]."""
+        harmful = [i for i in self.impulses if i.margin is not None]
+        if not harmful:
+            return judge("No impulse of the motion is long enough to bring the arch down.", None, None, "g", "stands")
+        worst = min(harmful, key=lambda i: i.margin)
+        size = abs(worst.amplitude_g)
+        word = "below" if size < worst.failing_amplitude_g else "at or above"
+        return judge(
+            f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
+            f"{worst.failing_amplitude_g:.3g} g.", size, worst.failing_amplitude_g, "g",
+        )  # fmt: skip

@@ -1,0 +1,95 @@
+"""Results of sequentially linear analysis."""
+
+from typing import Literal
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+
+#: How the names of arrays begin that belong to the first sense of the load, and to the second
+PREFIXES = ("", "minus_")
+
+
+class Bilinear(ResultModel):
+    """Elastic-plastic idealisation of the envelope, of equal area."""
+
+    stiffness_N_m: float = fact("secant stiffness at 60 % of the peak", "N/m")
+    yield_load_N: float = fact("load of the plateau", "N")
+    yield_displacement_m: float = fact("displacement at its start", "m")
+    ultimate_displacement_m: float = fact(
+        "displacement where the load has fallen to 80 % of the peak, or the last", "m"
+    )
+    ductility: float = fact("ultimate over yield displacement")
+
+
+class SlaCurve(ResultModel):
+    """The events of one sense of the load."""
+
+    sense: Literal["+", "-"] = fact("sense of the reference loads")
+    peak_load_N: float | None = fact("greatest load in equilibrium; null where there is none", "N")
+    peak_displacement_m: float | None = fact("control displacement at it", "m")
+    displacement_of_constant_loads_m: float = fact("control displacement under the constant loads alone", "m")
+    peak_event: int | None = fact("event of the greatest load, from 1")
+    first_event_load_N: float | None = fact("load of the first event", "N")
+    events: int = fact("events of this run")
+    events_before_resume: int = fact("events of the runs that this one goes on from")
+    events_without_equilibrium: int = fact("events at which no multiplier of the load suits all points")
+    first_event_without_equilibrium: int | None = fact("the first of them, from 1")
+    stop: str = fact("why the run ended")
+    secondary_cracks: int = fact("events of second cracks")
+    damaged_points: int = fact("points that cracked")
+    closings: int = fact("cracks that closed")
+    crushing_events: int = fact("events of crushing")
+    last_load_N: float | None = fact("load of the last event", "N")
+    last_displacement_m: float | None = fact("control displacement of the last event", "m")
+    energy_residual_ratio: float = fact("error of the energy ledger over the work of the loads")
+    external_work_J: float | None = fact("work of all loads", "J")
+    stored_energy_J: float | None = fact("elastic energy at the end", "J")
+    dissipated_energy_J: float | None = fact("energy dissipated along the straight way between events", "J")
+    crack_energy_J: float = fact("area of the teeth passed", "J")
+    residual_ratio: float | None = fact("greatest residual of the equations that was measured; null where none was")
+    guard_checks: int = fact("times that the residual was measured on the way")
+    guard_resolutions: int = fact("times that the equations were solved again for it")
+    guard_new_factors: int = fact("times that the factor was made anew for it")
+    seconds_per_event: float = fact("computing time of an event", "s")
+    events_of_constant_loads: int = fact("events while the constant loads were brought on")
+    probe_loads_N: list[float | None] = maybe("load of the envelope at the probed displacements; null beyond it", "N")
+    initial_stiffness_N_m: float = maybe("stiffness before the first event", "N/m")
+    peak_acceleration_g: float | None = maybe(
+        "the greatest load as a horizontal acceleration, where the load is an acceleration of the masses", "g"
+    )
+    bilinear: Bilinear = maybe("idealisation of the envelope, where it has a rising branch")
+
+
+class Scatter(ResultModel):
+    """Repetitions with other seeds of mesh and strength."""
+
+    seeds: list[int] = fact("the seeds")
+    peak_loads_N: list[float] = fact("peak load of each", "N")
+    mean_N: float = fact("their mean", "N")
+    coefficient_of_variation: float | None = fact("their coefficient of variation; null for a single one")
+    lowest_N: float = fact("the lowest", "N")
+    highest_N: float = fact("the highest", "N")
+
+
+class Sla(SlaCurve, KindResults):
+    """sla: cracks event by event under constant loads and growing ones; the curve of the first sense, and of both."""
+
+    reference_load_N: float = fact("the reference loads, to which the multiplier 1 belongs", "N")
+    teeth: list[int] = fact("least and greatest number of teeth of the saw-tooth laws")
+    nodes: int = fact("nodes of the mesh")
+    elements: int = fact("elements of the mesh")
+    equations: int = fact("equations")
+    points: int = fact("integration points, those of bars too")
+    minus: SlaCurve = maybe("the curve of the second sense")
+    scatter: Scatter = maybe("repetitions with other seeds")
+    hinges: list[str] = maybe("of stones: joints that are open but for an edge at the peak")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
+        borne = [c.peak_acceleration_g for c in (self, self.minus) if c is not None]
+        if all(a is not None for a in borne):
+            return acceleration("The building", min(abs(a) for a in borne), demand)
+        peaks = [c.peak_load_N for c in (self, self.minus) if c is not None and c.peak_load_N is not None]
+        if not peaks:
+            return judge(f"No greatest load was found; the run ended by: {self.stop}.", None, None, "N")
+        return judge(f"The wall bears {min(peaks) / 1e3:.4g} kN of the growing load.", None, min(peaks), "N")

@@ -1,0 +1,184 @@
+"""Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
+
+from extrados.results.fields import fact, maybe
+from extrados.results.rocking import Outcome
+from extrados.results.verdict import Demand, KindResults, Verdict, judge
+
+
+class Ensemble(KindResults):
+    """fragility: one structure under many motions, or under motions scaled to levels of an intensity."""
+
+    count: int = fact("runs with a result")
+    failed: int = fact("runs without one")
+    collapsed: int = fact("runs that come down")
+    collapse_probability: float | None = fact("share of the runs that come down")
+    confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
+    uplifted: int = fact("runs that rock")
+    uplift_probability: float | None = fact("share of the runs that rock")
+    uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
+    mean_peak_rotation_ratio: float | None = fact("mean of the greatest rotation over the critical one; collapse is 1")
+    deviation_peak_rotation_ratio: float | None = fact("standard deviation of the same")
+    median_peak_rotation_ratio: float | None = fact("median of the same")
+    confidence: float = fact("level of all intervals")
+    restitution: float = fact("rate after over before an impact")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    motions: int = fact("number of motions")
+    median_pga_g: float | None = fact("median peak acceleration of the runs", "g")
+    median_pgv_m_s: float | None = fact("median peak velocity of the runs", "m/s")
+    median_arias_m_s: float | None = fact("median Arias intensity of the runs", "m/s")
+    expected_pga_g: float = maybe(
+        "of generated motions: median observed at their intensity", "g", source="Worden et al. 2012"
+    )
+    expected_pgv_m_s: float = maybe("the same of the peak velocity", "m/s", source="Worden et al. 2012")
+    intensity: str = maybe("with levels: the measure to which motions are scaled; levels and medians are in its unit")
+    intensity_unit: str = maybe("with levels: unit of the levels and medians")
+    median: float | None = maybe("median of the fitted lognormal curve of collapse", source="Baker 2015")
+    dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
+    deviance: float = maybe("deviance of the fit")
+    degrees_of_freedom: int = maybe("its degrees of freedom")
+    goodness_p_value: float | None = maybe("probability of a worse deviance were the curve true")
+    uplift_median: float | None = maybe("the same for uplift")
+    uplift_dispersion: float | None = maybe("the same for uplift")
+    uplift_deviance: float = maybe("the same for uplift")
+    uplift_degrees_of_freedom: int = maybe("the same for uplift")
+    uplift_goodness_p_value: float | None = maybe("the same for uplift")
+    overturning_given_uplift_median: float | None = maybe("the same for collapse of those that rock")
+    overturning_given_uplift_dispersion: float | None = maybe("the same for collapse of those that rock")
+    overturning_given_uplift_deviance: float = maybe("the same for collapse of those that rock")
+    overturning_given_uplift_degrees_of_freedom: int = maybe("the same for collapse of those that rock")
+    overturning_given_uplift_goodness_p_value: float | None = maybe("the same for collapse of those that rock")
+    median_interval: list[float | None] = maybe("bootstrap interval of the median")
+    dispersion_interval: list[float | None] = maybe("bootstrap interval of the dispersion")
+    motions_that_collapse: int = maybe("motions that bring it down at some level")
+    resurrections: int = maybe("motions that leave it standing at a level above one that brings it down")
+    first_collapse_median: float | None = maybe("median of the first level that brings it down")
+    first_collapse_dispersion: float | None = maybe("dispersion of the same")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The share of runs that come down; open unless all runs agree. With levels the fitted median is the capacity."""
+        if self.collapse_probability is None:
+            return judge("No motion could be run.", outcome="open")
+        outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
+        text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} runs bring it down"
+        if self.intensity is None:
+            return judge(f"{text}.", self.collapse_probability, None, "probability", outcome)
+        if self.median is None:
+            return judge(f"{text}; no curve could be fitted.", None, None, self.intensity_unit, outcome)
+        unit = f" {self.intensity_unit}" if self.intensity_unit else ""
+        return judge(
+            f"Half of the motions bring it down at {self.intensity} {self.median:.3g}{unit}.",
+            None, self.median, self.intensity_unit, outcome,
+        )  # fmt: skip
+
+
+class OverDurations(KindResults):
+    """fragility: generated motions of several durations."""
+
+    durations_s: list[float] = fact("durations of the motions", "s")
+    mean_peak_rotation_ratio: list[float | None] = fact("mean of the greatest rotation over the critical one, at each")
+    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of the same")
+    collapse_probability: list[float | None] = fact("share of the runs that come down, at each")
+    uplift_probability: list[float | None] = fact("share of the runs that rock, at each")
+    confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
+    count: int = fact("runs with a result")
+    failed: int = fact("runs without one")
+    collapsed: int = fact("runs that come down")
+    uplifted: int = fact("runs that rock")
+    restitution: float = fact("rate after over before an impact")
+    critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The share of all runs that come down; open unless they agree."""
+        if not self.count:
+            return judge("No motion could be run.", outcome="open")
+        share = self.collapsed / self.count
+        outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
+        text = f"Over all durations {100.0 * share:.3g} % of {self.count} runs bring it down."
+        return judge(text, share, None, "probability", outcome)
+
+
+Fragility = Ensemble | OverDurations
+
+
+class Resonance(KindResults):
+    """resonance: the motion under a cap that feeds most energy to a rocking structure."""
+
+    outcome: Outcome = fact("what it does under that motion")
+    cap_g: float = fact("cap of the ground acceleration", "g")
+    cap_ratio: float = fact("the same over the uplift acceleration")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    half_cycles: int = fact("changes of sign of the motion")
+    collapse_time_s: float | None = fact("when it turned past recall", "s")
+    switch_times_s: list[float] = fact("when the motion changes sign", "s")
+    switch_spacing_s: list[float] = fact("time between them", "s")
+    peak_rotation_rad: list[float] = fact("rotation at the start and at each change of sign", "rad")
+    energy_supplied_J: float = fact("work of the ground", "J")
+    energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
+    restitution: float = fact("rate after over before an impact")
+    cap_ratio_for_collapse_within: dict[str, float] = maybe(
+        "of a block: least cap over uplift that brings it down within so many half cycles"
+    )
+    least_cap_g: float | None = maybe("of a block: cap above which the rotation grows; null where its toes differ", "g")
+    least_cap_ratio: float | None = maybe("the same over the uplift acceleration")
+    least_cap_ratios: list[list[float]] = maybe(
+        "the same over aspects (rows) and initial ratios", source="thesis Fig. 6-3"
+    )
+    aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
+    initial_ratios: list[float] = maybe("their initial rotations over the critical one", source="thesis Fig. 6-3")
+    impulse_amplitude_g: float = maybe("of a block: amplitude of the single impulses", "g", source="thesis Fig. 6-4")
+    share_of_starts_that_add: dict[str, float] = maybe(
+        "share of the starts at which an impulse adds energy, by its period over the natural one",
+        source="thesis Fig. 6-4",
+    )
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The cap [g] against the least that makes the rotation grow; open where it grows without coming down."""
+        least = self.least_cap_g
+        if self.outcome == "collapse":
+            outcome, does = "falls", "brings it down"
+        else:
+            outcome = "stands" if least is not None and self.cap_g < least else "open"
+            does = f"does not bring it down within {self.half_cycles} half cycles"
+        known = "" if least is None else f"; above {least:.3g} g its rotation grows"
+        return judge(f"The worst motion under {self.cap_g:.3g} g {does}{known}.", self.cap_g, least, "g", outcome)
+
+
+class RockingSpectrum(KindResults):
+    """rocking-spectrum: greatest rotation of blocks or arches of many sizes under a motion."""
+
+    family: list[str] = fact("the families: slenderness of blocks, or the shape of the arch")
+    overturned: list[int] = fact("members of each family that come down")
+    longest_overturning_period_s: list[float | None] = fact("longest 2 pi/p among them; null: none", "s")
+    size_m: list[float] = fact("sizes: half-diagonal of the blocks, radius of the arches", "m")
+    peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """How many come down; a spectrum is about no one building."""
+        total = len(self.family) * len(self.size_m)
+        return judge(f"The motion overturns {sum(self.overturned)} of the {total} sizes and shapes tried.")
+
+
+class HarmonicMap(KindResults):
+    """harmonic-map: response to harmonic motion over frequency and amplitude."""
+
+    cycles: int = fact("cycles of the motion")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    frequencies_Hz: list[float] = fact("frequencies", "Hz")
+    frequency_ratios: list[float] = fact("omega/p of the frequencies")
+    lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null where none overturns", "g")
+    safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
+    restitution: float = fact("rate after over before an impact")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""
+        failing = [a for a in self.lowest_overturning_amplitude_g if a is not None]
+        if not failing:
+            return judge("No harmonic motion of the map brings it down.", None, None, "g")
+        return judge(
+            f"The lowest harmonic amplitude that brings it down is {min(failing):.3g} g.", None, min(failing), "g"
+        )  # fmt: skip

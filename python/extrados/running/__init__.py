@@ -1,0 +1,1 @@
+"""Runs of a deck: in memory, into a folder, and kept alive while values change."""

@@ -1,0 +1,36 @@
+"""Which copy of the program computed a result."""
+
+import contextlib
+from pathlib import Path
+
+from extrados._build_info import BUILD_TYPE, C_COMPILER, COMPILER, VERSION
+
+
+def provenance() -> dict[str, str]:
+    """Version, commit ("-dirty" where files differ from it) and compilers of this copy."""
+    return {
+        "version": VERSION,
+        "commit": _commit(),
+        "compiler": f"{COMPILER}, {C_COMPILER}",
+        "build_type": BUILD_TYPE,
+    }
+
+
+def _commit() -> str:
+    """What git says of a checkout of this project, "" of an installed copy.
+
+    Only a checkout of this project is asked: git would also answer for a repository that happens to lie around.
+    """
+    folder = Path(__file__).resolve().parents[1]
+    root = folder.parents[1]
+    if not (root / ".git").exists() or (root / "python" / "extrados") != folder:
+        return ""
+    import subprocess
+
+    with contextlib.suppress(OSError, subprocess.TimeoutExpired):
+        answer = subprocess.run(
+            ["git", "-C", str(root), "describe", "--always", "--dirty", "--exclude=*"],
+            capture_output=True, text=True, timeout=5,
+        )  # fmt: skip
+        return answer.stdout.strip() if answer.returncode == 0 else ""
+    return ""

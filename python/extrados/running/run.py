@@ -1,0 +1,115 @@
+"""A whole run: deck and analyses in memory, then, where wanted, the folder with figures and report."""
+
+import contextlib
+import shutil
+import signal
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
+from extrados.decks.reader import Deck
+from extrados.results import checkpoint, store
+from extrados.results.model import Result
+from extrados.results.store import Stored
+from extrados.running.provenance import provenance
+
+
+class Run(Stored):
+    """The results of a deck, in memory or read back from a folder: one class, read alike.
+
+    `results` are those of this process, in the order of the deck; empty for a run that was read back.
+    """
+
+    results: tuple[Result, ...] = ()
+
+    @classmethod
+    def of(cls, deck: Deck, results: list[Result]) -> "Run":
+        """The run of a deck that has been computed; it has no folder yet."""
+        run = cls(None, lambda: _head(deck), store.rows(results), store.arrays_of(results), store.typed_of(results))
+        run.results = tuple(results)
+        return run
+
+    @classmethod
+    def read(cls, folder: str | Path) -> "Run":
+        """The run that a folder holds; StoreError where it is damaged."""
+        found = store.read(folder)
+        return cls(found.folder, found.head, found.analyses, found.arrays)
+
+    def write(self, folder: str | Path, figures: bool = True) -> Path:
+        """Write the results into `folder`, in place of an earlier run there, and draw figures and report.
+
+        A killed write leaves the old folder or the new one; Ctrl-C waits until the results are there. Returns the
+        folder, which is then also the run's; StoreError where it cannot be written.
+        """
+        folder = Path(folder)
+        with _after_writing(), store.new_folder(folder) as scratch:
+            if self.results:
+                store.write(scratch, self.head(), list(self.results))
+            else:
+                for name in (store.SUMMARY, *self.summary["files"]):
+                    (scratch / name).parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copyfile(self.folder / name, scratch / name)
+        self.folder = folder
+        if figures:  # the results are safe by now, whatever happens while drawing
+            from extrados.plots.report import write_report
+
+            write_report(folder)
+        return folder
+
+
+def _head(deck: Deck) -> dict[str, Any]:
+    """What summary.json says besides the analyses."""
+    return {
+        "extrados": provenance(),
+        "deck": {
+            "path": deck.path,
+            "sha256": deck.identity,
+            "title": deck.title,
+            "note": deck.note,
+            "resolved": deck.resolved(),
+        },
+    }
+
+
+def compute(context: Context) -> Run:
+    """Run all analyses of a deck in memory; what is refused or fails says so in its result."""
+    return Run.of(context.deck, run_analyses(context))
+
+
+def run_to(context: Context, out: str | Path, figures: bool = True) -> Run:
+    """Run a deck into a folder: refused early where it cannot be written, resumable from the batches beside it."""
+    deck, out = context.deck, Path(out)
+    store.prepare(out)
+    context.out = out
+    if context.resume:
+        checkpoint.refuse_other_deck(out, deck.identity)
+    run = compute(context)
+    run.write(out, figures)
+    if all(r.status in ("ok", "refused") for r in run.results):
+        checkpoint.discard(out)
+    return run
+
+
+def default_out(deck: Deck) -> Path:
+    """results/<deck name> below the current folder."""
+    return Path("results") / (Path(deck.path).stem or "deck")
+
+
+@contextlib.contextmanager
+def _after_writing() -> Iterator[None]:
+    """Ctrl-C while results are written waits until they are: a long run is not lost in its last moment."""
+    asked: list[int] = []
+    before = {}
+    if threading.current_thread() is threading.main_thread():
+        for number in (signal.SIGINT, signal.SIGTERM):
+            before[number] = signal.signal(number, lambda number, _: asked.append(number))
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    if asked:
+        raise KeyboardInterrupt

@@ -1,0 +1,258 @@
+"""Runs that are killed or interrupted go on to the same bytes: in every kind of analysis that takes long."""
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import h5py
+import numpy as np
+import pytest
+
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
+from extrados.analyses.sla.model import build
+from extrados.core import calls
+from extrados.core import sla as core
+from extrados.decks.reader import make_deck
+from extrados.results.checkpoint import Checkpoint, folder_of
+
+BLOCK = """
+[structure]
+kind = "block"
+width = 1.0
+height = 4.0
+[joints]
+friction = 2.0
+normal_stiffness = 1e8
+"""
+PULSE = """
+[motion]
+kind = "sine-pulse"
+amplitude = "0.5 g"
+period = 0.5
+"""
+WALL = """
+[structure]
+kind = "panel"
+width = 1.0
+height = 1.0
+thickness = 0.1
+[material]
+density = 2000
+young = "3 GPa"
+poisson = 0.2
+tensile_strength = "0.2 MPa"
+fracture_energy = "10 N/m"
+[[analysis]]
+kind = "sla"
+constant = [{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.2 MPa" }]
+reference = [{ kind = "spread", edge = "top", fx = "1 kN" }]
+"""
+ARCH = """
+[structure]
+kind = "arch"
+radius = 10.0
+thickness = 1.5
+embrace = 157.5
+voussoirs = 7
+"""
+DECKS = {
+    "dem-domain": BLOCK
+    + """
+[[analysis]]
+kind = "dem-domain"
+amplitudes = ["0.5 g", "0.7 g"]
+durations = [0.2, 0.4, 0.8]
+accuracy = 0.1
+vary_damping = [0.5]
+""",
+    "dem variations and friction": BLOCK
+    + PULSE
+    + """
+[[analysis]]
+kind = "dem"
+end_time = 0.6
+vary_damping = [0.5, 2.0]
+vary_friction = [0.5]
+find_friction = true
+""",
+    "dem tilt": BLOCK
+    + """
+[[analysis]]
+kind = "dem"
+test = "tilt"
+tilt_limit = "0.5 g"
+tilt_accuracy = 0.05
+""",
+    "sla, one curve of each sense": WALL
+    + """
+directions = ["+", "-"]
+events = 2150
+mechanism_ratio = 1e8
+mesh.size = "0.1 m"
+""",
+    "sla seeds": WALL
+    + """
+events = 150
+strength_variation = 0.2
+seeds = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12]
+mesh.size = "0.25 m"
+""",
+    "sweep": ARCH
+    + """
+[[analysis]]
+kind = "sweep"
+vary = "thickness"
+start = 1.2
+stop = 2.0
+count = 30
+""",
+    "survey": ARCH
+    + """
+[[analysis]]
+kind = "survey"
+file = "survey.csv"
+""",
+    "moving-load": ARCH
+    + """
+[[analysis]]
+kind = "moving-load"
+count = 30
+""",
+}
+SURVEY = "name,thickness\n" + "".join(f"arch {k},{1.2 + 0.02 * k:.2f}\n" for k in range(30))
+#: Ends itself without a word when it has kept so many batches
+KILLED = """
+import os, signal, sys
+from extrados.results.checkpoint import Checkpoint
+real, left = Checkpoint.keep, [int(sys.argv[1])]
+def keep(self, *args):
+    path = real(self, *args)
+    left[0] -= 1
+    if left[0] == 0:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return path
+Checkpoint.keep = keep
+from extrados.cli import main
+sys.argv = ["extrados", *sys.argv[2:]]
+main()
+"""
+MEASURED = ("seconds_per_event", "sections_per_second")
+
+
+def results_of(out: Path) -> list:
+    """Results of all analyses but for what a clock measured."""
+
+    def without_clock(value):
+        if isinstance(value, dict):
+            return {k: without_clock(v) for k, v in value.items() if k not in MEASURED}
+        return value
+
+    analyses = json.loads((out / "summary.json").read_text())["analyses"]
+    return [(a["kind"], a["status"], a.get("reason"), a.get("answer"), without_clock(a["results"])) for a in analyses]
+
+
+def arrays_of(out: Path) -> dict[str, bytes]:
+    found = {}
+    with h5py.File(out / "results.h5") as file:
+        file.visititems(
+            lambda name, item: (
+                found.update({name: np.asarray(item).tobytes()})
+                if isinstance(item, h5py.Dataset) and item.dtype.kind != "O"
+                else None
+            )
+        )
+    return found
+
+
+def assert_same(one: Path, two: Path) -> None:
+    assert results_of(one) == results_of(two)
+    arrays = arrays_of(one)
+    assert arrays and arrays == arrays_of(two)
+    for path in one.glob("*.csv"):
+        assert path.read_bytes() == (two / path.name).read_bytes(), path.name
+
+
+def words(deck: Path, out: Path, *more: str) -> list[str]:
+    return ["run", str(deck), "--no-figures", "--quiet", "--out", str(out), *more]
+
+
+def written(kind: str, folder: Path) -> Path:
+    deck = folder / "deck.toml"
+    deck.write_text(DECKS[kind])
+    (folder / "survey.csv").write_text(SURVEY)
+    return deck
+
+
+@pytest.mark.skipif(os.name != "posix", reason="SIGKILL is POSIX")
+@pytest.mark.parametrize("kind", DECKS)
+def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
+    deck = written(kind, tmp_path)
+    python = [sys.executable, "-c"]
+    keeps = 3 if kind.startswith("sla, one") else 2  # of that wall: in its second curve
+    killed = subprocess.run([*python, KILLED, str(keeps), *words(deck, tmp_path / "a", "--threads", "1")])
+    assert killed.returncode == -9 and not (tmp_path / "a" / "summary.json").exists()
+    assert len(list(folder_of(tmp_path / "a").glob("*/*.npz"))) == keeps
+    plain = [sys.executable, "-m", "extrados.cli"]
+    subprocess.run([*plain, *words(deck, tmp_path / "a", "--resume", "--threads", "2")], check=True)
+    subprocess.run([*plain, *words(deck, tmp_path / "b", "--threads", "2")], check=True)
+    assert_same(tmp_path / "a", tmp_path / "b")
+    assert not folder_of(tmp_path / "a").exists()
+
+
+@pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds"])
+def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After Ctrl-C the finished members are there, and are not computed again."""
+    deck = make_deck(tomllib.loads(DECKS[kind]))
+    out, count = tmp_path / "run", []
+    real = Checkpoint.keep
+
+    def keep(self, *args):
+        count.append(args)
+        if len(count) == 2:
+            calls._ask()
+        return real(self, *args)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Checkpoint, "keep", keep)
+        (found,) = run_analyses(Context(deck, out=out))
+    assert found.status == "interrupted" and "--resume" in found.reason
+    kept = set(folder_of(out).glob("*/*.npz"))
+    assert len(kept) == 2
+    again = []
+    with monkeypatch.context() as patch:
+        patch.setattr(Checkpoint, "keep", lambda self, *args: again.append(args) or real(self, *args))
+        (resumed,) = run_analyses(Context(deck, out=out, resume=True))
+    (whole,) = run_analyses(Context(deck))
+    assert resumed.status == whole.status == "ok" and resumed.answer == whole.answer
+    assert kept <= set(folder_of(out).glob("*/*.npz")) and again
+
+
+@pytest.mark.parametrize("kind", ["dem-domain", "sla seeds", "sweep"])
+def test_cluster_gives_the_same_bytes(kind: str, cluster, tmp_path: Path) -> None:
+    address, _ = cluster
+    deck = written(kind, tmp_path)
+    plain = [sys.executable, "-m", "extrados.cli"]
+    subprocess.run([*plain, *words(deck, tmp_path / "a", "--scheduler", address)], check=True)
+    subprocess.run([*plain, *words(deck, tmp_path / "b")], check=True)
+    assert_same(tmp_path / "a", tmp_path / "b")
+
+
+def test_a_new_factor_forgets_the_history(tmp_path: Path) -> None:
+    """What the event loop goes on from, damage and where it stood, gives the same bits after any history."""
+    deck = make_deck(tomllib.loads(DECKS["sla seeds"]))
+    model = build(deck.building.mesh(deck.analyses[0].mesh), deck.analyses[0])
+    ends = []
+    with model.open(deck.analyses[0], 1) as one, model.open(deck.analyses[0], 1) as other:
+        one.loads(model.constant, model.reference)
+        one.run(60, [model.control], core.Stop())
+        damage, standing = one.damage(), one.standing()
+        other.loads(model.constant, model.reference)
+        for it in (one, other):
+            it.renew(damage, standing)
+            ends.append(it.run(60, [model.control], core.Stop()))
+    for name in ("load", "compliance", "stored", "external", "dissipated", "crack", "point", "number", "monitors"):
+        assert getattr(ends[0], name).tobytes() == getattr(ends[1], name).tobytes(), name
