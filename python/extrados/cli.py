@@ -244,10 +244,19 @@ def explain(
 
 
 @app.command()
-def new(kind: Annotated[str, typer.Argument(help="an analysis or structure kind")]) -> None:
-    """Print a commented starter deck."""
+def new(
+    kind: Annotated[
+        str | None, typer.Argument(help="a kind of analysis, structure or motion; default lists them")
+    ] = None,
+) -> None:
+    """Print a commented starter deck that runs as it is."""
+    from extrados import kinds
     from extrados.decks.explain import starter
 
+    if kind is None:
+        for section, known in kinds.TABLES.items():
+            out_console.print(f"{section}: {', '.join(known)}", markup=False)
+        return
     try:
         print(starter(kind))
     except KeyError as error:

@@ -18,7 +18,7 @@ class Analysis(Table):
 
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. uses: properties of the building that its answer rests on, which every
-    answer tells. starter_motion: the motion kind of the deck that `new` writes.
+    answer tells. starter_structure, starter_motion: their kinds in the deck that `new` writes.
     """
 
     kind: str
@@ -26,6 +26,7 @@ class Analysis(Table):
     structures: ClassVar[tuple[str, ...] | None] = None
     uses: ClassVar[tuple[str, ...]] = ()
     needs_motion: ClassVar[bool] = False
+    starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = "step-pulse"
 
 

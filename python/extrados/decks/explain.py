@@ -7,6 +7,7 @@ from typing import Any
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.schema import quantities
 from extrados.schema.table import Table
 
 #: Tables without kinds that say what the building is besides its geometry
@@ -33,7 +34,7 @@ def json_schema() -> dict[str, Any]:
             refs.append({"$ref": f"#/$defs/{section}-{kind}" if kind else f"#/$defs/{section}"})
         one[section] = {"oneOf": refs} if len(refs) > 1 else refs[0]
     for schema in definitions.values():
-        _allow_units(schema)
+        _as_in_decks(schema)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "extrados deck",
@@ -53,28 +54,26 @@ def json_schema() -> dict[str, Any]:
 
 #: Bounds of keys of several types stay in pydantic's words; JSON Schema has its own.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
+#: Keywords of a schema that speak of a number, not of its key
+_OF_NUMBER = {"type", *_BOUNDS.values(), "multipleOf"}
 
 
-def _allow_units(schema: Any) -> None:
-    """A key with a unit takes a number or text with a unit."""
+def _as_in_decks(schema: Any) -> None:
+    """Say what a deck may hold where a table holds what was made of it: a quantity is a number, or text with its unit."""
     if isinstance(schema, dict):
         bounds = {json_word: schema.pop(word) for word, json_word in _BOUNDS.items() if word in schema}
         for branch in schema.get("anyOf", []) if bounds else []:
             if branch.get("type") in ("number", "integer"):
                 branch.update(bounds)
         for value in schema.values():
-            _allow_units(value)
+            _as_in_decks(value)
         if "unit" in schema and schema.get("type") == "number":
-            number = {
-                k: schema.pop(k) for k in list(schema) if k not in ("unit", "description", "title", "default", "source")
-            }
-            schema["anyOf"] = [
-                number,
-                {"type": "string", "pattern": r"^[+-]?[0-9.]+([eE][+-]?[0-9]+)? +\S.*$"},
-            ]
+            number = {word: schema.pop(word) for word in list(schema) if word in _OF_NUMBER}
+            text = {"type": "string", "pattern": quantities.pattern(schema["unit"])}
+            schema["anyOf"] = [number, text] if schema.pop("bare", True) else [text]
     elif isinstance(schema, list):
         for value in schema:
-            _allow_units(value)
+            _as_in_decks(value)
 
 
 def _properties(model: type[Table]) -> dict[str, dict[str, Any]]:
@@ -170,12 +169,15 @@ def starter(kind: str) -> str:
         known = [kind for there in kinds.TABLES.values() for kind in there]
         close = difflib.get_close_matches(kind, known, n=1, cutoff=0.4)
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
-    structure = kind if section == "structure" else "arch"
-    asked = kind if section == "analysis" else "motion" if section == "motion" else "tilt"
-    if kind == "panel" or (section == "structure" and "blocks" in kinds.table("structure", kind).lacks):
-        asked = "sla"  # a wall that is given whole is cut into elements
+    asked = kind
+    if section == "structure":
+        asked = kinds.table("structure", kind).starter_analysis
+    elif section == "motion":
+        asked = "motion"
     analysis = kinds.table("analysis", asked)
-    structure = analysis.structures[0] if section == "analysis" and analysis.structures else structure
+    structure = kind if section == "structure" else analysis.starter_structure
+    if analysis.structures and structure not in analysis.structures:
+        structure = analysis.structures[0]
     lines = [f'title = "A first {kind} deck"', ""]
     if analysis.view or analysis.structures:
         lines += _section(kinds.table("structure", structure), "[structure]", structure)

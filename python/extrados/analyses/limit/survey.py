@@ -12,6 +12,7 @@ from extrados.analyses.limit.tables import Survey
 from extrados.analyses.limit.variation import Outcome, changed, evaluate, spoken
 from extrados.analyses.limit.variation import read_table as read_section
 from extrados.building.errors import BadGeometry
+from extrados.building.files import locate
 from extrados.results.model import Array, Result, TableData
 
 LARGEST_FILE = 50_000_000  # bytes
@@ -61,7 +62,7 @@ def _value(cell: str) -> Any:
 def run(context: Context, options: Survey) -> Result:
     """The deck's structure with the keys of each row in their place; empty cells leave the deck's value."""
     model = type(context.deck.structure)
-    header, rows = read_table(context.deck.folder / options.file)
+    header, rows = read_table(locate(options.file, context.deck.folder))
     for name in header:
         if name != "name" and name.split(".")[0] not in model.model_fields:
             raise Refused(

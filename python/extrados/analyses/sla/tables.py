@@ -82,6 +82,7 @@ class Sla(BuildingAnalysis):
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength",
     )  # fmt: skip
+    starter_structure: ClassVar = "panel"
     starter: ClassVar = {
         "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
         "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',

@@ -63,6 +63,7 @@ class Panel(Wall):
     """A rectangular wall or beam with rectangular openings and notches, meshed here; x from left, y from bottom."""
 
     kind: Literal["panel"]
+    starter_analysis: ClassVar = "sla"
     starter: ClassVar = {
         "thickness": '"30 cm"',
         "width": "3.0",
@@ -96,7 +97,8 @@ class MeshFile(Wall):
     """A wall from a mesh file (gmsh, Abaqus and others; needs the extra `extrados[mesh]`)."""
 
     kind: Literal["mesh"]
-    starter: ClassVar = {"thickness": '"30 cm"', "file": '"wall.msh"', "scale": "0.001"}
+    starter_analysis: ClassVar = "sla"
+    starter: ClassVar = {"thickness": '"30 cm"', "file": '"extrados:example-wall"', "scale": "0.001"}
     lacks: ClassVar = dict.fromkeys(
         ("blocks", "rocker"), "a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`"
     )
