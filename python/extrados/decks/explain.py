@@ -2,7 +2,8 @@
 
 import difflib
 import textwrap
-from typing import Any
+from collections.abc import Iterator
+from typing import Any, get_args
 
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
@@ -100,6 +101,22 @@ def _keys(
     return found
 
 
+def _names(model: type[Table]) -> set[str]:
+    """The names of all keys of a table and of the tables within it."""
+    names = set(model.model_fields) - ({"kind", *OVERRIDES} if "kind" in model.model_fields else set())
+    for name in tuple(names):
+        for inner in _tables_in(model.model_fields[name].annotation):
+            names |= _names(inner)
+    return names
+
+
+def _tables_in(annotation: Any) -> Iterator[type[Table]]:
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _tables_in(part)
+
+
 def _facts(about: dict[str, Any]) -> str:
     """Type, unit, choices, bounds and default of one key in a few words."""
     facts = []
@@ -141,16 +158,17 @@ def explain(word: str) -> str:
     known: set[str] = set(everything)
     for section, there in everything.items():
         for kind, model in there.items():
-            known.add(kind)
+            names = _names(model)
+            known |= {kind, *names}
+            if word != (kind or section) and word.rsplit(".", 1)[-1] not in names:
+                continue  # to work out what it says takes long
             keys = {name: about for name, about in _keys(model.model_json_schema()).items() if name != "kind"}
             if word == (kind or section):
                 rows = [textwrap.indent(_entry(section, kind, name, about), "  ") for name, about in keys.items()]
                 head = f'[{section}] kind = "{kind}"' if kind else f"[{section}]"
                 found.append(f"{head}: {_summary(model)}\n" + "\n".join(rows))
             for name, about in keys.items():
-                last = name.rsplit(".", 1)[-1]
-                known.update((name, last))
-                if word in (name, last, f"{section}.{name}"):
+                if word in (name, name.rsplit(".", 1)[-1], f"{section}.{name}"):
                     found.append(_entry(section, kind, name, about))
     if not found:
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
