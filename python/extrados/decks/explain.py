@@ -261,12 +261,20 @@ def manual() -> str:
                 "| key | meaning | type and default |",
                 "|---|---|---|",
             ]
-            for name, about in _keys(model.model_json_schema()).items():
+            schema = model.model_json_schema()
+            unless_preset = {name for way in schema.get("anyOf", []) for name in way["required"] if name != "preset"}
+            for name, about in _keys(schema).items():
                 if name == "kind":
                     continue
                 source = f" ({about['source']})" if about.get("source") else ""
                 text = f"{about.get('description', '')}{source}".replace("|", "\\|")
-                required = ", required" if about["required"] else ""
+                required = (
+                    ", required"
+                    if about["required"]
+                    else ", required without a preset"
+                    if name in unless_preset
+                    else ""
+                )
                 lines.append(f"| `{name}` | {text} | {_facts(about).replace('|', chr(92) + '|')}{required} |")
             lines.append("")
     return "\n".join(lines)
