@@ -8,7 +8,7 @@ import time
 import tomllib
 from pathlib import Path
 
-from tests.bench.timing import seconds
+from timing import seconds
 
 import extrados
 from extrados.analyses.limit.common import answer_of
