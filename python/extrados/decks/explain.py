@@ -2,7 +2,7 @@
 
 import difflib
 import textwrap
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, get_args
 
 from extrados import kinds
@@ -201,7 +201,9 @@ def starter(kind: str) -> str:
         lines += _section(kinds.table("structure", structure), "[structure]", structure)
         for name in OVERRIDES:
             if any(use.startswith(f"{name}.") for use in analysis.uses):
-                lines += _section(PLAIN[name], f"[{name}]")
+                model = PLAIN[name]
+                used = {key: value for key, value in model.starter.items() if f"{name}.{key}" in analysis.uses}
+                lines += _section(model, f"[{name}]", starter=used)
     if analysis.needs_motion or section == "motion":
         motion = kind if section == "motion" else analysis.starter_motion
         lines += _section(kinds.table("motion", motion), "[motion]", motion)
@@ -217,15 +219,17 @@ _STARTER = {
 }  # fmt: skip
 
 
-def _section(model: type[Table], header: str, kind: str = "") -> list[str]:
+def _section(model: type[Table], header: str, kind: str = "", starter: Mapping[str, str] | None = None) -> list[str]:
+    """A table of a starter deck: keys that need a value have it, the others stand commented out."""
+    starter = model.starter if starter is None else starter
     lines = [f"# {_summary(model)}", header] + ([f'kind = "{kind}"'] if kind else [])
     for name, about in _properties(model).items():
         if name == "kind" or (kind and name in OVERRIDES):
             continue
         facts = _facts(about)
         comment = f"  # {about.get('description', '')}" + (f" ({facts})" if facts else "")
-        if name in model.starter:
-            lines.append(f"{name} = {model.starter[name]}{comment}")
+        if name in starter:
+            lines.append(f"{name} = {starter[name]}{comment}")
         elif "default" in about:
             default = about["default"]
             value = "..." if default is None else _toml(default)
