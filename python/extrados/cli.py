@@ -6,17 +6,37 @@ import signal
 import sys
 import time
 from contextlib import contextmanager
+from functools import cached_property
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from rich.console import Console
 
 from extrados._build_info import VERSION
 
+if TYPE_CHECKING:
+    from rich.console import Console
+
 app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
-out_console = Console(highlight=False, soft_wrap=True)
-err_console = Console(stderr=True, highlight=False, soft_wrap=True)
+
+
+class _Console:
+    """A console of rich that is made when it is first used."""
+
+    def __init__(self, stderr: bool):
+        self._stderr = stderr
+
+    @cached_property
+    def _rich(self) -> "Console":
+        from rich.console import Console
+
+        return Console(stderr=self._stderr, highlight=False, soft_wrap=True)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._rich, name)
+
+
+out_console, err_console = _Console(stderr=False), _Console(stderr=True)
 
 WRONG_DECK, NOT_DONE, INTERRUPTED = 2, 3, 130
 
@@ -38,7 +58,7 @@ class _Progress:
             if self.bar is None:
                 from rich.progress import Progress
 
-                self.bar = Progress(console=err_console, transient=True)
+                self.bar = Progress(console=err_console._rich, transient=True)
                 self.bar.start()
                 self.task = self.bar.add_task(text, total=total)
             self.bar.update(self.task, completed=done, total=total, description=text)
@@ -214,7 +234,7 @@ def check(decks: Annotated[list[Path], typer.Argument(help="decks to check")]) -
         err_console.print(line, markup=False)
     if complaints:
         raise typer.Exit(WRONG_DECK)
-    out_console.print("ok" if len(decks) == 1 else f"{len(decks)} decks ok")
+    print("ok" if len(decks) == 1 else f"{len(decks)} decks ok")
 
 
 @app.command()
@@ -251,17 +271,26 @@ def explain(
         print(explanation.manual())
         return
     try:
-        out_console.print(explanation.explain(key), markup=False)
+        print(explanation.explain(key))
     except KeyError as error:
         err_console.print(error.args[0], markup=False)
         raise typer.Exit(WRONG_DECK) from None
 
 
 @app.command()
-def new(kind: Annotated[str, typer.Argument(help="an analysis or structure kind")]) -> None:
-    """Print a commented starter deck."""
+def new(
+    kind: Annotated[
+        str | None, typer.Argument(help="a kind of analysis, structure or motion; default lists them")
+    ] = None,
+) -> None:
+    """Print a commented starter deck that runs as it is."""
+    from extrados import kinds
     from extrados.decks.explain import starter
 
+    if kind is None:
+        for section, known in kinds.TABLES.items():
+            out_console.print(f"{section}: {', '.join(known)}", markup=False)
+        return
     try:
         print(starter(kind))
     except KeyError as error:
@@ -315,7 +344,7 @@ def version() -> None:
     from extrados.running.provenance import provenance
 
     made = provenance()
-    out_console.print(f"extrados {VERSION} {made['commit']} ({made['compiler']}, {made['build_type']})", markup=False)
+    print(f"extrados {VERSION} {made['commit']} ({made['compiler']}, {made['build_type']})")
 
 
 def main() -> None:

@@ -32,7 +32,7 @@ MAY_IMPORT = {
     },
     "plots": {"kinds", "results", "schema"},
     "running": {"analyses", "tables", "building", "decks", "motions", "results", "plots", "schema", "_build_info"},
-    "cli": {"analyses", "decks", "results", "plots", "running", "_build_info"},
+    "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "_build_info"},
     "": {"analyses", "decks", "running"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit

@@ -11,7 +11,6 @@ from typer.testing import CliRunner
 import extrados
 from extrados.cli import app
 from extrados.core import motion as core
-from extrados.decks.explain import starter
 from extrados.decks.reader import DeckError, make_deck, read_text
 from extrados.motions import processing, pulses
 from extrados.motions.from_deck import make_members, make_motion
@@ -283,11 +282,6 @@ def test_command_line(tmp_path, monkeypatch) -> None:
     assert answer.exit_code == 0
     assert json.loads(answer.output)["analyses"][0]["results"]["time_step_s"] == 0.005
     assert runner.invoke(app, ["motion", "r.at2", "--unit", "furlong"]).exit_code == 2
-
-
-@pytest.mark.parametrize("kind", ["motion", "shake-table"])
-def test_starter_decks_are_valid(kind) -> None:
-    assert read_text(starter(kind).encode()).analyses[0].kind == kind
 
 
 def test_measures_of_spectra_agree_with_their_definitions() -> None:

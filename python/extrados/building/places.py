@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, model_validator
 
 from extrados.schema.quantities import parse
 from extrados.schema.table import Table, key
@@ -23,7 +23,15 @@ def _range(value: Any) -> Any:
     return out
 
 
-Range = Annotated[list[float], BeforeValidator(_range), Field(json_schema_extra={"unit": "m"})]
+class _OneOrTwo:
+    """The JSON Schema of a range: what a deck may hold, not what is made of it."""
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
+        length = {"type": "number", "unit": "m"}
+        return {"anyOf": [length, {"type": "array", "items": length, "minItems": 2, "maxItems": 2}], "unit": "m"}
+
+
+Range = Annotated[list[float], BeforeValidator(_range), _OneOrTwo()]
 
 
 class Placed(Table):

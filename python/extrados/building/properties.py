@@ -1,6 +1,6 @@
 """What a building is besides its geometry: [material], [joints], [supports], [initial], said once for every strategy."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -17,6 +17,9 @@ NO_SLIDING_COEFFICIENT = 1e3
 class Material(Table):
     """The stone or the homogenised masonry: density, elastic constants, and the strengths of what may crack or crush."""
 
+    starter: ClassVar = {
+        "young": '"6.9 GPa"', "poisson": "0.25", "tensile_strength": '"0.2 MPa"', "fracture_energy": '"50 N/m"',
+    }  # fmt: skip
     density: Density = key(2000.0, "density", ge=0, le=30000)
     young: Stress = key(10e9, "modulus of elasticity, E0", source="thesis 7.3", gt=0)
     poisson: float = key(0.2, "Poisson's ratio", ge=0, lt=0.5)

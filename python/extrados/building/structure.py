@@ -12,10 +12,14 @@ if TYPE_CHECKING:
 
 
 class Structure(Table):
-    """Base of the structure kinds. `lacks`: views that the kind cannot have, with the reason in words."""
+    """Base of the structure kinds. `lacks`: views that the kind cannot have, with the reason in words.
+
+    starter_analysis: the analysis of the deck that `new` writes.
+    """
 
     kind: str
     lacks: ClassVar[Mapping[str, str]] = {}
+    starter_analysis: ClassVar[str] = "tilt"
 
     def assembly(self, density: float, folder: Path) -> "Assembly":
         """Stones and joints, of a density [kg/m^3]; `folder` is where its files are looked for.

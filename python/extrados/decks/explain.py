@@ -2,11 +2,13 @@
 
 import difflib
 import textwrap
-from typing import Any
+from collections.abc import Iterator, Mapping
+from typing import Any, get_args
 
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.schema import quantities
 from extrados.schema.table import Table
 
 #: Tables without kinds that say what the building is besides its geometry
@@ -33,7 +35,7 @@ def json_schema() -> dict[str, Any]:
             refs.append({"$ref": f"#/$defs/{section}-{kind}" if kind else f"#/$defs/{section}"})
         one[section] = {"oneOf": refs} if len(refs) > 1 else refs[0]
     for schema in definitions.values():
-        _allow_units(schema)
+        _as_in_decks(schema)
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "extrados deck",
@@ -53,28 +55,26 @@ def json_schema() -> dict[str, Any]:
 
 #: Bounds of keys of several types stay in pydantic's words; JSON Schema has its own.
 _BOUNDS = {"gt": "exclusiveMinimum", "ge": "minimum", "lt": "exclusiveMaximum", "le": "maximum"}
+#: Keywords of a schema that speak of a number, not of its key
+_OF_NUMBER = {"type", *_BOUNDS.values(), "multipleOf"}
 
 
-def _allow_units(schema: Any) -> None:
-    """A key with a unit takes a number or text with a unit."""
+def _as_in_decks(schema: Any) -> None:
+    """Say what a deck may hold where a table holds what was made of it: a quantity is a number, or text with its unit."""
     if isinstance(schema, dict):
         bounds = {json_word: schema.pop(word) for word, json_word in _BOUNDS.items() if word in schema}
         for branch in schema.get("anyOf", []) if bounds else []:
             if branch.get("type") in ("number", "integer"):
                 branch.update(bounds)
         for value in schema.values():
-            _allow_units(value)
+            _as_in_decks(value)
         if "unit" in schema and schema.get("type") == "number":
-            number = {
-                k: schema.pop(k) for k in list(schema) if k not in ("unit", "description", "title", "default", "source")
-            }
-            schema["anyOf"] = [
-                number,
-                {"type": "string", "pattern": r"^[+-]?[0-9.]+([eE][+-]?[0-9]+)? +\S.*$"},
-            ]
+            number = {word: schema.pop(word) for word in list(schema) if word in _OF_NUMBER}
+            text = {"type": "string", "pattern": quantities.pattern(schema["unit"])}
+            schema["anyOf"] = [number, text] if schema.pop("bare", True) else [text]
     elif isinstance(schema, list):
         for value in schema:
-            _allow_units(value)
+            _as_in_decks(value)
 
 
 def _properties(model: type[Table]) -> dict[str, dict[str, Any]]:
@@ -99,6 +99,22 @@ def _keys(
                     within = _keys(inner, definitions, depth + 1)
                     found |= {f"{name}.{key}": value for key, value in within.items()}
     return found
+
+
+def _names(model: type[Table]) -> set[str]:
+    """The names of all keys of a table and of the tables within it."""
+    names = set(model.model_fields) - ({"kind", *OVERRIDES} if "kind" in model.model_fields else set())
+    for name in tuple(names):
+        for inner in _tables_in(model.model_fields[name].annotation):
+            names |= _names(inner)
+    return names
+
+
+def _tables_in(annotation: Any) -> Iterator[type[Table]]:
+    if isinstance(annotation, type) and issubclass(annotation, Table):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _tables_in(part)
 
 
 def _facts(about: dict[str, Any]) -> str:
@@ -142,16 +158,17 @@ def explain(word: str) -> str:
     known: set[str] = set(everything)
     for section, there in everything.items():
         for kind, model in there.items():
-            known.add(kind)
+            names = _names(model)
+            known |= {kind, *names}
+            if word != (kind or section) and word.rsplit(".", 1)[-1] not in names:
+                continue  # to work out what it says takes long
             keys = {name: about for name, about in _keys(model.model_json_schema()).items() if name != "kind"}
             if word == (kind or section):
                 rows = [textwrap.indent(_entry(section, kind, name, about), "  ") for name, about in keys.items()]
                 head = f'[{section}] kind = "{kind}"' if kind else f"[{section}]"
                 found.append(f"{head}: {_summary(model)}\n" + "\n".join(rows))
             for name, about in keys.items():
-                last = name.rsplit(".", 1)[-1]
-                known.update((name, last))
-                if word in (name, last, f"{section}.{name}"):
+                if word in (name, name.rsplit(".", 1)[-1], f"{section}.{name}"):
                     found.append(_entry(section, kind, name, about))
     if not found:
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
@@ -170,23 +187,27 @@ def starter(kind: str) -> str:
         known = [kind for there in kinds.TABLES.values() for kind in there]
         close = difflib.get_close_matches(kind, known, n=1, cutoff=0.4)
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
-    structure = kind if section == "structure" else "arch"
-    asked = kind if section == "analysis" else "motion" if section == "motion" else "tilt"
-    if kind == "panel" or (section == "structure" and "blocks" in kinds.table("structure", kind).lacks):
-        asked = "sla"  # a wall that is given whole is cut into elements
+    asked = kind
+    if section == "structure":
+        asked = kinds.table("structure", kind).starter_analysis
+    elif section == "motion":
+        asked = "motion"
     analysis = kinds.table("analysis", asked)
-    beside = getattr(kinds.table(section, kind), "starter_beside", {}) if section == "structure" else {}
-    structure = analysis.structures[0] if section == "analysis" and analysis.structures else structure
+    structure = kind if section == "structure" else analysis.starter_structure
+    if analysis.structures and structure not in analysis.structures:
+        structure = analysis.structures[0]
     lines = [f'title = "A first {kind} deck"', ""]
     if analysis.view or analysis.structures:
         lines += _section(kinds.table("structure", structure), "[structure]", structure)
         for name in OVERRIDES:
             if any(use.startswith(f"{name}.") for use in analysis.uses):
-                lines += _section(PLAIN[name], f"[{name}]", given=beside.get(name))
+                model = PLAIN[name]
+                used = {key: value for key, value in model.starter.items() if f"{name}.{key}" in analysis.uses}
+                lines += _section(model, f"[{name}]", starter=used)
     if analysis.needs_motion or section == "motion":
         motion = kind if section == "motion" else analysis.starter_motion
         lines += _section(kinds.table("motion", motion), "[motion]", motion)
-    lines += _section(analysis, "[[analysis]]", asked, beside.get("analysis"))
+    lines += _section(analysis, "[[analysis]]", asked)
     return "\n".join(lines)
 
 
@@ -198,8 +219,9 @@ _STARTER = {
 }  # fmt: skip
 
 
-def _section(model: type[Table], header: str, kind: str = "", given: dict[str, str] | None = None) -> list[str]:
-    starter = {**model.starter, **(given or {})}
+def _section(model: type[Table], header: str, kind: str = "", starter: Mapping[str, str] | None = None) -> list[str]:
+    """A table of a starter deck: keys that need a value have it, the others stand commented out."""
+    starter = model.starter if starter is None else starter
     lines = [f"# {_summary(model)}", header] + ([f'kind = "{kind}"'] if kind else [])
     for name, about in _properties(model).items():
         if name == "kind" or (kind and name in OVERRIDES):
@@ -243,12 +265,20 @@ def manual() -> str:
                 "| key | meaning | type and default |",
                 "|---|---|---|",
             ]
-            for name, about in _keys(model.model_json_schema()).items():
+            schema = model.model_json_schema()
+            unless_preset = {name for way in schema.get("anyOf", []) for name in way["required"] if name != "preset"}
+            for name, about in _keys(schema).items():
                 if name == "kind":
                     continue
                 source = f" ({about['source']})" if about.get("source") else ""
                 text = f"{about.get('description', '')}{source}".replace("|", "\\|")
-                required = ", required" if about["required"] else ""
+                required = (
+                    ", required"
+                    if about["required"]
+                    else ", required without a preset"
+                    if name in unless_preset
+                    else ""
+                )
                 lines.append(f"| `{name}` | {text} | {_facts(about).replace('|', chr(92) + '|')}{required} |")
             lines.append("")
     return "\n".join(lines)

@@ -55,8 +55,11 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
     number = np.append(part, 0)  # GROUND = -1
     a, b = number[assembly.a], number[assembly.b]
     pivot = mechanism.pivot
-    hinges = [(a[j], b[j], assembly.p[j] + pivot[j] * (assembly.q[j] - assembly.p[j])) for j, _ in mechanism.hinges]
-    slides = [(a[j], b[j], assembly.middle[j]) for j in mechanism.sliding]
+    hinged = np.array([j for j, _ in mechanism.hinges], dtype=int)
+    sliding = np.array(mechanism.sliding, dtype=int)
+    at_hinges = assembly.p[hinged] + pivot[hinged, None] * (assembly.q[hinged] - assembly.p[hinged])
+    joined = np.concatenate([hinged, sliding])
+    contacts = (a[joined], b[joined], np.concatenate([at_hinges, assembly.middle[sliding]]), len(hinged))
     driver = int(np.abs(velocity[:, 2]).argmax())
     turns = abs(velocity[driver, 2]) * assembly.size > 1e-9 * fastest
     if parts > MOST_PARTS:
@@ -67,7 +70,7 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
         pose = pose + velocity * total / STEPS
         target = velocity * total * step / STEPS
         for _ in range(20):
-            change = _correct(pose, target, hinges, slides, driver if turns else None, assembly.size)
+            change = _correct(pose, target, contacts, driver if turns else None, assembly.size)
             pose = pose + change
             if np.abs(change).max() < 1e-12 * assembly.size:
                 break
@@ -78,47 +81,47 @@ def finite_motion(assembly: Assembly, mechanism: Mechanism, amount: float | None
     return np.column_stack([pose[part, 0] + c * x - s * y, pose[part, 1] + s * x + c * y, pose[part, 2]])
 
 
-def _correct(pose, target, hinges, slides, driver, size) -> np.ndarray:
-    """One Newton step, of least size, towards closed hinges and the prescribed rotation."""
-    rows, right = [], []
+def _correct(
+    pose: np.ndarray,
+    target: np.ndarray,
+    contacts: tuple[np.ndarray, np.ndarray, np.ndarray, int],
+    driver: int | None,
+    size: float,
+) -> np.ndarray:
+    """One Newton step, of least size, towards closed hinges and the prescribed rotation.
 
-    def place(k: int, point: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        c, s = np.cos(pose[k, 2]), np.sin(pose[k, 2])
-        turned = np.array([c * point[0] - s * point[1], s * point[0] + c * point[1]])
-        return pose[k, :2] + turned, np.array([-turned[1], turned[0]])
-
-    def equation(one: int, two: int, parts_one: np.ndarray, parts_two: np.ndarray, error: float) -> None:
-        row = np.zeros(pose.shape)
-        if one:
-            row[one] += parts_one
-        if two:
-            row[two] -= parts_two
-        rows.append(row.ravel())
-        right.append(error)
-
-    for one, two, point in hinges:
-        (at_one, spin_one), (at_two, spin_two) = place(one, point), place(two, point)
-        for axis in (0, 1):
-            x, y = float(axis == 0), float(axis == 1)
-            equation(
-                one, two, np.array([x, y, spin_one[axis]]), np.array([x, y, spin_two[axis]]),
-                at_two[axis] - at_one[axis],
-            )  # fmt: skip
-    for one, two, point in slides:
-        (at_one, spin_one), (at_two, spin_two) = place(one, point), place(two, point)
-        wanted = target[one] - target[two]
-        shift = wanted[:2] + wanted[2] * np.array([-point[1], point[0]])
-        for axis in (0, 1):
-            x, y = float(axis == 0), float(axis == 1)
-            equation(
-                one, two, np.array([x, y, spin_one[axis]]), np.array([x, y, spin_two[axis]]),
-                shift[axis] + at_two[axis] - at_one[axis],
-            )  # fmt: skip
-    if driver is not None:
-        equation(driver, 0, np.array([0.0, 0.0, size]), np.zeros(3), size * (target[driver, 2] - pose[driver, 2]))
-    if not rows:
+    contacts: the two parts (contacts) and the point (contacts, 2) of each, hinges first, and how many are hinges; the
+    others slide by what `target` says. Part 0 is the ground, which stays.
+    """
+    one, two, point, hinges = contacts
+    n, parts = len(one), len(pose)
+    if n == 0 and driver is None:
         return np.zeros(pose.shape)
+    c, s = np.cos(pose[:, 2]), np.sin(pose[:, 2])
+
+    def place(k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Where the points lie on parts k, and how fast they move as these turn."""
+        x = c[k] * point[:, 0] - s[k] * point[:, 1]
+        y = s[k] * point[:, 0] + c[k] * point[:, 1]
+        return pose[k, :2] + np.column_stack([x, y]), np.column_stack([-y, x])
+
+    (at_one, spin_one), (at_two, spin_two) = place(one), place(two)
+    gap = at_two - at_one
+    wanted = target[one[hinges:]] - target[two[hinges:]]
+    gap[hinges:] += wanted[:, :2] + wanted[:, 2:] * np.column_stack([-point[hinges:, 1], point[hinges:, 0]])
+    matrix = np.zeros((2 * n + (driver is not None), parts, 3))
+    right = np.zeros(len(matrix))
+    for axis in (0, 1):
+        row = 2 * np.arange(n) + axis
+        matrix[row, one, axis] += 1.0
+        matrix[row, one, 2] += spin_one[:, axis]
+        matrix[row, two, axis] -= 1.0
+        matrix[row, two, 2] -= spin_two[:, axis]
+        right[row] = gap[:, axis]
+    if driver is not None:
+        matrix[-1, driver, 2] = size
+        right[-1] = size * (target[driver, 2] - pose[driver, 2])
+    matrix[:, 0] = 0.0
     scale = np.array([1.0, 1.0, 1.0 / size])  # rotations count as displacements at the size of the assembly
-    matrix = np.array(rows).reshape(-1, *pose.shape) * scale
-    change = np.linalg.lstsq(matrix.reshape(len(rows), -1), np.array(right), rcond=1e-10)[0]
+    change = np.linalg.lstsq((matrix * scale).reshape(len(matrix), -1), right, rcond=1e-10)[0]
     return change.reshape(pose.shape) * scale

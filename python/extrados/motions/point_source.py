@@ -9,8 +9,6 @@ BSSA 102:204-221). `python -m extrados.motions.point_source` prints the shipped 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import trapezoid
-from scipy.optimize import fsolve
 
 INTENSITIES = (4, 5, 6, 7, 8, 9)
 LINES = np.geomspace(0.4, 13.0, 15)
@@ -75,17 +73,19 @@ class PointSource:
         return self._peak(f, x), self._peak(f, x / (2.0 * np.pi * f))
 
     def _peak(self, f: np.ndarray, x: np.ndarray) -> float:
-        m0, m2, m4 = (2.0 * trapezoid((2.0 * np.pi * f) ** k * x**2, f) for k in (0, 2, 4))
+        m0, m2, m4 = (2.0 * np.trapezoid((2.0 * np.pi * f) ** k * x**2, f) for k in (0, 2, 4))
         crossings = self.duration / np.pi * np.sqrt(m2 / m0)
         extremes = max(2.0, self.duration / np.pi * np.sqrt(m4 / m2))
         share = min(crossings / extremes, 1.0)
         z = np.linspace(0.0, 8.0, 4001)
-        factor = np.sqrt(2.0) * trapezoid(1.0 - (1.0 - share * np.exp(-(z**2))) ** extremes, z)
+        factor = np.sqrt(2.0) * np.trapezoid(1.0 - (1.0 - share * np.exp(-(z**2))) ** extremes, z)
         return float(factor * np.sqrt(m0 / self.duration))
 
 
 def source_of(intensity: float) -> PointSource:
     """The point source whose expected PGA and PGV are the medians of the intensity."""
+    from scipy.optimize import fsolve
+
     target = np.log([worden_pga(intensity), worden_pgv(intensity)])
 
     def miss(x: np.ndarray) -> np.ndarray:

@@ -1,7 +1,6 @@
 """What is done to sampled accelerations: filters, baseline, resampling, scaling. Arrays are (..., points) [m/s^2]."""
 
 import numpy as np
-from scipy import signal
 
 from extrados.core import motion as core
 
@@ -50,6 +49,8 @@ def band_pass(acceleration: np.ndarray, step: float, low: float | None, high: fl
         return acceleration
     kind = "band" if low and high else "high" if low else "low"
     corner = [low, high] if low and high else (low or high)
+    from scipy import signal  # takes half a second to load
+
     sections = signal.butter(_ORDER, corner, kind, fs=1.0 / step, output="sos")
     # Long enough for the slowest part to die out (Converse and Brady 1992: 1.5 n / f)
     pad = int(np.ceil(1.5 * _ORDER / (low or high) / step))

@@ -1,7 +1,6 @@
 """Recorded accelerograms as motions: where files may lie, units and steps resolved, what the deck asks done to them."""
 
 from dataclasses import dataclass, replace
-from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
@@ -12,10 +11,10 @@ from extrados.motions.directions import rotated
 from extrados.motions.formats.recognise import read_record as read_record
 from extrados.motions.formats.record import ACCELERATION, QUANTITIES, Record, RecordError
 from extrados.motions.motion import Motion
+from extrados.schema import files
 from extrados.schema.constants import GRAVITY
 
 STRONGEST = 5.0 * GRAVITY
-SHIPPED = {"el-centro-1940": "el-centro-1940.csv"}
 #: Suffixes that a folder of records may hold beside others
 SUFFIXES = {".at2", ".vt2", ".dt2", ".v1", ".v2", ".v1c", ".v2c", ".smc", ".asc", ".ns", ".ew", ".ud", ".ns1", ".ns2",
             ".ew1", ".ew2", ".ud1", ".ud2", ".acc", ".dat", ".csv", ".txt", ".th", ".mseed", ".sac"}  # fmt: skip
@@ -46,21 +45,11 @@ class Treatment:
 
 
 def locate(file: str, folder: Path) -> Path:
-    """The file a deck means: shipped, absolute as the user wrote it, or inside the deck's folder."""
-    if file.startswith("extrados:"):
-        name = file.removeprefix("extrados:")
-        if name not in SHIPPED:
-            raise RecordError(f"{file}: no such shipped record; known are {', '.join(sorted(SHIPPED))}")
-        return Path(str(files("extrados.motions").joinpath("library", SHIPPED[name])))
-    if "\0" in file:
-        raise RecordError(f"{file!r}: a file name cannot hold a zero byte")
-    path = Path(file)
-    if path.is_absolute():
-        return path
-    inside = (folder / path).resolve()
-    if not inside.is_relative_to(folder.resolve()):
-        raise RecordError(f"{file}: leads out of the deck's folder; give an absolute path if you mean it")
-    return inside
+    """The file a deck means; RecordError where it cannot be."""
+    try:
+        return files.locate(file, folder)
+    except files.BadPlace as error:
+        raise RecordError(str(error)) from None
 
 
 def list_suite(names: list[str] | None, pattern: str | None, subfolder: str | None, folder: Path) -> list[Path]:

@@ -56,6 +56,7 @@ class Pulse(Motion):
     """A single pulse of another shape; `sine-pulse` and `step-pulse` are kinds of their own."""
 
     kind: Literal["pulse"]
+    starter: ClassVar = {"shape": '"ricker"'}
     shape: Literal["rectangular", "half-sine", "cosine", "ricker"] = key(
         about="constant; half a sine of the period; one full cosine; the symmetric Ricker wavelet"
     )
@@ -67,6 +68,7 @@ class VelocityPulse(Motion):
     """Near-fault pulse: a cosine of the velocity under a cosine bell."""
 
     kind: Literal["velocity-pulse"]
+    starter: ClassVar = {"velocity": '"60 cm/s"', "period": "1.0"}
     velocity: Velocity = key(about="amplitude A of the velocity", source="Mavroeidis and Papageorgiou 2003")
     period: Time = key(about="prevailing period T_p", gt=0)
     cycles: float = key(1.5, "gamma, number of cycles under the bell", gt=1, le=50)
@@ -149,6 +151,7 @@ class Suite(Treated):
     """
 
     kind: Literal["suite"]
+    starter: ClassVar = {"files": '["extrados:el-centro-1940"]'}
     files: list[str] | None = key(None, "the records", min_length=1, max_length=2000)
     pattern: str | None = key(None, "such as `records/*.AT2`", min_length=1, max_length=1024)
     folder: str | None = key(None, "a folder whose record files are taken", min_length=1, max_length=1024)
@@ -210,6 +213,7 @@ class Compatible(Motion):
     """Random earthquakes whose response spectrum matches that of a code or table, baseline corrected."""
 
     kind: Literal["compatible"]
+    starter: ClassVar = {"code": '"EN1998-1"', "ground": '"B"', "acceleration": '"0.2 g"', "tolerance": "0.15"}
     code: Literal["EN1998-1", "EN1998-2", "NTC", "ASCE7", "table"] = key(
         about="EN 1998-1:2004 spectrum type 1 or 2, NTC 2018, ASCE 7-16, or a table of your own"
     )

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.signal import fftconvolve
 
 from extrados.core import motion as core
 
@@ -58,6 +57,8 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     The pulse is the wavelet of the greatest coefficient over all scales and times, and up to nine more of the same
     scale within half its length, each taken from what the ones before left.
     """
+    from scipy.signal import fftconvolve  # takes half a second to load
+
     velocity, _ = core.kinematics(acceleration, step)
     pgv = float(np.abs(velocity).max())
     if pgv == 0.0:

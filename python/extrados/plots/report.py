@@ -1,8 +1,15 @@
 """Figures and one self-contained HTML report of a stored run."""
 
 import base64
+import multiprocessing
+import os
 import shutil
+import signal
+import sys
 import tempfile
+import threading
+import warnings
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +19,9 @@ from extrados import kinds
 from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
 from extrados.results.store import REPORT, Stored, StoreError, read, reason
+
+#: Figures of an analysis with their captions
+Figures = list[tuple[str, str]]
 
 TEMPLATE = """<!doctype html>
 <html lang="en"><head><meta charset="utf-8"><title>{{ title }}</title>
@@ -44,23 +54,54 @@ pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px}footer{margin-
 """
 
 
-def draw(run: Stored, folder: Path) -> dict[str, list[tuple[str, str]]]:
+def draw(run: Stored, folder: Path) -> dict[str, Figures]:
     """All figures of a run into folder/figures; analysis name -> (figure name, caption).
 
     StoreError where the stored results lack what a figure needs, or a figure cannot be written.
     """
-    drawn = {}
+    shown = [a for a in run.analyses if a["kind"] in kinds.ANALYSES and run.arrays.get(a["name"])]
+    (folder / "figures").mkdir(exist_ok=True)
+    tasks = [(run, a["name"], kinds.load(kinds.ANALYSES[a["kind"]].figures), folder) for a in shown]
+    return {a["name"]: figures for a, figures in zip(shown, _drawn(tasks), strict=True)}
+
+
+def _draw_one(run: Stored, name: str, figures: Callable[..., Figures], folder: Path) -> Figures:
+    """The figures of one analysis."""
     try:
-        for analysis in run.analyses:
-            name = analysis["name"]
-            if analysis["kind"] not in kinds.ANALYSES or not run.arrays.get(name):
-                continue
-            drawn[name] = kinds.load(kinds.ANALYSES[analysis["kind"]].figures)(run, name, folder)
+        return figures(run, name, folder)
     except OSError as error:
         raise StoreError(f"{run.folder}: figures could not be written: {reason(error)}") from None
     except KeyError as error:
         raise StoreError(f"{run.folder}: the results are damaged: {name} lacks {error}") from None
-    return drawn
+
+
+def _drawn(tasks: list[tuple]) -> list[Figures]:
+    """The figures of each analysis, drawn side by side where this process can fork and it is worth it.
+
+    A process with threads of its own is not forked: one of them might hold a lock that the child then waits for.
+    """
+    workers = min(len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1, len(tasks))
+    if workers < 2 or threading.active_count() > 1:
+        return [_draw_one(*task) for task in tasks]
+    with warnings.catch_warnings():
+        # Python warns of the idle threads of the numerical libraries, which drawing does not use
+        warnings.filterwarnings("ignore", ".*multi-threaded.*fork", DeprecationWarning)
+        with multiprocessing.get_context("fork").Pool(workers, _begin, (tasks,)) as pool:
+            return pool.map(_draw_numbered, range(len(tasks)), chunksize=1)
+
+
+#: What a forked process is to draw; a run is handed over by the fork, not copied through a pipe
+_tasks: list[tuple] = []
+
+
+def _begin(tasks: list[tuple]) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is answered by the parent, which ends the pool
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    _tasks[:] = tasks
+
+
+def _draw_numbered(i: int) -> Figures:
+    return _draw_one(*_tasks[i])
 
 
 #: Outcomes of verdicts in words
@@ -106,7 +147,7 @@ def _cell(value: Any) -> str:
     return "none" if value is None else str(value)
 
 
-def write_report(folder: Path) -> tuple[Path, dict[str, list[tuple[str, str]]]]:
+def write_report(folder: Path) -> tuple[Path, dict[str, Figures]]:
     """Draw a stored run and write report.html: the report, and the figures with captions by analysis.
 
     Drawn aside and put in place when all is done; StoreError where that is not possible.
@@ -117,7 +158,7 @@ def write_report(folder: Path) -> tuple[Path, dict[str, list[tuple[str, str]]]]:
             scratch = Path(place)
             drawn = draw(run, scratch)
             (scratch / REPORT).write_text(_page(run, scratch, drawn), encoding="utf-8")
-            if (scratch / "figures").exists():
+            if any((scratch / "figures").iterdir()):
                 shutil.rmtree(folder / "figures", ignore_errors=True)
                 (scratch / "figures").replace(folder / "figures")
             (scratch / REPORT).replace(folder / REPORT)
@@ -126,7 +167,7 @@ def write_report(folder: Path) -> tuple[Path, dict[str, list[tuple[str, str]]]]:
     return folder / REPORT, drawn
 
 
-def _page(run: Stored, folder: Path, drawn: dict[str, list[tuple[str, str]]]) -> str:
+def _page(run: Stored, folder: Path, drawn: dict[str, Figures]) -> str:
     """The report as one HTML page; the figures lie in folder/figures."""
     analyses = []
     for a in run.analyses:

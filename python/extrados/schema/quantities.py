@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Annotated, Any, get_args
 
-import pint
 from pydantic import BaseModel, BeforeValidator
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,3})?"
@@ -25,8 +24,37 @@ _EXAMPLE = {
 }  # fmt: skip
 
 
+#: SI unit -> units that need no library, with their factors: reading pint's definitions takes half a second
+COMMON: dict[str, dict[str, float]] = {
+    "m": {"m": 1.0, "cm": 0.01, "mm": 0.001, "km": 1000.0, "in": 0.0254},
+    "s": {"s": 1.0, "ms": 0.001, "min": 60.0},
+    "m/s^2": {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "mm/s^2": 0.001},
+    "m/s": {"m/s": 1.0, "cm/s": 0.01, "mm/s": 0.001},
+    "Hz": {"Hz": 1.0},
+    "deg": {"deg": 1.0, "rad": 57.29577951308232},
+    "kg/m^3": {"kg/m^3": 1.0},
+    "kg": {"kg": 1.0, "g": 0.001},
+    "kg*m^2": {"kg*m^2": 1.0},
+    "N": {"N": 1.0, "kN": 1000.0, "MN": 1000000.0},
+    "N/m": {"N/m": 1.0, "kN/m": 1000.0, "J/m^2": 1.0, "N/mm": 1000.0},
+    "Pa": {"Pa": 1.0, "kPa": 1000.0, "MPa": 1000000.0, "GPa": 1000000000.0, "N/mm^2": 1000000.0},
+    "Pa/m": {"Pa/m": 1.0, "MPa/m": 1000000.0, "GPa/m": 1000000000.0},
+    "m^2": {"m^2": 1.0, "cm^2": 0.0001, "mm^2": 1e-06},
+    "m^3/s": {"m^3/s": 1.0},
+}
+
+
+def pattern(si: str) -> str:
+    """Regular expression of JSON Schema for text that may be a quantity in `si`: no common unit of another kind."""
+    others = sorted({unit for kind, there in COMMON.items() if kind != si for unit in there} - set(COMMON[si]))
+    strange = "|".join(re.escape(unit) for unit in others)
+    return rf"^\s*{NUMBER} +(?!(?:{strange})\s*$){FACTOR}(?: ?[*/] ?{FACTOR})*\s*$"
+
+
 @lru_cache(maxsize=1)
-def _registry() -> pint.UnitRegistry:
+def _registry() -> Any:
+    import pint
+
     units = pint.UnitRegistry()
     units.define("gravity_unit = 9.80665 m/s**2")
     return units
@@ -34,11 +62,25 @@ def _registry() -> pint.UnitRegistry:
 
 @lru_cache(maxsize=4096)
 def factor(unit: str, si: str) -> float:
-    """How many `si` one `unit` is; pint.UndefinedUnitError and pint.DimensionalityError say what is wrong."""
-    unit = re.sub(r"\bg\b", "gravity_unit", unit) if si == "m/s^2" else unit
-    if si == "Hz" and re.match(r"rad(ian)?s?\b", unit):  # pint takes a radian per second for a hertz
-        return factor(unit, "rad/s") / (2.0 * math.pi)
-    return float(_registry().Quantity(1.0, unit.replace("^", "**")).to(si.replace("^", "**")).magnitude)
+    """How many `si` one `unit` is; ValueError says what is wrong with the unit."""
+    return COMMON.get(si, {}).get(unit) or _by_pint(unit, si)
+
+
+def _by_pint(unit: str, si: str) -> float:
+    """The factor of any unit that pint knows."""
+    import pint
+
+    known = re.sub(r"\bg\b", "gravity_unit", unit) if si == "m/s^2" else unit
+    try:
+        if si == "Hz" and re.match(r"rad(ian)?s?\b", unit):  # pint takes a radian per second for a hertz
+            return _by_pint(unit, "rad/s") / (2.0 * math.pi)
+        return float(_registry().Quantity(1.0, known.replace("^", "**")).to(si.replace("^", "**")).magnitude)
+    except pint.UndefinedUnitError:
+        raise ValueError(f"unknown unit '{unit}'") from None
+    except pint.DimensionalityError:
+        raise ValueError(f"'{unit}' is not a unit of {si}") from None
+    except Exception as error:  # pint raises many kinds on malformed units
+        raise ValueError(f"'{unit}' is not a unit ({type(error).__name__})") from None
 
 
 def parse(text: str, si: str) -> float:
@@ -50,22 +92,22 @@ def parse(text: str, si: str) -> float:
         raise ValueError(f"'{text[:LONGEST]}' is not a quantity: {wanted}{hint}")
     try:
         return float(found[1]) * factor(found[2], si)
-    except pint.UndefinedUnitError:
-        raise ValueError(f"unknown unit '{found[2]}': {wanted}") from None
-    except pint.DimensionalityError:
-        raise ValueError(f"'{found[2]}' is not a unit of {si}: {wanted}") from None
-    except Exception as error:  # pint raises many kinds on malformed units
-        raise ValueError(f"'{found[2]}' is not a unit ({type(error).__name__}): {wanted}") from None
+    except ValueError as error:
+        raise ValueError(f"{error}: {wanted}") from None
 
 
 @dataclass(frozen=True)
 class Unit:
-    """Marks a field's JSON Schema with its unit; a plain schema extra would be lost where a key has its own."""
+    """Marks a field's JSON Schema with its unit; a plain schema extra would be lost where a key has its own.
+
+    bare: whether a number without a unit is taken.
+    """
 
     si: str
+    bare: bool = True
 
     def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
-        return {**handler(core_schema), "unit": self.si}
+        return {**handler(core_schema), "unit": self.si} | ({} if self.bare else {"bare": False})
 
 
 def quantity(si: str, *, bare: bool = True) -> Any:
@@ -80,7 +122,7 @@ def quantity(si: str, *, bare: bool = True) -> Any:
             raise ValueError(f'a bare number is ambiguous here: write "{value} g" or "{value} m/s^2"')
         return float(value)
 
-    return Annotated[float, BeforeValidator(read), Unit(si)]
+    return Annotated[float, BeforeValidator(read), Unit(si, bare)]
 
 
 Length = quantity("m")

@@ -12,7 +12,7 @@ class Table(BaseModel):
     """
 
     starter: ClassVar[dict[str, str]] = {}
-    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True)
+    model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
 
 class Motion(Table):

@@ -61,6 +61,8 @@ class DemDomain(DemTable):
     """Which pulses bring the structure down, by discrete elements, beside the four-hinge curves where they exist."""
 
     kind: Literal["dem-domain"]
+    starter_structure: ClassVar = "block"
+    starter: ClassVar = {"amplitudes": '["0.5 g", "0.7 g"]', "durations": "[0.2, 0.4, 0.8]", "accuracy": "0.02"}
     pulse: Literal["step", "sine"] = key("step", "step pulse of duration t_p, or one sine of period T_p")
     amplitudes: list[Acceleration] = key(
         about="amplitudes at which the shortest failing duration is sought", min_length=1, max_length=200

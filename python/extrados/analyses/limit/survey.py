@@ -15,6 +15,7 @@ from extrados.analyses.limit.variation import Outcome, changed, evaluate, outcom
 from extrados.analyses.limit.variation import read_table as read_section
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
+from extrados.building.files import locate
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
@@ -94,7 +95,7 @@ class Sections:
 def run(context: Context, options: Survey) -> Result:
     """The deck's structure with the keys of each row in their place; empty cells leave the deck's value."""
     model = type(context.deck.structure)
-    header, rows = read_table(context.deck.folder / options.file)
+    header, rows = read_table(locate(options.file, context.deck.folder))
     for name in header:
         if name != "name" and name.split(".")[0] not in model.model_fields:
             raise Refused(

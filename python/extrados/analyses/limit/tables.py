@@ -72,7 +72,7 @@ class Survey(LimitAnalysisTable):
     """Many sections from a CSV table, one line of results each."""
 
     kind: Literal["survey"]
-    starter: ClassVar = {"file": '"sections.csv"'}
+    starter: ClassVar = {"file": '"extrados:example-sections"'}
     file: str = key(about="CSV beside the deck; a header of [structure] keys (lengths in m), one section a row")
     fracture: bool = key(False, "also with the leeward buttress cracked")
 

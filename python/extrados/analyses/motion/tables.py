@@ -15,6 +15,7 @@ class MotionStudy(Analysis):
     """What a ground motion is: peaks, intensity measures, spectra, pulses; figures, tables and export."""
 
     kind: Literal["motion"]
+    starter: ClassVar = {"count": "10"}
     needs_motion: ClassVar = True
     count: int = key(100, "motions taken of a generated set", ge=1, le=1_000_000)
     dampings: list[float] = key(

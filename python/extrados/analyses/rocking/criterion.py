@@ -11,7 +11,6 @@ from functools import cache
 from importlib.resources import files
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time
 from extrados.building.rockers.arch import ArchModel
@@ -63,6 +62,8 @@ def fit(periods: np.ndarray, amplitudes: np.ndarray, gamma: float) -> Fit:
     best = None
     for share in (0.5, 0.8, 0.95):
         start = np.array([np.log(0.03), -0.8, share * t[0]])
+        from scipy.optimize import least_squares
+
         answer = least_squares(misfit, start, bounds=([-np.inf, -5.0, 0.0], [np.inf, -0.05, t[0] * (1 - 1e-6)]))
         if best is None or answer.cost < best.cost:
             best = answer

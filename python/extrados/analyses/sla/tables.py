@@ -82,6 +82,8 @@ class Sla(BuildingAnalysis):
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "joints.tension",
     )  # fmt: skip
+    starter_structure: ClassVar = "panel"
+    starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
     constant: list[Load] | None = key(
         None,
         "loads A, there from the start; default the weight of stones, and of walls whose reference is not given",

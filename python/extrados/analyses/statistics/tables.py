@@ -98,6 +98,7 @@ class HarmonicMap(RockingTable):
     """Response to harmonic ground motion over frequency and amplitude: at rest, rocking (how far), overturned."""
 
     kind: Literal["harmonic-map"]
+    starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(
         None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000
     )

@@ -2,12 +2,12 @@
 
 import contextlib
 import io
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.building.errors import BadGeometry
+from extrados.building.files import locate
 from extrados.building.mesh.mesh import Mesh, build_mesh, element_areas
 from extrados.building.mesh.options import MeshOptions
 
@@ -16,17 +16,6 @@ if TYPE_CHECKING:
 
 KINDS = {"triangle": "T3", "triangle6": "T6", "quad": "Q4", "quad8": "Q8"}
 LARGEST = 500_000_000  # bytes
-
-
-def locate(file: str, folder: Path) -> Path:
-    """The file of a deck: below its folder, or absolute."""
-    path = Path(file)
-    if path.is_absolute():
-        return path
-    found = (folder / path).resolve()
-    if not found.is_relative_to(folder.resolve()):
-        raise BadGeometry(f"{file}: lies outside the deck's folder; give its absolute path")
-    return found
 
 
 def read_mesh(building: "Building", options: MeshOptions) -> Mesh:

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 
 from extrados.building.errors import BadGeometry
+from extrados.building.files import locate
 from extrados.building.geometry.drawing import read_dxf
 from extrados.building.geometry.polygons import signed_area
-from extrados.building.mesh.file import locate
 from extrados.building.templates.walls import Panel
 
 JITTER = 0.33  # of the spacing: Delaunay triangles stay well shaped and keep to straight edges

@@ -10,8 +10,7 @@ from pydantic import model_validator
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.builder import Builder, fill_loads, springing_path
-from extrados.building.structure import Structure
-from extrados.building.templates.presets import with_preset
+from extrados.building.templates.presets import PresetStructure
 from extrados.schema.quantities import Angle, Density, Length
 from extrados.schema.table import Table, key
 
@@ -240,9 +239,10 @@ class RightSide(Table):
     flyer: FlyerTable | None = key(None, "flying buttress over the aisle")
 
 
-class AisledVault(Structure):
+class AisledVault(PresetStructure):
     """A nave on two piers with side aisles, outer buttresses and, if wished, flyers and fill (thesis 3.5)."""
 
+    presets: ClassVar = AISLED_PRESETS
     starter: ClassVar = {
         "radius": "4.8",
         "thickness": "0.6",
@@ -284,11 +284,6 @@ class AisledVault(Structure):
     aisle_fill_level: Length | None = key(None, "top of the fill over the aisle vaults, above the ground", gt=0)
     fill_density: Density = key(1600.0, "density of the fill", gt=0, le=30000)
     depth: Length = key(1.0, "depth out of plane", gt=0)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _preset(cls, data: Any) -> Any:
-        return with_preset(data, AISLED_PRESETS)
 
     @model_validator(mode="after")
     def _whole(self) -> "AisledVault":

@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import model_validator
 
 from extrados.building.errors import BadGeometry
+from extrados.building.files import locate
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.contacts import find_contacts
 from extrados.building.geometry.drawing import MOST_POINTS, Polygon, read_dxf, read_json
@@ -147,7 +148,7 @@ class Blocks(Structure):
     def assembly(self, density: float, folder: Path) -> Assembly:
         ground = None
         if self.file is not None:
-            path = folder / self.file
+            path = locate(self.file, folder)
             if path.suffix.lower() == ".dxf":
                 polygons, ground = read_dxf(path, self.unit, self.layers)
             elif path.suffix.lower() == ".json":

@@ -126,6 +126,7 @@ class Brickwork(Structure):
     """Wall of equal units in running bond on the ground, loaded in its plane; half units close every other course."""
 
     kind: Literal["brickwork"]
+    starter: ClassVar = {"unit_length": '"40 cm"', "unit_height": '"20 cm"', "units": "5", "courses": "8"}
     unit_length: Length = key(about="length of a unit", gt=0)
     unit_height: Length = key(about="height of a unit", gt=0)
     units: int = key(about="units in a course", ge=1, le=500)

@@ -1,16 +1,14 @@
 """Barrel vaults on buttresses (thesis 3.4)."""
 
 from pathlib import Path
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
-from pydantic import model_validator
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.builder import Builder, springing_path
-from extrados.building.structure import Structure
-from extrados.building.templates.presets import with_preset
+from extrados.building.templates.presets import PresetStructure
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
 
@@ -76,9 +74,10 @@ def make_vault(
     )
 
 
-class Vault(Structure):
+class Vault(PresetStructure):
     """Barrel vault between two monolithic buttresses that are mirror images (thesis 3.4)."""
 
+    presets: ClassVar = VAULT_PRESETS
     starter: ClassVar = {
         "radius": "5.0",
         "thickness": "0.6",
@@ -105,11 +104,6 @@ class Vault(Structure):
         "extrados", "where height ends: at the extrados of the springing, or at the level of the vault's centre"
     )
     depth: Length = key(1.0, "depth out of plane", gt=0)
-
-    @model_validator(mode="before")
-    @classmethod
-    def _preset(cls, data: Any) -> Any:
-        return with_preset(data, VAULT_PRESETS)
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         return make_vault(

@@ -51,17 +51,8 @@ class Bar(Table):
 
 
 class Wall(Structure):
-    """What all finite-element walls share. starter_beside: values of the other tables in a starter deck."""
+    """What all finite-element walls share."""
 
-    starter_beside: ClassVar = {
-        "material": {"tensile_strength": '"0.2 MPa"', "fracture_energy": '"50 N/m"'},
-        "analysis": {
-            "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
-            "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
-            "target_displacement": '"2 mm"',
-            "ripple": "0.2",
-        },
-    }
     thickness: Length = key(about="thickness out of plane", gt=0)
     regions: list[Region] = key([], "parts that differ; a later one overrides an earlier", max_length=1000)
     ties: list[Tie] = key([], "nodes that move as one", max_length=100)
@@ -72,6 +63,7 @@ class Panel(Wall):
     """A rectangular wall or beam with rectangular openings and notches, meshed here; x from left, y from bottom."""
 
     kind: Literal["panel"]
+    starter_analysis: ClassVar = "sla"
     starter: ClassVar = {
         "thickness": '"30 cm"',
         "width": "3.0",
@@ -105,7 +97,8 @@ class MeshFile(Wall):
     """A wall from a mesh file (gmsh, Abaqus and others; needs the extra `extrados[mesh]`)."""
 
     kind: Literal["mesh"]
-    starter: ClassVar = {"thickness": '"30 cm"', "file": '"wall.msh"', "scale": "0.001"}
+    starter_analysis: ClassVar = "sla"
+    starter: ClassVar = {"thickness": '"30 cm"', "file": '"extrados:example-wall"', "scale": "0.001"}
     lacks: ClassVar = dict.fromkeys(
         ("blocks", "rocker"), "a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`"
     )
