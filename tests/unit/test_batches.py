@@ -113,11 +113,13 @@ def test_slow_members_run_side_by_side(tmp_path: Path, threads: int) -> None:
     out = tmp_path / "run"
     c = context(out)
     c.threads = threads
-    s = sweep(c, "t", Squares(stop_at=20), 100, "squares", slow=True, parallel=True)
-    assert s.interrupted and len(s.members) < 100 and np.array_equal(s["value"], s.members**2)
-    again = sweep(context(out, resume=True), "t", Squares(stop_at=20), 100, "squares", slow=True, parallel=True)
-    rest = again if again.complete else sweep(context(out, resume=True), "t", Squares(stop_at=20), 100, "squares")
-    assert rest.complete and np.array_equal(rest["value"], np.arange(100) ** 2)
+    n = 20_000
+    s = sweep(c, "t", Squares(stop_at=20), n, "squares", slow=True, parallel=True)
+    assert s.interrupted and 20 < len(s.members) < n and np.array_equal(s["value"], s.members**2)
+    again = context(out, resume=True)
+    again.threads = threads
+    rest = sweep(again, "t", Squares(stop_at=20), n, "squares", slow=True, parallel=True)
+    assert rest.complete and np.array_equal(rest["value"], np.arange(n) ** 2)
 
 
 def test_a_failing_member_stops_the_sweep() -> None:
