@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from extrados.analyses.context import Context
+from extrados.analyses.dem import dem_domain
 from extrados.analyses.run import run_analyses
 from extrados.analyses.sla.model import build
 from extrados.core import calls
@@ -230,6 +231,20 @@ def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.
     (whole,) = run_analyses(Context(deck))
     assert resumed.status == whole.status == "ok" and resumed.answer == whole.answer
     assert kept <= set(folder_of(out).glob("*/*.npz")) and again
+
+
+def test_ctrl_c_between_two_rounds_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    rounds = []
+    real = dem_domain.Search.fails
+
+    def fails(self, pulses):
+        rounds.append(real(self, pulses))
+        calls._ask()
+        return rounds[-1]
+
+    monkeypatch.setattr(dem_domain.Search, "fails", fails)
+    (found,) = run_analyses(Context(make_deck(tomllib.loads(DECKS["dem-domain"]))))
+    assert found.status == "interrupted" and len(rounds) == 1
 
 
 def test_cluster_gives_the_same_bytes(cluster, tmp_path: Path) -> None:
