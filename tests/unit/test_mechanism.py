@@ -7,10 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from extrados.analyses.arch_model import ArchModel
-from extrados.analyses.block_model import BlockModel
-from extrados.analyses.mechanism_model import MechanismModel
-from extrados.analyses.run import Refused
+from extrados.building.errors import NoView
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.templates.arch import make_arch
+from extrados.building.templates.block import make_block
 from extrados.core import arch as core_arch
 from extrados.core import mechanism as core_mechanism
 from extrados.core import rocking
@@ -20,12 +23,8 @@ from extrados.limit.impact import energy_kept
 from extrados.limit.linkage import CannotRock, linkage
 from extrados.limit.programme import LimitAnalysis
 from extrados.motions import pulses
-from extrados.motions.motion import GRAVITY
 from extrados.motions.records import locate, read_record, record_motion
-from extrados.structures.arch import make_arch
-from extrados.structures.assembly import GROUND, Assembly
-from extrados.structures.block import make_block
-from extrados.structures.from_deck import make_structure
+from extrados.schema.constants import GRAVITY
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 ARCHES = [(10.0, 1.5, 157.5, 7), (10.0, 2.0, 180.0, 15), (10.0, 1.2, 170.0, 31)]
@@ -35,7 +34,8 @@ def of_case(name: str, **change) -> Assembly:
     """The structure of a case, keys replaced."""
     deck = read_deck(CASES / name)
     data = {**deck.structure.model_dump(), **change}
-    return make_structure(type(deck.structure).model_validate(data), deck.folder)
+    structure = type(deck.structure).model_validate(data)
+    return deck.building.having(structure=structure).blocks()
 
 
 @cache
@@ -58,7 +58,7 @@ def stones(*shapes: tuple[str, list, list]) -> Assembly:
             "analysis": [{"kind": "tilt"}],
         }
     )
-    return make_structure(deck.structure, deck.folder)
+    return deck.building.blocks()
 
 
 @pytest.mark.parametrize("sizes", ARCHES)
@@ -201,7 +201,7 @@ def test_an_impact_never_creates_energy() -> None:
         m = MechanismModel(section)
         try:
             first, second = m.tables
-        except Refused:
+        except NoView:
             continue
         tried += 1
         kept = np.square(m.projections) * np.array([first.mass / second.mass, second.mass / first.mass])
@@ -266,7 +266,7 @@ def test_an_ensemble_does_not_depend_on_threads() -> None:
 
 
 def test_what_cannot_rock_says_why() -> None:
-    with pytest.raises(Refused, match="does not stand"):
+    with pytest.raises(NoView, match="does not stand"):
         _ = MechanismModel(make_arch(10.0, 0.6, 180.0, 15)).body
     wall = of_case("dem/wall.toml")
     _, slides = LimitAnalysis(wall, 0.3).collapse(1)
@@ -276,7 +276,7 @@ def test_what_cannot_rock_says_why() -> None:
     _, crushes = LimitAnalysis(vault, strength=2e6).collapse(1)
     with pytest.raises(CannotRock, match="crushes at"):
         linkage(vault, crushes, 1)
-    with pytest.raises(Refused, match='"thesis" is not known'):
+    with pytest.raises(NoView, match='"thesis" is not known'):
         _ = MechanismModel(vault, "thesis").body
 
 

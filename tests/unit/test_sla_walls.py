@@ -3,7 +3,6 @@
 import os
 import signal
 import threading
-import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -183,14 +182,12 @@ def test_interrupt_keeps_the_events_so_far() -> None:
             timers.append(threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)))
             timers[0].start()
 
-    begin = time.monotonic()
     data = wall(0.03, events=1_000_000, mechanism_ratio=1e12)
     result = run_analyses(Context(make_deck(data), progress=progress))[0]
     timers[0].join()
     assert result.status == "interrupted"
     assert 0 < result.results["events"] < 1_000_000
     assert len(result["event_load"]) == result.results["events"]
-    assert time.monotonic() - begin < 60.0
     assert signal.getsignal(signal.SIGINT) is before
 
 

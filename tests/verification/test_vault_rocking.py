@@ -9,17 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-from extrados.analyses import dem_model
 from extrados.analyses.failure_domain import shortest_durations
-from extrados.analyses.mechanism_model import MechanismModel
+
+from extrados.analyses.dem import model as dem_model
+from extrados.building.properties import Joints, Material
+from extrados.building.rockers.mechanism import MechanismModel
 from extrados.core import dem
-from extrados.decks.dem import DemDomain
 from extrados.decks.reader import read_deck
 from extrados.motions import pulses
-from extrados.motions.motion import GRAVITY
-from extrados.structures.from_deck import make_structure
-from extrados.structures.rigid import rigid_bodies
+from extrados.schema.constants import GRAVITY
 
 ROOT = Path(__file__).resolve().parents[2]
 #: Rotation of a buttress that counts as rocking [rad]
@@ -28,16 +26,14 @@ ROCKS = 2e-3
 
 @cache
 def vault():
-    deck = read_deck(ROOT / "cases" / "vault" / "dejong-a.toml")
-    return make_structure(deck.structure, deck.folder)
+    return read_deck(ROOT / "cases" / "vault" / "dejong-a.toml").building.blocks()
 
 
 @cache
 def elements(modulus: float) -> dem_model.Model:
-    options = DemDomain(
-        kind="dem-domain", amplitudes=["0.2 g"], durations=[0.1, 0.2], friction=2.0, youngs_modulus=modulus
-    )
-    return dem_model.Model(vault(), rigid_bodies(vault(), [], 0.0, None), dem_model.joint_values(vault(), options))
+    building = read_deck(ROOT / "cases" / "vault" / "dejong-a.toml").building
+    building = building.having(material=Material(young=modulus), joints=Joints(friction=2.0))
+    return dem_model.Model(building.blocks(), building.rigid(), dem_model.joint_values(building))
 
 
 def falls(modulus: float, amplitude: float, duration: float) -> int:

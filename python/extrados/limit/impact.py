@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.optimize import nnls
 
+from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.linkage import laden
-from extrados.structures.assembly import GROUND, Assembly
 
 #: More blocks make the dense problem slow.
 MOST_BLOCKS = 400

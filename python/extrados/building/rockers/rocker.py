@@ -8,6 +8,7 @@ import numpy as np
 from extrados.building.errors import NoView
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel, block_model
+from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core.rocking import Body
 
@@ -27,7 +28,7 @@ class Rocker:
     """
 
     what: str
-    model: BlockModel | ArchModel
+    model: BlockModel | ArchModel | MechanismModel
     body: Body
     uplift: float
     critical: tuple[float, float]
@@ -52,7 +53,7 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
     made = building.blocks()
     if linear:
         raise NoView('form = "linear" is known of blocks and columns only')
-    if isinstance(made, ArchAssembly):
+    if isinstance(made, ArchAssembly) and building.joints.restitution != "inelastic":
         arch = ArchModel(made, building.joints.restitution)
         limits = arch.limits
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
@@ -61,4 +62,10 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
             "arch", arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
             made.radius, ratio * limits.critical, tuple(arch.warnings),
         )  # fmt: skip
-    raise NoView(f"a structure of kind '{structure.kind}' has no rocking mechanism yet")
+    rule = building.joints.restitution
+    model = MechanismModel(made, "energy-safe" if rule == "thesis" else rule)
+    critical = model.critical
+    return Rocker(
+        structure.kind, model, model.body, min(model.uplift), critical, model.restitution[1], model.time_unit, model.length,
+        ratio * critical[0 if ratio >= 0.0 else 1], tuple(model.warnings),
+    )  # fmt: skip

@@ -5,7 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from extrados.analyses.run import Refused
+from extrados.building.errors import NoView
+from extrados.building.geometry.assembly import Assembly
 from extrados.core import mechanism as core_mechanism
 from extrados.core.errors import CoreError
 from extrados.core.mechanism import Coefficients, Table, table_body
@@ -15,8 +16,7 @@ from extrados.limit.impact import MOST_BLOCKS, energy_kept
 from extrados.limit.linkage import CannotRock, Linkage, laden, linkage
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
-from extrados.motions.motion import GRAVITY
-from extrados.structures.assembly import Assembly
+from extrados.schema.constants import GRAVITY
 
 SIDES = (1, -1)
 WORD = {1: "+x", -1: "-x"}
@@ -53,7 +53,7 @@ class MechanismModel:
     rule: "energy-safe", the projection of the velocities before impact on the next mechanism, and rest where it is
     below zero; "inelastic", which gives the next mechanism all energy that the blow would leave if hinges could open
     anywhere; or a number whose square is the share of the kinetic energy that an impact keeps (c_v where both sides
-    are alike). Joints do not slide and stone does not crush. Refused says why a section does not rock.
+    are alike). Joints do not slide and stone does not crush. NoView says why a section does not rock.
     """
 
     assembly: Assembly
@@ -68,9 +68,9 @@ class MechanismModel:
             if not found[1][0].gamma < 0.0 < found[0][0].gamma:
                 raise NoEquilibrium
         except Immovable as error:
-            raise Refused(f"it does not rock: {error}") from None
+            raise NoView(f"it does not rock: {error}") from None
         except NoEquilibrium:
-            raise Refused(f"it does not stand: {why_not(limit)}") from None
+            raise NoView(f"it does not stand: {why_not(limit)}") from None
         return found
 
     @cached_property
@@ -81,7 +81,7 @@ class MechanismModel:
             try:
                 made.append(linkage(self.assembly, mechanism, side))
             except CannotRock as error:
-                raise Refused(f"the collapse mechanism to {WORD[side]} does not rock: {error}") from None
+                raise NoView(f"the collapse mechanism to {WORD[side]} does not rock: {error}") from None
         return made[0], made[1]
 
     @cached_property
@@ -92,10 +92,10 @@ class MechanismModel:
             try:
                 table = core_mechanism.table(one)
             except CoreError as error:
-                raise Refused(f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}") from None
+                raise NoView(f"the mechanism to {WORD[side]} cannot be carried through its motion: {error}") from None
             uplift = side * table.gravity_moment / (table.drive * GRAVITY)
             if abs(uplift - state.gamma) > SAME * abs(state.gamma):
-                raise Refused(
+                raise NoView(
                     f"the mechanism to {WORD[side]} moves at {uplift:.6g} g by its own weight, but limit analysis says "
                     f"{state.gamma:.6g} g: some load on it is not its mass"
                 )
@@ -106,6 +106,13 @@ class MechanismModel:
     def uplift(self) -> tuple[float, float]:
         """Size of the horizontal acceleration of the ground that starts rocking [g]; to +x the ground moves to -x."""
         return abs(self.collapse[0][0].gamma), abs(self.collapse[1][0].gamma)
+
+    def driver(self, side: int) -> str:
+        """The part whose rotation is the coordinate of side 0 (+x) or 1 (-x), by its first and last stone."""
+        one = self.linkages[side]
+        stones = np.flatnonzero(one.part == one.driver)
+        names = [self.assembly.block_names[i] for i in stones[[0, -1]]]
+        return names[0] if len(stones) == 1 else f"the part from {names[0]} to {names[1]}"
 
     @property
     def critical(self) -> tuple[float, float]:
@@ -159,11 +166,11 @@ class MechanismModel:
         ratio = float(np.sqrt(self.tables[1].mass / self.tables[0].mass))
         if self.rule == "inelastic":
             if self.energy_kept is None:
-                raise Refused(f'the impact rule "inelastic" is for at most {MOST_BLOCKS} blocks; give a number')
+                raise NoView(f'the impact rule "inelastic" is for at most {MOST_BLOCKS} blocks; give a number')
             right, left = np.sqrt(self.energy_kept)
             return float(right) * ratio, float(left) / ratio
         if isinstance(self.rule, str):
-            raise Refused(f'the impact rule "{self.rule}" is not known here: "energy-safe", "inelastic", or a number')
+            raise NoView(f'the impact rule "{self.rule}" is not known here: "energy-safe", "inelastic", or a number')
         return float(self.rule) * ratio, float(self.rule) / ratio
 
     @cached_property
