@@ -10,15 +10,10 @@ import sys
 import time
 
 import numpy as np
-from extrados.building.templates.wall_tables import Panel
 
-<<<<<<< HEAD
-from extrados.building.mesh.panel import make_panel
-=======
 from extrados.building.building import Building
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.templates.walls import Panel
->>>>>>> building
 from extrados.core.sla import Freedoms, Model, Monitor, Plane, Softening, body_force
 
 #: elements a side -> events by update, by refactorisation
