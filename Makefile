@@ -11,7 +11,7 @@ run: setup
 
 test: setup
 	@$(PYTHON) -m pytest -q
-	@$(PYTHON) tools/fortran_tests.py
+	@$(PYTHON) tools/native_tests.py
 
 verify: setup  ## long validation; writes docs/verification.md
 	@$(PYTHON) -m pytest -q -m ""
@@ -27,6 +27,7 @@ lint: setup
 	@.venv/bin/ruff check python tests tools
 	@.venv/bin/ruff format --check python tests tools
 	@.venv/bin/fortitude check fortran tests/fortran
+	@.venv/bin/mypy
 
 format: setup
 	@.venv/bin/ruff check --fix python tests tools

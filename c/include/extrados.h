@@ -1,18 +1,32 @@
 /* Functions of the C part, called from Fortran through bind(c) interfaces only.
  * Every function that can fail returns a code of extrados_status.h; none prints,
- * stops the process or keeps state, apart from the cancel flag. */
+ * stops the process or keeps state, apart from the cancel flag and the registry of handles. */
 #ifndef EXTRADOS_H
 #define EXTRADOS_H
 
 #include <stdint.h>
 
-#include "extrados_status.h"
+#include "extrados_lists.h"
 
 #define EXTRADOS_API __attribute__((visibility("hidden")))
 
-/* status.c: entry `index` (0-based) of the list; returns 0 past its end. */
-EXTRADOS_API int extrados_status_entry(int index, int *code, int name_size, char *name,
-                                       int text_size, char *text);
+/* lists.c: entry `index` (0-based) of all lists of extrados_lists.h, one behind the other: its list and its name
+ * in `name` as "LIST.NAME", its word in `text`; returns 0 past the end. */
+EXTRADOS_API int extrados_list_entry(int index, int *code, int name_size, char *name, int text_size, char *text);
+
+/* handles.c: objects that live between calls, behind numbers that are never given twice. Every function but the
+ * first answers closed_handle for a number that is not in use. The registry is the core's only state beside the
+ * cancel flag; a lock guards it. */
+typedef void (*extrados_destroy)(void *object);
+EXTRADOS_API int extrados_handle_new(int kind, void *object, extrados_destroy destroy, int64_t *handle);
+/* The object behind a handle for the length of a call: `alone` 1 where the call changes it, 0 where calls may share
+ * it. wrong_handle for another kind, busy where another call stands in the way. Each take needs its leave. */
+EXTRADOS_API int extrados_handle_take(int64_t handle, int kind, int alone, void **object);
+EXTRADOS_API void extrados_handle_leave(int64_t handle);
+/* Destroy the object. While a call uses it: busy, or, with `later`, destroyed as that call leaves. */
+EXTRADOS_API int extrados_handle_close(int64_t handle, int later);
+/* Handles in use. */
+EXTRADOS_API int extrados_handle_count(void);
 
 /* cancel.c: the flag behind Ctrl-C, shared by all threads. */
 EXTRADOS_API void extrados_cancel_set(int value);

@@ -12,17 +12,6 @@
 #define EXTRADOS_ANY_WIDTH
 #endif
 
-enum extrados_envelope_kind {
-  EXTRADOS_envelope_arctangent = 1,
-  EXTRADOS_envelope_trapezoid = 2,
-  EXTRADOS_envelope_jennings = 3,
-  EXTRADOS_envelope_saragoni_hart = 4
-};
-
-enum extrados_spacing { EXTRADOS_spacing_log = 1, EXTRADOS_spacing_uniform = 2 };
-
-enum extrados_scaling { EXTRADOS_scaling_thesis = 1, EXTRADOS_scaling_fourier = 2, EXTRADOS_scaling_energy = 3 };
-
 /* random.c: phases of motion `index` of the set `seed`, uniform in [0, 2 pi). */
 EXTRADOS_API int extrados_motion_phases(int64_t seed, int64_t index, int count, double *phase);
 

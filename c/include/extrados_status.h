@@ -19,6 +19,11 @@
   ENTRY(10, snap_back, "the crack band is wider than the fracture energy allows: the law snaps back") \
   ENTRY(11, too_large, "the factor would not fit into the memory allowed") \
   ENTRY(12, beyond_strength, "the constant loads alone exceed the strength") \
+  ENTRY(13, closed_handle, "it was closed, or never made by this process") \
+  ENTRY(14, wrong_handle, "the handle is that of another kind of object") \
+  ENTRY(15, busy, "another call is using it") \
+  ENTRY(16, not_ready, "it is not built far enough for this call") \
+  ENTRY(17, bad_index, "an index points to nothing") \
   ENTRY(20, energy_lost, "the tables of a mechanism do not keep the energy of its motion") \
   ENTRY(130, cancelled, "cancelled")
 

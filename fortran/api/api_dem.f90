@@ -1,33 +1,23 @@
-!> Discrete elements: one run from rest under gravity to the end of the motion.
+!> Discrete elements: a model behind a handle, built in steps, run, and read.
+!>
+!> create, laws, joints, start, moves, settings; then run as often as wanted; then summary, history, bodies and
+!> contacts tell the last run. Body numbers are 1-based; mass 0 marks a support.
 module api_dem
-   use, intrinsic :: iso_c_binding, only : c_double, c_int
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: run
+   public :: create, laws, joints, start, moves, settings, run, summary, history, bodies, contacts
 
 contains
 
-   !> Settle, shake, record. Body numbers are 1-based; mass 0 marks a support.
-   subroutine run(nb, npart, nvert, nlaw, ntable, nmove, centroid, mass, inertia, owner, first, vertex, outer, &
-                  start_shift, start_rate, law, table_first, table_body, table_law, move_body, move, &
-                  sampled, channels, npoint, start, step, samples, nbreak, terms, breaks, linear, harmonic, scale, &
-                  moving_base, gravity, mass_damping, limits, domain, settle_steps, stop_at_rest, threads, &
-                  nt, wanted, room, time, place, rate, energy, counts, measures, bounces, airborne, settled, &
-                  contact_body, contact, status)
-      use common_signal, only : signal_sampled, signal_piecewise
-      use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
-      use dem_bodies, only : body_set_new, body_turn
-      use dem_contacts, only : overlap, measure
-      use dem_law, only : joint_law
-      use dem_loading, only : support_move
-      use dem_model, only : model
-      use dem_run, only : run_options, run_record, run_model
+   !> Bodies made of convex parts
+   subroutine create(nb, npart, nvert, centroid, mass, inertia, owner, first, vertex, outer, handle, status)
+      use common_status, only : status_ok, status_out_of_memory
+      use dem_bodies, only : body_set_new
+      use dem_handle, only : built_model, built_model_register
       integer(c_int), intent(in) :: nb                        !! bodies
       integer(c_int), intent(in) :: npart                     !! convex parts
       integer(c_int), intent(in) :: nvert                     !! vertices of all parts
-      integer(c_int), intent(in) :: nlaw                      !! joint types; the first is that of new contacts
-      integer(c_int), intent(in) :: ntable                    !! joints with a type of their own
-      integer(c_int), intent(in) :: nmove                     !! support movements
       real(c_double), intent(in) :: centroid(2, nb)           !! [m]
       real(c_double), intent(in) :: mass(nb)                  !! [kg]
       real(c_double), intent(in) :: inertia(nb)               !! [kg m^2]
@@ -35,157 +25,300 @@ contains
       integer(c_int), intent(in) :: first(npart + 1)          !! first vertex of each part
       real(c_double), intent(in) :: vertex(2, nvert)          !! [m]
       integer(c_int), intent(in) :: outer(nvert)              !! 1: the edge that starts here is on the outline
-      real(c_double), intent(in) :: start_shift(3, nb)        !! x, y [m], rotation [rad]
-      real(c_double), intent(in) :: start_rate(3, nb)         !! [m/s, rad/s]
+      integer(c_int64_t), intent(out) :: handle
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      integer :: failed
+      handle = 0
+      status = status_out_of_memory
+      allocate (made, stat=failed)
+      if (failed /= 0) return
+      call body_set_new(centroid, mass, inertia, owner, first, vertex, outer, made%set, status)
+      if (status == status_ok) then
+         call built_model_register(made, handle, status)
+      else
+         deallocate (made)
+      end if
+   end subroutine create
+
+   !> Types of joints; the first is that of contacts that form later
+   subroutine laws(handle, nlaw, law, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_out_of_memory
+      use dem_handle, only : built_model, built_model_take, set_laws
+      use dem_law, only : joint_law
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nlaw
       real(c_double), intent(in) :: law(6, nlaw)              !! see joint_law
-      integer(c_int), intent(in) :: table_first(nb + 1)       !! row of each body in the table
-      integer(c_int), intent(in) :: table_body(ntable)        !! the higher body of the joint
-      integer(c_int), intent(in) :: table_law(ntable)         !! its type
-      integer(c_int), intent(in) :: move_body(nmove)          !! support that moves
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      type(joint_law), allocatable :: given(:)
+      integer :: k, failed
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      allocate (given(nlaw), stat=failed)
+      status = status_out_of_memory
+      if (failed == 0) then
+         do k = 1, nlaw
+            given(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k), law(5, k), law(6, k))
+         end do
+         call set_laws(made, given, status)
+      end if
+      call handle_leave(handle)
+   end subroutine laws
+
+   !> Joints with a type of their own
+   subroutine joints(handle, njoint, pair, law, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, built_model_take, set_joints
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: njoint
+      integer(c_int), intent(in) :: pair(2, njoint)           !! bodies
+      integer(c_int), intent(in) :: law(njoint)               !! type, 1-based
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      call set_joints(made, pair, law, status)
+      call handle_leave(handle)
+   end subroutine joints
+
+   !> Initial displacement and velocity about the centroids
+   subroutine start(handle, nb, shift, rate, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : built_model, built_model_take, set_start
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nb                        !! bodies
+      real(c_double), intent(in) :: shift(3, nb)              !! x, y [m], rotation [rad]
+      real(c_double), intent(in) :: rate(3, nb)               !! [m/s, rad/s]
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      if (nb /= size(made%set%item)) status = status_invalid_argument
+      if (status == status_ok) call set_start(made, shift, rate)
+      call handle_leave(handle)
+   end subroutine start
+
+   !> Supports that give way
+   subroutine moves(handle, nmove, body, move, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_out_of_memory
+      use dem_handle, only : built_model, built_model_take, set_moves
+      use dem_loading, only : support_move
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nmove
+      integer(c_int), intent(in) :: body(nmove)               !! support that moves
       real(c_double), intent(in) :: move(5, nmove)            !! dx, dy [m], turn [rad], start, duration [s]
-      integer(c_int), intent(in) :: sampled                   !! 1: samples, 0: pieces
-      integer(c_int), intent(in) :: channels                  !! 1 horizontal, 2 with vertical
-      integer(c_int), intent(in) :: npoint
-      real(c_double), intent(in) :: start                     !! [s]
-      real(c_double), intent(in) :: step                      !! [s]
-      real(c_double), intent(in) :: samples(channels, npoint)  !! [m/s^2]
-      integer(c_int), intent(in) :: nbreak
-      integer(c_int), intent(in) :: terms
-      real(c_double), intent(in) :: breaks(nbreak)            !! [s]
-      real(c_double), intent(in) :: linear(2, channels, nbreak)
-      real(c_double), intent(in) :: harmonic(4, terms, channels, nbreak)
-      real(c_double), intent(in) :: scale
-      integer(c_int), intent(in) :: moving_base               !! 1: the supports move, 0: body force
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      type(support_move), allocatable :: given(:)
+      integer :: k, failed
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      allocate (given(nmove), stat=failed)
+      status = status_out_of_memory
+      if (failed == 0) then
+         do k = 1, nmove
+            given(k) = support_move(int(body(k)), move(1:3, k), move(4, k), move(5, k))
+         end do
+         call set_moves(made, given, status)
+      end if
+      call handle_leave(handle)
+   end subroutine moves
+
+   !> How to run
+   subroutine settings(handle, gravity, mass_damping, moving_base, limits, domain, settle_steps, stop_at_rest, &
+                       threads, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : built_model, built_model_take
+      use dem_run, only : run_options
+      integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(in) :: gravity(2)                !! [m/s^2]
       real(c_double), intent(in) :: mass_damping              !! alpha [1/s]
-      real(c_double), intent(in) :: limits(6)                 !! see run_options, in its order without domain
+      integer(c_int), intent(in) :: moving_base               !! 1: the supports move, 0: body force
+      !> End time [s], step [s] or 0, fraction of the critical step, settling tolerance, collapse [m] or 0,
+      !> limit of the energy residual
+      real(c_double), intent(in) :: limits(6)
       real(c_double), intent(in) :: domain(4)                 !! left, right, bottom, top [m]
       integer(c_int), intent(in) :: settle_steps              !! at most; 0: no settling
       integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet
       integer(c_int), intent(in) :: threads
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      if (.not. (limits(1) > 0.0_c_double .and. limits(3) > 0.0_c_double .and. limits(3) <= 1.0_c_double &
+                 .and. all(limits >= 0.0_c_double) .and. mass_damping >= 0.0_c_double .and. threads >= 1)) then
+         status = status_invalid_argument
+      else
+         made%load%gravity = gravity
+         made%load%moving_base = moving_base /= 0
+         made%mass_damping = mass_damping
+         made%options = run_options(limits(1), limits(2), limits(3), limits(4), int(settle_steps), limits(5), domain, &
+            limits(6), stop_at_rest /= 0, int(threads))
+         made%settled = .true.
+      end if
+      call handle_leave(handle)
+   end subroutine settings
+
+   !> Settle, shake, record
+   subroutine run(handle, motions, motion, scale, nt, wanted, status)
+      use common_handles, only : handle_leave
+      use common_motion_set, only : motion_set, motion_set_take, motion_signal
+      use common_signal, only : signal
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, built_model_take, run_built
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int64_t), intent(in) :: motions               !! handle of a set of motions
+      integer(c_int), intent(in) :: motion                    !! its number in the set, 1-based
+      real(c_double), intent(in) :: scale                     !! factor on the motion
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: wanted(nt)                !! output times [s]
-      integer(c_int), intent(in) :: room                      !! for contact points of the last step
+      integer(c_int), intent(out) :: status                   !! cancelled leaves what was recorded
+      type(built_model), pointer :: made
+      type(motion_set), pointer :: set
+      type(signal) :: ground
+      !f2py threadsafe
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      call motion_set_take(motions, .false., set, status)
+      if (status == status_ok) then
+         call motion_signal(set, motion, scale, ground, status)
+         if (status == status_ok) call run_built(made, ground, wanted, status)
+         call handle_leave(motions)
+      end if
+      call handle_leave(handle)
+   end subroutine run
+
+   !> How the last run ended
+   subroutine summary(handle, counts, measures, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_not_ready
+      use dem_handle, only : built_model, built_model_take, closed_contacts
+      integer(c_int64_t), intent(in) :: handle
+      !> Points, reason (list dem_stop), two bodies that caused it, settling steps, searches, most pairs, steps,
+      !> closed contact points
+      integer(c_int), intent(out) :: counts(9)
+      real(c_double), intent(out) :: measures(4)              !! least step, critical step, stop time [s], residual
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      integer(c_int) :: nobody(2, 0)
+      real(c_double) :: nothing(6, 0)
+      integer :: closed
+      counts = 0
+      measures = 0.0_c_double
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(made%record)) then
+         status = status_ok
+         associate (it => made%it, record => made%record)
+            call closed_contacts(it, nobody, nothing, closed)
+            counts = [int(record%points, c_int), record%reason, int(record%blamed, c_int), &
+               int(record%settling, c_int), int(record%searches, c_int), &
+               int(max(record%most_pairs, it%contacts%pairs), c_int), int(it%steps, c_int), int(closed, c_int)]
+            measures = [record%least_step, record%critical, record%stop_time, record%residual]
+         end associate
+      end if
+      call handle_leave(handle)
+   end subroutine summary
+
+   !> What the last run recorded
+   subroutine history(handle, nb, nt, time, place, rate, energy, status)
+      use common_handles, only : handle_leave
+      use common_lists, only : dem_energy_count
+      use common_status, only : status_ok, status_invalid_argument, status_not_ready
+      use dem_handle, only : built_model, built_model_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nb                        !! bodies
+      integer(c_int), intent(in) :: nt                        !! points, see summary
       real(c_double), intent(out) :: time(nt)                 !! [s]
       real(c_double), intent(out) :: place(3, nb, nt)         !! x, y [m], rotation [rad]
       real(c_double), intent(out) :: rate(3, nb, nt)          !! [m/s, rad/s]
-      real(c_double), intent(out) :: energy(9, nt)            !! [J], see energy_terms
-      !> points, reason, blamed (2), settling, searches, pairs, steps, contacts
-      integer(c_int), intent(out) :: counts(9)
-      real(c_double), intent(out) :: measures(4)              !! least step, critical step, stop time [s], residual
-      integer(c_int), intent(out) :: bounces(nb)
-      real(c_double), intent(out) :: airborne(nb)             !! [s]
-      real(c_double), intent(out) :: settled(3, nb)           !! place after settling
-      integer(c_int), intent(out) :: contact_body(2, room)
-      !> x, y [m], force on the second body x, y [N], normal, shear [N]
-      real(c_double), intent(out) :: contact(6, room)
+      real(c_double), intent(out) :: energy(9, nt)            !! [J], rows of the list dem_energy
       integer(c_int), intent(out) :: status
-      !f2py threadsafe
-      call with_targets(samples, breaks, linear, harmonic, wanted, time, place, rate, energy)
-
-   contains
-
-      !> The arrays as pointer targets for the length of the call
-      subroutine with_targets(values, edges, lines, sines, times, reached, places, rates, energies)
-         real(c_double), intent(in), target, contiguous :: values(:, :), edges(:), lines(:, :, :)
-         real(c_double), intent(in), target, contiguous :: sines(:, :, :, :), times(:)
-         real(c_double), intent(out), target, contiguous :: reached(:), places(:, :, :), rates(:, :, :), energies(:, :)
-         type(model), allocatable :: it
-         type(run_options) :: options
-         type(run_record) :: record
-         integer :: k, failed
-
-         reached = 0.0_c_double
-         places = 0.0_c_double
-         rates = 0.0_c_double
-         energies = 0.0_c_double
-         counts = 0
-         measures = 0.0_c_double
-         bounces = 0
-         airborne = 0.0_c_double
-         settled = 0.0_c_double
-         contact_body = 0
-         contact = 0.0_c_double
-         status = status_out_of_memory
-         allocate (it, stat=failed)
-         if (failed /= 0) return
-         call body_set_new(centroid, mass, inertia, owner, first, vertex, outer, it%set, status)
-         if (status /= status_ok) return
-         status = status_out_of_memory
-         allocate (it%law(nlaw), it%load%move(nmove), it%contacts%law_first(nb + 1), &
-            it%contacts%law_body(ntable), it%contacts%law_number(ntable), stat=failed)
-         if (failed /= 0) return
+      type(built_model), pointer :: made
+      time = 0.0_c_double
+      place = 0.0_c_double
+      rate = 0.0_c_double
+      energy = 0.0_c_double
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(made%record)) then
          status = status_invalid_argument
-         if (any(table_law < 1) .or. any(table_law > nlaw) .or. table_first(nb + 1) > ntable + 1) return
-         do k = 1, nlaw
-            it%law(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k), law(5, k), law(6, k))
-         end do
-         it%contacts%law_first(:) = table_first
-         it%contacts%law_body(:) = table_body
-         it%contacts%law_number(:) = table_law
-         do k = 1, nmove
-            it%load%move(k) = support_move(int(move_body(k)), move(1:3, k), move(4, k), move(5, k))
-         end do
-         it%set%item%x = it%set%item%x + start_shift(1, :)
-         it%set%item%y = it%set%item%y + start_shift(2, :)
-         it%set%item%angle = start_shift(3, :)
-         call body_turn(it%set%item)
-         it%set%item%vx = start_rate(1, :)
-         it%set%item%vy = start_rate(2, :)
-         it%set%item%spin = start_rate(3, :)
-         it%load%gravity = gravity
-         it%load%moving_base = moving_base /= 0
-         if (sampled /= 0) then
-            it%load%ground = signal_sampled(start, step, values, scale)
-         else
-            it%load%ground = signal_piecewise(edges, lines(:, :, 1:nbreak - 1), sines(:, :, :, 1:nbreak - 1), scale)
+         if (nb == size(made%set%item) .and. nt <= made%record%points .and. dem_energy_count == size(energy, 1)) then
+            status = status_ok
+            time = made%record%time(1:nt)
+            place = made%record%place(:, :, 1:nt)
+            rate = made%record%rate(:, :, 1:nt)
+            energy = made%record%energy(:, 1:nt)
          end if
-         it%mass_damping = mass_damping
-         options = run_options(limits(1), limits(2), limits(3), limits(4), int(settle_steps), limits(5), domain, &
-            limits(6), stop_at_rest /= 0, int(threads))
-         record%wanted => times
-         record%time => reached
-         record%place => places
-         record%rate => rates
-         record%energy => energies
-         call run_model(it, options, record, status)
-         counts(1:8) = [int(record%points, c_int), record%reason, int(record%blamed, c_int), &
-            int(record%settling, c_int), int(record%searches, c_int), &
-            int(max(record%most_pairs, it%contacts%pairs), c_int), &
-            int(it%steps, c_int)]
-         measures = [record%least_step, record%critical, record%stop_time, record%residual]
-         bounces = int(it%set%item%bounces, c_int)
-         airborne = it%set%item%airborne
-         settled(1, :) = it%set%item%rest_x
-         settled(2, :) = it%set%item%rest_y
-         settled(3, :) = it%set%item%rest_angle
-         call last_contacts(it)
-      end subroutine with_targets
+      end if
+      call handle_leave(handle)
+   end subroutine history
 
-      !> Contact points that are closed at the end
-      subroutine last_contacts(it)
-         type(model), intent(in) :: it
-         type(overlap) :: now
-         integer :: k, i, n
-         real(c_double) :: normal, shear
-         n = 0
-         do k = 1, it%contacts%pairs
-            associate (pair => it%contacts%pair(k))
-               call measure(pair, it%set%item(pair%bodies(1)), it%set%item(pair%bodies(2)), now)
-               do i = 1, 2
-                  if (.not. pair%point(i)%closed .or. n == room) cycle
-                  n = n + 1
-                  normal = pair%point(i)%spring_n + pair%point(i)%dash_n
-                  shear = pair%point(i)%spring_s + pair%point(i)%dash_s
-                  contact_body(:, n) = int(pair%bodies, c_int)
-                  contact(:, n) = [now%x(i), now%y(i), normal * now%ty(i) + shear * now%tx(i), &
-                     shear * now%ty(i) - normal * now%tx(i), normal, shear]
-               end do
+   !> The bodies at the end of the last run
+   subroutine bodies(handle, nb, settled, bounces, airborne, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument, status_not_ready
+      use dem_handle, only : built_model, built_model_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nb                        !! bodies
+      real(c_double), intent(out) :: settled(3, nb)           !! place after settling: x, y [m], rotation [rad]
+      integer(c_int), intent(out) :: bounces(nb)              !! times contact was lost
+      real(c_double), intent(out) :: airborne(nb)             !! [s]
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      settled = 0.0_c_double
+      bounces = 0
+      airborne = 0.0_c_double
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(made%record)) then
+         status = status_invalid_argument
+         if (nb == size(made%it%set%item)) then
+            status = status_ok
+            associate (item => made%it%set%item)
+               settled(1, :) = item%rest_x
+               settled(2, :) = item%rest_y
+               settled(3, :) = item%rest_angle
+               bounces = int(item%bounces, c_int)
+               airborne = item%airborne
             end associate
-         end do
-         counts(9) = int(n, c_int)
-      end subroutine last_contacts
+         end if
+      end if
+      call handle_leave(handle)
+   end subroutine bodies
 
-   end subroutine run
+   !> Contact points closed at the end of the last run
+   subroutine contacts(handle, room, body, value, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_not_ready
+      use dem_handle, only : built_model, built_model_take, closed_contacts
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: room                      !! closed contact points, see summary
+      integer(c_int), intent(out) :: body(2, room)
+      !> x, y [m], force on the second body x, y [N], normal, shear [N]
+      real(c_double), intent(out) :: value(6, room)
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: made
+      integer :: closed
+      body = 0
+      value = 0.0_c_double
+      call built_model_take(handle, made, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(made%record)) then
+         status = status_ok
+         call closed_contacts(made%it, body, value, closed)
+      end if
+      call handle_leave(handle)
+   end subroutine contacts
 
 end module api_dem

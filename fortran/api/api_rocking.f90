@@ -1,134 +1,126 @@
-!> Rocking responses: one with its history, or many.
-!>
-!> Motions come as one set of flat arrays, see rocking_ensemble's motion_set.
+!> Rocking responses: one with its history, or many. Structures and motions come as handles.
 module api_rocking
-   use, intrinsic :: iso_c_binding, only : c_double, c_int
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: history, ensemble
+   public :: create, body, history, ensemble
 
 contains
 
-   !> One run with its history and events
-   subroutine history(kind, np, body, sampled, channels, npoint, start, step, samples, &
-                      nbreak, terms, breaks, linear, harmonic, scale, &
-                      end_time, tolerance, start_side, start_q, start_v, nt, time, room, &
-                      outcome, state, points, event_kind, event, events, summary, work, loss, status)
-      use common_signal, only : signal, signal_sampled, signal_piecewise
+   !> A list with room for `count` structures
+   subroutine create(count, handle, status)
+      use rocking_handle, only : body_list_new
+      integer(c_int), intent(in) :: count
+      integer(c_int64_t), intent(out) :: handle
+      integer(c_int), intent(out) :: status
+      call body_list_new(count, handle, status)
+   end subroutine create
+
+   !> One structure of a list
+   subroutine body(handle, number, kind, np, parameters, status)
+      use common_handles, only : handle_leave
       use common_status, only : status_ok
-      use rocking_ensemble, only : make_body
+      use rocking_ensemble, only : body_list
+      use rocking_handle, only : body_list_take, set_body
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: number              !! 1-based
+      integer(c_int), intent(in) :: kind                !! rocking_body of extrados_lists.h
+      integer(c_int), intent(in) :: np
+      real(c_double), intent(in) :: parameters(np)      !! see the kind's module
+      integer(c_int), intent(out) :: status
+      type(body_list), pointer :: list
+      call body_list_take(handle, .true., list, status)
+      if (status /= status_ok) return
+      call set_body(list, number, kind, parameters, status)
+      call handle_leave(handle)
+   end subroutine body
+
+   !> One structure under one motion, with its history and events
+   subroutine history(bodies, motions, member, scale, end_time, tolerance, start, nt, time, room, &
+                      counts, measures, state, event_kind, event, status)
+      use common_handles, only : handle_leave
+      use common_motion_set, only : motion_set, motion_set_take, motion_signal
+      use common_signal, only : signal
+      use common_status, only : status_ok
+      use rocking_ensemble, only : body_list, list_body
+      use rocking_handle, only : body_list_take
       use rocking_response, only : respond, response, response_options, response_history
       use rocking_rocker, only : rocker
-      integer(c_int), intent(in) :: kind                    !! of structure
-      integer(c_int), intent(in) :: np                      !! length of its parameter list
-      real(c_double), intent(in) :: body(np)
-      integer(c_int), intent(in) :: sampled                 !! 1: samples, 0: pieces
-      integer(c_int), intent(in) :: channels                !! 1 horizontal, 2 with vertical
-      integer(c_int), intent(in) :: npoint
-      real(c_double), intent(in) :: start                   !! [s]
-      real(c_double), intent(in) :: step                    !! [s]
-      real(c_double), intent(in) :: samples(channels, npoint)  !! [m/s^2]
-      integer(c_int), intent(in) :: nbreak
-      integer(c_int), intent(in) :: terms
-      real(c_double), intent(in) :: breaks(nbreak)          !! [s]
-      real(c_double), intent(in) :: linear(2, channels, nbreak)
-      real(c_double), intent(in) :: harmonic(4, terms, channels, nbreak)
+      integer(c_int64_t), intent(in) :: bodies
+      integer(c_int64_t), intent(in) :: motions
+      integer(c_int), intent(in) :: member(2)               !! structure and motion, 1-based
       real(c_double), intent(in) :: scale
       real(c_double), intent(in) :: end_time                !! [s]
       real(c_double), intent(in) :: tolerance
-      integer(c_int), intent(in) :: start_side              !! +1 or -1
-      real(c_double), intent(in) :: start_q                 !! [rad]
-      real(c_double), intent(in) :: start_v                 !! [rad/s]
+      real(c_double), intent(in) :: start(3)                !! side (+1 or -1), rotation [rad], rate [rad/s]
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: time(nt)                !! output times [s]
       integer(c_int), intent(in) :: room                    !! for events
-      integer(c_int), intent(out) :: outcome(6)             !! outcome, half cycles, impacts, steps, rejected, settled
+      !> outcome, half cycles, impacts, steps, rejected, settled, output times reached, events (may exceed room)
+      integer(c_int), intent(out) :: counts(8)
+      real(c_double), intent(out) :: measures(5)            !! peak [rad], peak ratio, stop time [s], work, loss [J]
       real(c_double), intent(out) :: state(8, nt)           !! see response_history
-      integer(c_int), intent(out) :: points                 !! output times reached
       integer(c_int), intent(out) :: event_kind(room)
       real(c_double), intent(out) :: event(2, room)
-      integer(c_int), intent(out) :: events                 !! found, may exceed room
-      real(c_double), intent(out) :: summary(3)             !! peak [rad], peak ratio, stop time [s]
-      real(c_double), intent(out) :: work                   !! of the ground [J]
-      real(c_double), intent(out) :: loss                   !! at impacts [J]
       integer(c_int), intent(out) :: status
       !f2py threadsafe
-      call with_targets(body, samples, breaks, linear, harmonic, time, state, event_kind, event)
+      call with_targets(time, state, event_kind, event)
 
    contains
 
       !> The arrays as pointer targets for the length of the call
-      subroutine with_targets(parameters, values, edges, lines, sines, times, states, kinds, happened)
-         real(c_double), intent(in) :: parameters(:)
-         real(c_double), intent(in), target, contiguous :: values(:, :), edges(:), lines(:, :, :)
-         real(c_double), intent(in), target, contiguous :: sines(:, :, :, :)
+      subroutine with_targets(times, states, kinds, happened)
          real(c_double), intent(in), target, contiguous :: times(:)
          real(c_double), intent(out), target, contiguous :: states(:, :), happened(:, :)
          integer(c_int), intent(out), target, contiguous :: kinds(:)
          class(rocker), allocatable :: structure
+         type(body_list), pointer :: list
+         type(motion_set), pointer :: set
          type(signal) :: ground
          type(response) :: answer
          type(response_history) :: record
 
-         outcome = 0
+         counts = 0
+         measures = 0.0_c_double
          states = 0.0_c_double
          kinds = 0
          happened = 0.0_c_double
-         points = 0
-         events = 0
-         summary = 0.0_c_double
-         work = 0.0_c_double
-         loss = 0.0_c_double
-         call make_body(kind, parameters, structure, status)
+         call body_list_take(bodies, .false., list, status)
          if (status /= status_ok) return
-         if (sampled /= 0) then
-            ground = signal_sampled(start, step, values, scale)
-         else
-            ground = signal_piecewise(edges, lines(:, :, 1:nbreak - 1), sines(:, :, :, 1:nbreak - 1), scale)
+         call list_body(list, member(1), structure, status)
+         call handle_leave(bodies)
+         if (status /= status_ok) return
+         call motion_set_take(motions, .false., set, status)
+         if (status /= status_ok) return
+         call motion_signal(set, member(2), scale, ground, status)
+         if (status == status_ok) then
+            record%time => times
+            record%state => states
+            record%event_kind => kinds
+            record%event => happened
+            call respond(structure, ground, response_options(end_time=end_time, tolerance=tolerance, &
+               start_q=start(2), start_v=start(3), start_side=merge(1, -1, start(1) > 0.0_c_double)), answer, status, &
+               record)
+            counts = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected, &
+               merge(1_c_int, 0_c_int, answer%settled), int(record%points, c_int), int(record%events, c_int)]
+            measures = [answer%peak, answer%peak_ratio, answer%stop_time, record%work, record%loss]
          end if
-         record%time => times
-         record%state => states
-         record%event_kind => kinds
-         record%event => happened
-         call respond(structure, ground, response_options(end_time=end_time, tolerance=tolerance, &
-            start_q=start_q, start_v=start_v, start_side=int(start_side)), answer, status, record)
-         outcome = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected, &
-            merge(1_c_int, 0_c_int, answer%settled)]
-         summary = [answer%peak, answer%peak_ratio, answer%stop_time]
-         points = int(record%points, c_int)
-         events = int(record%events, c_int)
-         work = record%work
-         loss = record%loss
+         call handle_leave(motions)
       end subroutine with_targets
 
    end subroutine history
 
    !> Many runs without histories; run_status tells each member's fate
-   subroutine ensemble(nbody, np, kind, bodies, nmotion, channels, terms, npoint, nbreak, sampled, first, segments, &
-                       start, step, samples, breaks, linear, harmonic, nrun, run_body, run_motion, run_scale, &
-                       end_time, start_q, tolerance, stop_when_safe, threads, outcome, peak, stop_time, &
-                       run_status, status)
-      use rocking_ensemble, only : run_ensemble, motion_set
+   subroutine ensemble(bodies, motions, nrun, run_body, run_motion, run_scale, end_time, start_q, &
+                       tolerance, stop_when_safe, threads, outcome, peak, stop_time, run_status, status)
+      use common_handles, only : handle_leave
+      use common_motion_set, only : motion_set, motion_set_take
+      use common_status, only : status_ok, status_out_of_memory
+      use rocking_ensemble, only : body_list, run_ensemble
+      use rocking_handle, only : body_list_take
       use rocking_response, only : response, response_options
-      use common_status, only : status_out_of_memory
-      integer(c_int), intent(in) :: nbody
-      integer(c_int), intent(in) :: np
-      integer(c_int), intent(in) :: kind(nbody)
-      real(c_double), intent(in) :: bodies(np, nbody)
-      integer(c_int), intent(in) :: nmotion
-      integer(c_int), intent(in) :: channels
-      integer(c_int), intent(in) :: terms
-      integer(c_int), intent(in) :: npoint
-      integer(c_int), intent(in) :: nbreak
-      integer(c_int), intent(in) :: sampled(nmotion)
-      integer(c_int), intent(in) :: first(nmotion)          !! 1-based
-      integer(c_int), intent(in) :: segments(nmotion)
-      real(c_double), intent(in) :: start(nmotion)          !! [s]
-      real(c_double), intent(in) :: step(nmotion)           !! [s]
-      real(c_double), intent(in) :: samples(channels, npoint)  !! [m/s^2]
-      real(c_double), intent(in) :: breaks(nbreak)          !! [s]
-      real(c_double), intent(in) :: linear(2, channels, nbreak)
-      real(c_double), intent(in) :: harmonic(4, terms, channels, nbreak)
+      integer(c_int64_t), intent(in) :: bodies
+      integer(c_int64_t), intent(in) :: motions
       integer(c_int), intent(in) :: nrun
       integer(c_int), intent(in) :: run_body(nrun)          !! 1-based
       integer(c_int), intent(in) :: run_motion(nrun)        !! 1-based
@@ -143,30 +135,23 @@ contains
       real(c_double), intent(out) :: stop_time(nrun)        !! [s]
       integer(c_int), intent(out) :: run_status(nrun)
       integer(c_int), intent(out) :: status
+      type(response), allocatable :: answers(:)
+      type(response_options), allocatable :: options(:)
+      type(body_list), pointer :: list
+      type(motion_set), pointer :: set
+      integer :: k, failed
       !f2py threadsafe
-      call with_targets(sampled, first, segments, start, step, samples, breaks, linear, harmonic)
-
-   contains
-
-      subroutine with_targets(forms, firsts, counts, starts, steps, values, edges, lines, sines)
-         integer(c_int), intent(in), target, contiguous :: forms(:), firsts(:), counts(:)
-         real(c_double), intent(in), target, contiguous :: starts(:), steps(:), values(:, :), edges(:)
-         real(c_double), intent(in), target, contiguous :: lines(:, :, :), sines(:, :, :, :)
-         type(motion_set) :: set
-         type(response), allocatable :: answers(:)
-         type(response_options), allocatable :: options(:)
-         integer :: k, stat
-
-         outcome = 0
-         peak = 0.0_c_double
-         stop_time = 0.0_c_double
-         run_status = 0
-         allocate (answers(nrun), options(nrun), stat=stat)
-         if (stat /= 0) then
-            status = status_out_of_memory
-            return
-         end if
-         set = motion_set(forms, firsts, counts, starts, steps, values, edges, lines, sines)
+      outcome = 0
+      peak = 0.0_c_double
+      stop_time = 0.0_c_double
+      run_status = 0
+      status = status_out_of_memory
+      allocate (answers(nrun), options(nrun), stat=failed)
+      if (failed /= 0) return
+      call body_list_take(bodies, .false., list, status)
+      if (status /= status_ok) return
+      call motion_set_take(motions, .false., set, status)
+      if (status == status_ok) then
          do k = 1, nrun
             options(k)%end_time = end_time(k)
             options(k)%start_q = abs(start_q(k))
@@ -174,16 +159,16 @@ contains
             options(k)%tolerance = tolerance
             options(k)%stop_when_safe = stop_when_safe /= 0
          end do
-         call run_ensemble(kind, bodies, set, run_body, run_motion, run_scale, options, threads, answers, &
-            run_status, status)
+         call run_ensemble(list, set, run_body, run_motion, run_scale, options, threads, answers, run_status, status)
          do k = 1, nrun
             outcome(:, k) = [answers(k)%outcome, answers(k)%half_cycles, answers(k)%impacts, answers(k)%steps, &
                merge(1_c_int, 0_c_int, answers(k)%settled)]
             peak(:, k) = [answers(k)%peak, answers(k)%peak_ratio]
             stop_time(k) = answers(k)%stop_time
          end do
-      end subroutine with_targets
-
+         call handle_leave(motions)
+      end if
+      call handle_leave(bodies)
    end subroutine ensemble
 
 end module api_rocking

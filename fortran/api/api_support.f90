@@ -1,25 +1,41 @@
-!> Status list, cancel flag, library versions.
+!> Lists of names and numbers, handles, cancel flag, library versions.
 module api_support
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: status_entry, set_cancel, init_libraries, cholmod_version, random_phases
+   public :: list_entry, close_handle, handle_count, set_cancel, init_libraries, cholmod_version, random_phases
 
 contains
 
-   !> Entry of the status list; found = 0 past its end
-   subroutine status_entry(position, found, code, name, text)
-      use common_c_bindings, only : extrados_status_entry
+   !> Entry of the lists of c/include/extrados_lists.h, one behind the other; found = 0 past the end
+   subroutine list_entry(position, found, code, name, text)
+      use common_c_bindings, only : extrados_list_entry
       integer(c_int), intent(in) :: position    !! 0-based
       integer(c_int), intent(out) :: found
       integer(c_int), intent(out) :: code
-      character(len=64), intent(out) :: name
+      character(len=64), intent(out) :: name    !! LIST.NAME
       character(len=128), intent(out) :: text
       code = 0
       name = ' '
       text = ' '
-      found = extrados_status_entry(position, code, 64_c_int, name, 128_c_int, text)
-   end subroutine status_entry
+      found = extrados_list_entry(position, code, 64_c_int, name, 128_c_int, text)
+   end subroutine list_entry
+
+   !> Destroy the object behind a handle; while a call uses it: status busy, or with later = 1 when that call ends
+   subroutine close_handle(handle, later, status)
+      use common_handles, only : handle_close
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: later
+      integer(c_int), intent(out) :: status
+      call handle_close(handle, later /= 0, status)
+   end subroutine close_handle
+
+   !> Number of objects that live in the core
+   subroutine handle_count(number)
+      use common_c_bindings, only : extrados_handle_count
+      integer(c_int), intent(out) :: number
+      number = extrados_handle_count()
+   end subroutine handle_count
 
    !> Ask the running loops to stop (1), or clear the flag (0)
    subroutine set_cancel(value)

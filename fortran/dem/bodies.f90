@@ -74,7 +74,7 @@ contains
       real(wp) :: area, dx, dy
 
       status = status_invalid_argument
-      if (any(owner < 1) .or. any(owner > size(mass)) .or. first(1) /= 1) return
+      if (any(owner < 1) .or. any(owner > size(mass)) .or. first(1) /= 1 .or. any(first > size(vertex, 2) + 1)) return
       if (first(size(first)) /= size(vertex, 2) + 1) return
       allocate (set%item(size(mass)), set%parts(size(owner)), set%edges(size(vertex, 2)), stat=failed)
       if (failed /= 0) then

@@ -1,9 +1,26 @@
 !> The force at a contact point: a spring that knows no tension, Coulomb friction on a shear spring,
 !> and dashpots in parallel with both, proportional to their stiffness.
 !>
-!> The dashpots are taken implicitly (backward Euler), so that they do not shorten the stable step:
-!> every point solves for the dashpot force that fits the velocity after the step, given what the
-!> points before it in the sweep have decided and what those behind it did in the last step. One
+!> With the normal n from body 1 to body 2, the tangent t, the gap g (negative where bodies overlap), the velocity
+!> u' of body 2 relative to body 1 and the length l of joint that the point carries (half of a joint with two
+!> points: thesis Eq. 7.12, with k_n its k_j in Pa/m times the depth):
+!>
+!>    N  = -k_n l g                        total, so that no drift can gather (Cundall and Strack 1979)
+!>    S += -k_s l u_t' dt,   |S| <= mu N + c l
+!>    D  = -beta k l u'                    in both directions: C = beta K at the contacts, thesis Eq. 7.1
+!>
+!> on body 2, the opposite on body 1. mu is the coefficient of friction; cohesion c and tensile strength f_t of
+!> mortar (N >= -f_t l) are lost at the first failure in shear or tension. A dashpot acts while the point is closed,
+!> in shear while it sticks, and leaves N + D >= 0 (>= -f_t l). beta follows from the damping ratio at a frequency
+!> by thesis Eq. 7.17. The normal force does not depend on the sliding (no dilatancy, thesis 7.2).
+!>
+!> The dashpots are taken implicitly (backward Euler; our own), so that they do not shorten the stable step: with
+!> u* the velocity after the step without the new dashpot force and w = n.(M1^-1 + M2^-1) n the velocity that a unit
+!> impulse gives,
+!>
+!>    D = -beta k l (u* + dt w D)   =>   D = -beta k l u* / (1 + beta k l dt w).
+!>
+!> u* holds what the points before it in the sweep have decided and what those behind it did in the last step. One
 !> sweep is one block Gauss-Seidel iteration, warm-started; its fixed point is the implicit equation.
 module dem_law
    use common_kinds, only : wp
@@ -70,13 +87,14 @@ contains
                if (.not. point%closed) call close_point(it, now%width, point)
                stiff_n = law%normal_stiffness * point%length
                stiff_s = law%shear_stiffness * point%length
-               spring_n = -stiff_n * now%gap(i)
+               spring_n = -stiff_n * now%gap(i)                      ! N
                trial = point%spring_s - stiff_s * u_t * drift
 
-               ! Predicted velocity after the elastic forces, then the implicit dashpots.
+               ! Velocity by a unit impulse at the point, along n, t, and across: w.
                w_nn = a%inverse_mass + b%inverse_mass + a%inverse_inertia * a_n**2 + b%inverse_inertia * b_n**2
                w_tt = a%inverse_mass + b%inverse_mass + a%inverse_inertia * a_t**2 + b%inverse_inertia * b_t**2
                w_nt = a%inverse_inertia * a_n * a_t + b%inverse_inertia * b_n * b_t
+               ! u*: the predicted velocity and what the changes of both springs add; then D of the normal dashpot.
                ux = b%px - a%px
                uy = b%py - a%py
                d_n = spring_n - point%spring_n
@@ -85,11 +103,13 @@ contains
                d_s = max(-bound, min(bound, trial + point%dash_s)) - old_s
                dash_n = ux * nx + uy * ny + b%pspin * b_n - a%pspin * a_n + kick * (w_nn * d_n + w_nt * d_s)
                viscous = law%damping * stiff_n
+               ! The predicted velocity held the old dashpot force: u* is without it.
                dash_n = -viscous * (dash_n - kick * w_nn * point%dash_n) / (1.0_wp + viscous * kick * w_nn)
                ! A dashpot never pulls more than the mortar can bear.
                normal = spring_n + dash_n
                normal = max(normal, merge(-law%tension * point%length, 0.0_wp, point%bonded))
                dash_n = normal - spring_n
+               ! The same for the shear dashpot, now that the normal force is known.
                d_n = normal - old_n
                d_s = trial - point%spring_s
                dash_s = ux * tx + uy * ty + b%pspin * b_t - a%pspin * a_t + kick * (w_tt * d_s + w_nt * d_n)
@@ -115,7 +135,7 @@ contains
                   shear = max(-bound, min(bound, trial + dash_s))
                end if
                dash_s = shear - spring_s
-            else
+            else   ! the point opens: what its springs held is lost
                point%friction_loss = point%friction_loss + 0.5_wp * (point%spring_s**2 / law%shear_stiffness &
                   + min(point%spring_n, 0.0_wp)**2 / law%normal_stiffness) / point%length
                point%closed = .false.
@@ -189,7 +209,7 @@ contains
          + shear * (it%vx * tx + it%vy * ty + it%spin * arm_t)
    end function power
 
-   !> A point closes: it carries half of the common stretch, but never a sliver
+   !> A point closes: it carries half of the common stretch (thesis Eq. 7.12), but never a sliver
    pure subroutine close_point(it, width, point)
       type(contact_pair), intent(in) :: it
       real(wp), intent(in) :: width             !! of the overlap [m]
@@ -199,7 +219,7 @@ contains
       point%length = 0.5_wp * max(width, sliver * min(it%reference_length, it%incident_length))
    end subroutine close_point
 
-   !> Energy in the springs of a pair [J]
+   !> Energy in the springs of a pair: (N^2 / k_n + S^2 / k_s) / (2 l), summed over its points [J]
    pure function elastic_energy(law, it) result(energy)
       type(joint_law), intent(in) :: law
       type(contact_pair), intent(in) :: it

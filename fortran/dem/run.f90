@@ -2,7 +2,12 @@
 module dem_run
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
-   use common_status, only : status_ok, status_cancelled, status_not_finite
+   use common_lists, only : dem_energy_count, dem_energy_kinetic, dem_energy_potential, dem_energy_elastic, &
+      dem_energy_friction, dem_energy_damping, dem_energy_mass_damping, dem_energy_work, dem_energy_residual, &
+      dem_energy_leapfrog, stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, stop_rest => dem_stop_rest, &
+      stop_left => dem_stop_left, stop_blow_up => dem_stop_blow_up, stop_step => dem_stop_step, &
+      stop_unsettled => dem_stop_unsettled, stop_overlap => dem_stop_overlap
+   use common_status, only : status_ok, status_cancelled, status_not_finite, status_out_of_memory
    use dem_contacts, only : contact_pair, overlap, search, measure
    use dem_energy, only : energy_now, energy_terms
    use dem_loading, only : movement_end
@@ -10,18 +15,7 @@ module dem_run
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: run_options, run_record, run_model
-   public :: stop_end, stop_collapse, stop_rest, stop_left, stop_blow_up, stop_step, stop_unsettled, stop_overlap
-
-   !> Why a run ended
-   integer(c_int), parameter :: stop_end = 0         !! end time reached
-   integer(c_int), parameter :: stop_collapse = 1    !! a body moved farther than the collapse limit
-   integer(c_int), parameter :: stop_rest = 2        !! nothing moves any more
-   integer(c_int), parameter :: stop_left = 3        !! a body left the domain
-   integer(c_int), parameter :: stop_blow_up = 4     !! the energy ledger does not close
-   integer(c_int), parameter :: stop_step = 5        !! the step asked for is above the critical one
-   integer(c_int), parameter :: stop_unsettled = 6   !! no rest under gravity
-   integer(c_int), parameter :: stop_overlap = 7     !! bodies overlap at the start
+   public :: run_options, run_record, run_record_new, run_model
 
    type :: run_options
       real(wp) :: end_time = 0.0_wp          !! [s]
@@ -36,15 +30,16 @@ module dem_run
       integer :: threads = 1
    end type run_options
 
+   !> What a run leaves. The reason is one of the list dem_stop
    type :: run_record
-      real(wp), pointer, contiguous :: wanted(:) => null()        !! (nt) output times [s]
-      real(wp), pointer, contiguous :: time(:) => null()          !! (nt) times of the nearest steps [s]
-      real(wp), pointer, contiguous :: place(:, :, :) => null()   !! (3, bodies, nt): x, y [m], rotation [rad]
-      real(wp), pointer, contiguous :: rate(:, :, :) => null()    !! (3, bodies, nt), relative to the ground
-      real(wp), pointer, contiguous :: energy(:, :) => null()     !! (9, nt), see energy_terms
+      real(wp), allocatable :: wanted(:)        !! (nt) output times [s]
+      real(wp), allocatable :: time(:)          !! (nt) times of the nearest steps [s]
+      real(wp), allocatable :: place(:, :, :)   !! (3, bodies, nt): x, y [m], rotation [rad]
+      real(wp), allocatable :: rate(:, :, :)    !! (3, bodies, nt), relative to the ground
+      real(wp), allocatable :: energy(:, :)     !! (dem_energy_count, nt) [J]
       integer :: points = 0
       integer(c_int) :: reason = stop_end
-      integer :: blamed(2) = 0               !! bodies that the reason is about
+      integer :: blamed(2) = 0               !! bodies that caused the stop, 0 none
       integer :: settling = 0                !! steps it took
       integer :: searches = 0
       integer :: most_pairs = 0
@@ -57,6 +52,19 @@ module dem_run
    integer, parameter :: watch = 64          !! steps between two looks at limits
 
 contains
+
+   !> A record for `bodies` bodies at the times `wanted`
+   subroutine run_record_new(bodies, wanted, record, status)
+      integer, intent(in) :: bodies
+      real(wp), intent(in) :: wanted(:)              !! [s]
+      type(run_record), intent(out) :: record
+      integer(c_int), intent(out) :: status
+      integer :: failed
+      allocate (record%wanted(size(wanted)), record%time(size(wanted)), record%place(3, bodies, size(wanted)), &
+         record%rate(3, bodies, size(wanted)), record%energy(dem_energy_count, size(wanted)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed == 0) record%wanted(:) = wanted
+   end subroutine run_record_new
 
    !> Run a model; what was recorded up to a stop is valid
    subroutine run_model(it, options, record, status)
@@ -318,8 +326,15 @@ contains
                - (it%base_place - it%drift * it%base)
             record%rate(1:2, k, record%points) = record%rate(1:2, k, record%points) - it%base
          end do
-         record%energy(:, record%points) = [now%kinetic, now%potential, now%elastic, now%friction, now%damping, &
-                                            now%mass_damping, now%work, now%residual(start), now%leapfrog]
+         record%energy(dem_energy_kinetic, record%points) = now%kinetic
+         record%energy(dem_energy_potential, record%points) = now%potential
+         record%energy(dem_energy_elastic, record%points) = now%elastic
+         record%energy(dem_energy_friction, record%points) = now%friction
+         record%energy(dem_energy_damping, record%points) = now%damping
+         record%energy(dem_energy_mass_damping, record%points) = now%mass_damping
+         record%energy(dem_energy_work, record%points) = now%work
+         record%energy(dem_energy_residual, record%points) = now%residual(start)
+         record%energy(dem_energy_leapfrog, record%points) = now%leapfrog
       end subroutine write_down
 
    end subroutine shake

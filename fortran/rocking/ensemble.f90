@@ -2,8 +2,12 @@
 module rocking_ensemble
    use common_kinds, only : wp
    use common_cancel, only : cancel_requested
-   use common_signal, only : signal, signal_sampled, signal_piecewise
-   use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_out_of_memory
+   use common_lists, only : body_arch => rocking_body_arch, body_block => rocking_body_block, &
+      body_table => rocking_body_table
+   use common_motion_set, only : motion_set, motion_signal
+   use common_signal, only : signal
+   use common_status, only : status_ok, status_bad_index, status_cancelled, status_invalid_argument, &
+      status_not_ready, status_out_of_memory
    use rocking_arch_rocker, only : arch_rocker, arch_rocker_new
    use rocking_block_rocker, only : block_rocker, block_rocker_new
    use rocking_response, only : respond, response, response_options
@@ -12,10 +16,7 @@ module rocking_ensemble
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: motion_set, body_arch, body_block, body_table, make_body, make_motion, run_ensemble
-
-   !> Kinds of rocking structure, as the facades number them
-   integer(c_int), parameter :: body_arch = 1, body_block = 2, body_table = 3
+   public :: body_data, body_list, list_body, run_ensemble
 
    !> Room for one structure of any kind
    type :: any_body
@@ -23,38 +24,17 @@ module rocking_ensemble
       integer(c_int) :: status = status_ok
    end type any_body
 
-   !> Ground motions stored one behind the other in flat arrays
-   type :: motion_set
-      integer(c_int), pointer, contiguous :: sampled(:) => null()   !! 1: samples, 0: pieces
-      integer(c_int), pointer, contiguous :: first(:) => null()     !! first sample or break, 1-based
-      integer(c_int), pointer, contiguous :: segments(:) => null()  !! number of segments
-      real(wp), pointer, contiguous :: start(:) => null()           !! [s], sampled motions
-      real(wp), pointer, contiguous :: step(:) => null()            !! [s], sampled motions
-      real(wp), pointer, contiguous :: samples(:, :) => null()      !! (channels, points) [m/s^2]
-      real(wp), pointer, contiguous :: breaks(:) => null()          !! [s]
-      !> (2, channels, breaks): the entry of a motion's last break is not used
-      real(wp), pointer, contiguous :: linear(:, :, :) => null()
-      real(wp), pointer, contiguous :: harmonic(:, :, :, :) => null()  !! (4, terms, channels, breaks)
-   end type motion_set
+   !> A rocking structure as it was given: its kind and its flat parameter list
+   type :: body_data
+      integer(c_int) :: kind = 0
+      real(wp), allocatable :: parameters(:)
+   end type body_data
+
+   type :: body_list
+      type(body_data), allocatable :: item(:)
+   end type body_list
 
 contains
-
-   !> Motion k of the set, scaled
-   function make_motion(set, k, scale) result(ground)
-      type(motion_set), intent(in) :: set
-      integer, intent(in) :: k
-      real(wp), intent(in) :: scale
-      type(signal) :: ground
-      integer :: first, last
-      first = set%first(k)
-      last = first + set%segments(k)
-      if (set%sampled(k) /= 0) then
-         ground = signal_sampled(set%start(k), set%step(k), set%samples(:, first:last), scale)
-      else
-         ground = signal_piecewise(set%breaks(first:last), set%linear(:, :, first:last - 1), &
-            set%harmonic(:, :, :, first:last - 1), scale)
-      end if
-   end function make_motion
 
    !> A rocking structure from its flat parameter list
    subroutine make_body(kind, parameters, body, status)
@@ -97,12 +77,24 @@ contains
       end select
    end subroutine make_body
 
+   !> Structure `number` of a list
+   subroutine list_body(list, number, body, status)
+      type(body_list), intent(in) :: list
+      integer(c_int), intent(in) :: number           !! 1-based
+      class(rocker), allocatable, intent(out) :: body
+      integer(c_int), intent(out) :: status          !! not_ready where it was not given yet
+      status = status_bad_index
+      if (number < 1 .or. number > size(list%item)) return
+      status = status_not_ready
+      if (.not. allocated(list%item(number)%parameters)) return
+      call make_body(list%item(number)%kind, list%item(number)%parameters, body, status)
+   end subroutine list_body
+
    !> Run all members; the result of a member does not depend on the others or on the threads
-   subroutine run_ensemble(kind, bodies, set, run_body, run_motion, run_scale, options, threads, &
+   subroutine run_ensemble(bodies, set, run_body, run_motion, run_scale, options, threads, &
                            answers, run_status, status)
-      integer(c_int), intent(in) :: kind(:)           !! (nbody)
-      real(wp), intent(in) :: bodies(:, :)            !! (parameters, nbody)
-      type(motion_set), intent(in) :: set
+      type(body_list), intent(in) :: bodies
+      type(motion_set), intent(in), target :: set
       integer(c_int), intent(in) :: run_body(:)       !! (nrun), 1-based
       integer(c_int), intent(in) :: run_motion(:)     !! (nrun), 1-based
       real(wp), intent(in) :: run_scale(:)            !! (nrun)
@@ -116,16 +108,18 @@ contains
       integer :: k, stat
 
       run_status = status_cancelled
-      allocate (built(size(kind)), stat=stat)
+      status = status_bad_index
+      if (any(run_body < 1) .or. any(run_body > size(bodies%item))) return
+      allocate (built(size(bodies%item)), stat=stat)
       if (stat /= 0) then
          status = status_out_of_memory
          return
       end if
       !$omp parallel default(none) num_threads(threads) private(k, ground) &
-      !$omp shared(kind, bodies, set, run_body, run_motion, run_scale, options, answers, run_status, built)
+      !$omp shared(bodies, set, run_body, run_motion, run_scale, options, answers, run_status, built)
       !$omp do schedule(dynamic)
-      do k = 1, size(kind)
-         call make_body(kind(k), bodies(:, k), built(k)%it, built(k)%status)
+      do k = 1, size(built)
+         call list_body(bodies, int(k, c_int), built(k)%it, built(k)%status)
       end do
       !$omp end do
       !$omp do schedule(dynamic)
@@ -133,7 +127,8 @@ contains
          if (cancel_requested()) cycle
          run_status(k) = built(run_body(k))%status
          if (run_status(k) /= status_ok) cycle
-         ground = make_motion(set, int(run_motion(k)), run_scale(k))
+         call motion_signal(set, run_motion(k), run_scale(k), ground, run_status(k))
+         if (run_status(k) /= status_ok) cycle
          call respond(built(run_body(k))%it, ground, options(k), answers(k), run_status(k))
       end do
       !$omp end do

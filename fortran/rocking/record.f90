@@ -7,9 +7,7 @@ module rocking_record
    implicit none
    private
    public :: response_history, energy_of, barrier_of
-   public :: event_uplift, event_impact, event_peak, event_rest, event_collapse
 
-   integer(c_int), parameter :: event_uplift = 1, event_impact = 2, event_peak = 3, event_rest = 4, event_collapse = 5
 
    !> In the caller's arrays
    type :: response_history

@@ -4,6 +4,10 @@
 !> that the order of the method holds; finds impacts on the dense output and polishes them by repeating the step;
 !> rests explicitly and looks for re-uplift, because free rocking makes infinitely many impacts in finite time.
 module rocking_response
+   use common_lists, only : event_collapse => rocking_event_collapse, event_impact => rocking_event_impact, &
+      event_peak => rocking_event_peak, event_rest => rocking_event_rest, event_uplift => rocking_event_uplift, &
+      outcome_collapse => rocking_outcome_collapse, outcome_no_hinging => rocking_outcome_no_hinging, &
+      outcome_recovery => rocking_outcome_recovery
    use common_kinds, only : wp
    use common_cancel, only : cancel_requested
    use common_dense_step, only : dense_step
@@ -12,18 +16,13 @@ module rocking_response
    use common_status, only : status_ok, status_cancelled, status_too_many_steps, status_step_too_small
    use rocking_crossings, only : impact_fraction, turning_fraction, crossing_fraction
    use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
-   use rocking_record, only : barrier_of, energy_of, event_collapse, event_impact, event_peak, event_rest, &
-      event_uplift, response_history
+   use rocking_record, only : barrier_of, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
    use rocking_uplift, only : find_uplift
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: respond, response, response_options, response_history
-   public :: outcome_no_hinging, outcome_recovery, outcome_collapse
-   public :: event_uplift, event_impact, event_peak, event_rest, event_collapse
-
-   integer(c_int), parameter :: outcome_no_hinging = 0, outcome_recovery = 1, outcome_collapse = 2
 
    type :: response_options
       real(wp) :: end_time = 0.0_wp      !! [s]

@@ -1,10 +1,10 @@
 !> Bars of two nodes with saw-tooth softening, and linear springs.
 module sla_bar
    use common_kinds, only : wp
+   use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, &
-      linear_bound, &
-      code_tension, code_compression
+      linear_bound
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -62,6 +62,7 @@ contains
       group%elements = n
       group%points = n
       group%freedoms = 4
+      group%directions = 1
       group%options = options
       group%teeth = teeth
       allocate (group%gradient(4, n), group%volume(n), group%young(n), group%table(n), group%crush_table(n), &

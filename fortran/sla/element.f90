@@ -1,14 +1,15 @@
 !> Plane elements: shape functions, integration rules, gradients.
 module sla_element
    use common_kinds, only : wp
+   use common_lists, only : element_t3 => sla_element_t3, element_t6 => sla_element_t6, element_q4 => sla_element_q4, &
+      element_q8 => sla_element_q8
    use common_status, only : status_ok, status_invalid_argument, status_bad_geometry
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: element_rule, element_rule_new, shape_functions, element_gradients
-   public :: element_t3, element_t6, element_q4, element_q8, most_nodes, most_points
+   public :: most_nodes, most_points
 
-   integer(c_int), parameter :: element_t3 = 3, element_t6 = 6, element_q4 = 4, element_q8 = 8
    integer, parameter :: most_nodes = 8, most_points = 16
 
    !> Element kind with its integration points

@@ -6,6 +6,9 @@
 module sla_events
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
+   use common_lists, only : stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
+      stop_unbounded => sla_stop_unbounded, stop_all_empty => sla_stop_all_empty, &
+      stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction
    use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
@@ -15,11 +18,6 @@ module sla_events
    implicit none
    private
    public :: run_events, residual, scan_model, stop_rules, event_log, log_reals, log_integers
-   public :: stop_none, stop_mechanism, stop_unbounded, stop_all_empty, stop_displacement, stop_load, stop_fraction
-
-   !> Why a run of events ended
-   integer(c_int), parameter :: stop_none = 0, stop_mechanism = 1, stop_unbounded = 2, stop_all_empty = 3, &
-      stop_displacement = 4, stop_load = 5, stop_fraction = 6
 
    integer, parameter :: log_reals = 9, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
@@ -54,7 +52,7 @@ contains
       integer(c_int), intent(in) :: equation(:)   !! (entries), factor order
       real(wp), intent(in) :: share(:)
       type(event_log), intent(inout) :: log
-      integer(c_int), intent(out) :: reason       !! stop_...
+      integer(c_int), intent(out) :: reason       !! of the list sla_stop
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
       logical :: equilibrium

@@ -11,15 +11,11 @@ module sla_group
    public :: element_group, point_group, group_holder, bound, scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
       report_rows, state_rows
-   public :: code_tension, code_compression, code_close, code_open
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
    integer, parameter :: most_entries = 24, most_rank = 4
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 18
-
-   !> Kinds of event; the code of an event is kind + direction (0 first, 1 second crack direction)
-   integer, parameter :: code_tension = 1, code_compression = 3, code_close = 5, code_open = 7
 
    !> A limit of the load multiplier and the point that sets it
    type :: bound
@@ -73,6 +69,7 @@ module sla_group
    type, abstract, extends(element_group) :: point_group
       integer :: points = 0                !! of the group
       integer :: offset = 0                !! points of the groups before it
+      integer :: directions = 2            !! crack directions of a point; a bar has one
       type(material_options) :: options
    contains
       procedure(scan_interface), deferred :: scan

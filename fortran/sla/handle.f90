@@ -1,29 +1,65 @@
 !> Models behind integers, for callers that cannot hold a derived type.
 module sla_handle
-   use common_status, only : status_ok, status_out_of_memory
-   use sla_model, only : model
-   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_intptr_t, c_loc, c_ptr, c_f_pointer
+   use common_handles, only : handle_new, handle_take, handle_leave
+   use common_lists, only : handle_sla
+   use common_status, only : status_ok, status_bad_index, status_not_ready, status_out_of_memory
+   use sla_model, only : model, model_free
+   use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
-   public :: handle_of, model_of, both_directions
+   public :: model_register, model_destroy, model_take, both_directions, check_nodes
+   public :: stage_new, stage_prepared, stage_factored, stage_loaded
+
+   !> How far a model is built: groups are added to a new one, loads need a factor, events need loads
+   integer, parameter :: stage_new = 0, stage_prepared = 1, stage_factored = 2, stage_loaded = 3
 
 contains
 
-   !> The handle of a model
-   function handle_of(made) result(handle)
-      type(model), pointer, intent(in) :: made
-      integer(c_int64_t) :: handle
-      handle = int(transfer(c_loc(made), 0_c_intptr_t), c_int64_t)
-   end function handle_of
+   !> Hand a model over to the registry
+   subroutine model_register(made, handle, status)
+      type(model), pointer, intent(inout) :: made    !! null after a failure
+      integer(c_int64_t), intent(out) :: handle
+      integer(c_int), intent(out) :: status
+      call handle_new(handle_sla, c_loc(made), c_funloc(model_destroy), handle, status)
+      if (status /= status_ok) deallocate (made)
+   end subroutine model_register
 
-   !> The model of a handle
-   function model_of(handle) result(made)
-      integer(c_int64_t), intent(in) :: handle
+   !> Called by the registry
+   subroutine model_destroy(object) bind(c, name='extrados_sla_destroy')
+      type(c_ptr), value, intent(in) :: object
       type(model), pointer :: made
-      type(c_ptr) :: address
-      address = transfer(int(handle, c_intptr_t), address)
-      call c_f_pointer(address, made)
-   end function model_of
+      call c_f_pointer(object, made)
+      call model_free(made)
+      deallocate (made)
+   end subroutine model_destroy
+
+   !> The model of a handle, for this call alone, until handle_leave; null where the status is not ok
+   subroutine model_take(handle, least, most, made, status)
+      integer(c_int64_t), intent(in) :: handle
+      integer, intent(in) :: least                   !! stage_... it must have reached
+      integer, intent(in) :: most                    !! stage_... it must not have passed
+      type(model), pointer, intent(out) :: made
+      integer(c_int), intent(out) :: status
+      type(c_ptr) :: object
+      made => null()
+      object = c_null_ptr
+      call handle_take(handle, handle_sla, .true., object, status)
+      if (status /= status_ok) return
+      call c_f_pointer(object, made)
+      if (made%stage >= least .and. made%stage <= most) return
+      status = status_not_ready
+      made => null()
+      call handle_leave(handle)
+   end subroutine model_take
+
+   !> Do all entries name a node of the model?
+   pure subroutine check_nodes(made, node, lowest, status)
+      type(model), intent(in) :: made
+      integer(c_int), intent(in) :: node(:, :)       !! 1-based
+      integer(c_int), intent(in) :: lowest           !! 1, or 0 where 0 is the ground
+      integer(c_int), intent(out) :: status
+      status = merge(status_bad_index, status_ok, any(node < lowest) .or. any(node > made%nodes))
+   end subroutine check_nodes
 
    !> Node and direction of each freedom of elements whose nodes move in x and y
    subroutine both_directions(connect, node, direction, status)

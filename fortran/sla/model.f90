@@ -3,8 +3,8 @@
 !> Equations are renumbered once into the order of the factor, so that vectors need no permutation after.
 module sla_model
    use common_kinds, only : wp
-   use common_status, only : status_ok, status_out_of_memory, status_invalid_argument, status_too_large, &
-      status_not_positive_definite
+   use common_status, only : status_ok, status_bad_index, status_out_of_memory, status_invalid_argument, &
+      status_too_large, status_not_positive_definite
    use sla_assembly, only : build_pattern, assemble
    use sla_c_bindings, only : extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, &
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
@@ -15,14 +15,17 @@ module sla_model
    implicit none
    private
    public :: model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
-   public :: model_standing, model_resume, standing_values
+   public :: model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
+   !> No tooth or change of a stored damage has a greater number
+   real(wp), parameter :: most_damage = 1.0e8_wp
    integer, parameter :: standing_values = 27   !! numbers that tell where the event loop stands
    integer, parameter :: chunk = 128   !! elements scanned in one piece, whatever the threads
 
    type :: model
+      integer :: stage = 0                               !! how far it is built, see sla_handle
       integer :: nodes = 0
       integer :: equations = 0
       integer :: points = 0
@@ -30,7 +33,7 @@ module sla_model
       integer(c_int), allocatable :: equation(:, :)      !! (2, nodes), 0 held
       real(wp), allocatable :: factor(:, :)              !! (2, nodes) share of the equation
       type(group_holder), allocatable :: holders(:)
-      type(tooth_tables) :: teeth
+      type(tooth_tables) :: teeth                        !! of the groups that are added next
       type(material_options) :: options
       integer(c_int64_t), allocatable :: start(:), row(:)
       real(wp), allocatable :: value(:)
@@ -104,8 +107,9 @@ contains
       type(group_holder), allocatable :: longer(:)
       integer :: i, e, info
 
-      status = status_invalid_argument
-      if (minval(node) < 0 .or. maxval(node) > made%nodes) return
+      status = status_bad_index
+      if (any(node < 0) .or. any(node > made%nodes)) return
+      if (any((direction < 1 .or. direction > 2) .and. node > 0)) return
       allocate (group%equation(group%freedoms, group%elements), group%factor(group%freedoms, group%elements), &
          longer(size(made%holders) + 1), stat=info)
       if (info /= 0) then
@@ -309,7 +313,12 @@ contains
    subroutine model_resume(made, values, status)
       type(model), intent(inout) :: made
       real(wp), intent(in) :: values(standing_values)
-      integer(c_int), intent(out) :: status
+      integer(c_int), intent(out) :: status      !! invalid_argument: nothing was changed
+      status = status_invalid_argument
+      if (.not. all(abs([values(1:3), values(17:20), values(24:27)]) <= real(huge(1), wp))) return
+      if (.not. (is_point(made, nint(values(1:2))) .and. is_point(made, nint(values(24:25))) .and. &
+         is_point(made, nint(values(26:27))))) return
+      if (nint(values(3)) < 0 .or. nint(values(3)) > 8) return
       made%pending = nint(values(1:3))
       made%lambda = values(4)
       made%noise = values(5)
@@ -331,6 +340,48 @@ contains
       made%event%rank = 0
       call model_solve(made, status)
    end subroutine model_resume
+
+   !> Is this the number of a group and of one of its points, or none?
+   pure function is_point(made, place) result(yes)
+      type(model), intent(in) :: made
+      integer, intent(in) :: place(2)      !! group and point, the group 0: none
+      logical :: yes
+      yes = place(1) == 0
+      if (place(1) < 1 .or. place(1) > size(made%holders)) return
+      select type (group => made%holders(place(1))%group)
+      class is (point_group)
+         yes = place(2) >= 1 .and. place(2) <= group%points
+      end select
+   end function is_point
+
+   !> Put the damage of all points into `values`, or take it from there where it can be true
+   subroutine model_damage(made, store, values, status)
+      type(model), intent(inout) :: made
+      logical, intent(in) :: store
+      real(wp), intent(inout) :: values(:, :)        !! (state_rows, points)
+      integer(c_int), intent(out) :: status          !! invalid_argument: nothing was changed
+      integer :: g
+      status = status_invalid_argument
+      if (.not. store) then
+         if (.not. all(abs(values) <= most_damage)) return
+         if (any(values(4:11, :) < 0.0_wp) .or. any(abs(values(3:, :) - anint(values(3:, :))) > 0.0_wp)) return
+         do g = 1, size(made%holders)
+            select type (group => made%holders(g)%group)
+            class is (point_group)   ! teeth count from 1
+               if (any(values(4:6:2, group%offset + 1:group%offset + group%points) < 1.0_wp)) return
+               if (group%directions < 2) cycle
+               if (any(values(5:7:2, group%offset + 1:group%offset + group%points) < 1.0_wp)) return
+            end select
+         end do
+      end if
+      do g = 1, size(made%holders)
+         select type (group => made%holders(g)%group)
+         class is (point_group)
+            call group%state(store, values(:, group%offset + 1:group%offset + group%points))
+         end select
+      end do
+      status = status_ok
+   end subroutine model_damage
 
    !> Give the factor back
    subroutine model_free(made)

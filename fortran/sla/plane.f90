@@ -7,10 +7,13 @@
 !> The damage of a point is kept per direction: tension tooth, compression tooth, crack shut or open.
 module sla_plane
    use common_kinds, only : wp
+   ! The code of an event is one of these + 0 for the first, + 1 for the second crack direction.
+   use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression, &
+      code_close => sla_event_close, code_open => sla_event_open, element_q4 => sla_element_q4
    use common_status, only : status_ok, status_out_of_memory, status_invalid_argument
    use sla_element, only : element_rule, element_rule_new, element_gradients, most_nodes, most_points
    use sla_group, only : point_group, scan_result, event_vectors, material_options, unbounded, &
-      offer_hi, offer_lo, offer_empty, linear_bound, code_tension, code_compression, code_close, code_open
+      offer_hi, offer_lo, offer_empty, linear_bound
    use sla_interval, only : cone_interval, overload
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
@@ -55,7 +58,7 @@ contains
    !> A group of one element kind; the damage is set to none
    subroutine plane_group_new(kind, nx, ny, selective, xy, connect, thickness, young, nu, table, crush_table, &
                               lateral, axis, axis_angle, teeth, options, group, bad, status)
-      integer(c_int), intent(in) :: kind            !! element_t3 ...
+      integer(c_int), intent(in) :: kind            !! of the list sla_element
       integer(c_int), intent(in) :: nx              !! Gauss points of quadrilaterals
       integer(c_int), intent(in) :: ny
       logical, intent(in) :: selective
@@ -80,7 +83,7 @@ contains
       bad = 0
       call element_rule_new(kind, nx, ny, group%rule, status)
       if (status /= status_ok) return
-      if (selective .and. kind /= 4) then
+      if (selective .and. kind /= element_q4) then
          status = status_invalid_argument
          return
       end if
@@ -133,7 +136,7 @@ contains
       end do
    end subroutine plane_group_new
 
-   !> Stiffness and strengths of a point from its damage
+   !> Stiffness (thesis Eqs 4.9 to 4.11) and strengths of a point from its damage
    pure subroutine refresh(self, p)
       class(plane_group), intent(inout) :: self
       integer, intent(in) :: p

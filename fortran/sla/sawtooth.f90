@@ -3,18 +3,26 @@
 !> A tooth is a secant modulus E_i with the peak stress f_i that ends it. Two recipes: the ripple (Rots,
 !> Belletti, Invernizzi 2008), whose teeth run between two lines at +-p ft about the law, and the
 !> energy-exact teeth, whose peaks lie on the same upper line while each secant carries exactly the energy
-!> of its strain interval. Curves are followed by a parameter x: the total strain, or the crack strain of
-!> Hordijk's law, in which it is explicit.
+!> of its strain interval.
+!>
+!> Laws of a band of width h, energy Gf/h per volume: linear to the ultimate strain 2 Gf / (ft h) (thesis Eq. 4.1);
+!> exponential, ft exp(-(eps - eps_0) / eps_f) with eps_f = Gf / (ft h) - eps_0 / 2; Hordijk (1991), below. Ripple:
+!> tooth i ends at f_i = sigma(eps_i) + p ft and the next begins at f_i - 2 p ft, so E_(i+1) = (f_i - 2 p ft) / eps_i.
+!> Energy-exact (our own): a secant E_1 = f_1 / eps_1 reached from strain eps_0 dissipates
+!> f_1 (eps_1 - eps_0^2 / eps_1) / 2, set equal to the area of the law between them.
+!>
+!> Curves are followed by a parameter x: the total strain, or the crack strain of Hordijk's law, in which it is
+!> explicit.
 module sla_sawtooth
    use common_kinds, only : wp
+   use common_lists, only : law_linear => sla_law_linear, law_exponential => sla_law_exponential, &
+      law_hordijk => sla_law_hordijk
    use common_status, only : status_ok, status_invalid_argument, status_snap_back, status_too_many_steps
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: softening, softening_new, make_teeth, largest_band
-   public :: law_linear, law_exponential, law_hordijk
 
-   integer(c_int), parameter :: law_linear = 1, law_exponential = 2, law_hordijk = 3
    !> Hordijk (1991): (1 + (c1 x)^3) exp(-c2 x) - x (1 + c1^3) exp(-c2), x = crack strain / ultimate
    real(wp), parameter :: c1 = 3.0_wp, c2 = 6.93_wp
    real(wp), parameter :: hordijk_area = 5.136_wp   !! ultimate opening times ft over Gf

@@ -13,6 +13,7 @@ module sla_tables
       real(wp), allocatable :: modulus(:)    !! [Pa]
       real(wp), allocatable :: strength(:)   !! [Pa]
    contains
+      procedure :: tables
       procedure :: modulus_of
       procedure :: strength_of
    end type tooth_tables
@@ -22,9 +23,9 @@ module sla_tables
 contains
 
    !> Tables from rows of (kind, E, ft, Gf, h, p, exact, overshoot)
-   subroutine tooth_tables_new(rows, tables, bad, status)
+   subroutine tooth_tables_new(rows, made, bad, status)
       real(wp), intent(in) :: rows(:, :)        !! (8, tables)
-      type(tooth_tables), intent(out) :: tables
+      type(tooth_tables), intent(out) :: made
       integer(c_int), intent(out) :: bad        !! the row that failed, 1-based
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: modulus(:), strength(:), all_moduli(:), all_strengths(:), longer(:)
@@ -33,14 +34,14 @@ contains
 
       bad = 0
       status = status_ok
-      allocate (tables%first(size(rows, 2) + 1), modulus(most_teeth), strength(most_teeth), &
+      allocate (made%first(size(rows, 2) + 1), modulus(most_teeth), strength(most_teeth), &
          all_moduli(64 * (size(rows, 2) + 64)), all_strengths(64 * (size(rows, 2) + 64)), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
       used = 0
-      tables%first(1) = 1
+      made%first(1) = 1
       do k = 1, size(rows, 2)
          call make_teeth(nint(rows(1, k), c_int), rows(2, k), rows(3, k), rows(4, k), rows(5, k), rows(6, k), &
             rows(7, k) > 0.5_wp, rows(8, k) > 0.5_wp, n, modulus, strength, status)
@@ -61,16 +62,24 @@ contains
          all_moduli(used + 1:used + n) = modulus(1:n)
          all_strengths(used + 1:used + n) = strength(1:n)
          used = used + n
-         tables%first(k + 1) = used + 1
+         made%first(k + 1) = used + 1
       end do
-      if (info == 0) allocate (tables%modulus(used), tables%strength(used), stat=info)
+      if (info == 0) allocate (made%modulus(used), made%strength(used), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
-      tables%modulus(:) = all_moduli(1:used)
-      tables%strength(:) = all_strengths(1:used)
+      made%modulus(:) = all_moduli(1:used)
+      made%strength(:) = all_strengths(1:used)
    end subroutine tooth_tables_new
+
+   !> How many there are
+   pure function tables(self) result(count)
+      class(tooth_tables), intent(in) :: self
+      integer :: count
+      count = 0
+      if (allocated(self%first)) count = size(self%first) - 1
+   end function tables
 
    !> Secant modulus of a tooth; the floor after the last, the initial modulus without a table [Pa]
    pure function modulus_of(self, table, tooth, initial, floor) result(modulus)

@@ -1,8 +1,10 @@
 """The four-hinge arch in the core (fortran/arch): impact, mechanism, deformed shape, dynamic thrust line."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
 from extrados.core.calls import integers, real
@@ -23,14 +25,38 @@ class FourHinge:
     centroid: np.ndarray
     inertia: np.ndarray
 
-    def links(self) -> tuple:
-        """The arguments by which the facades describe the mechanism."""
-        return (
-            real("hinge", self.hinge.T, (2, 4)),
-            real("link mass", self.mass, (3,)),
-            real("link centroid", self.centroid.T, (2, 3)),
-            real("link inertia", self.inertia, (3,)),
+    def links(self) -> tuple[np.ndarray, np.ndarray]:
+        """What the core wants to know of the mechanism: hinges (2, 4); mass, centroid, inertia of the links (4, 3)."""
+        return real("hinge", np.transpose(self.hinge), (2, 4)), _masses("link", self, 3)
+
+
+def _masses(what: str, of: "FourHinge | Voussoirs", count: int) -> np.ndarray:
+    """Mass, centroid and inertia of `count` parts as the core's (4, count)."""
+    return np.asfortranarray(
+        np.vstack(
+            [
+                real(f"{what} mass", of.mass, (count,)),
+                real(f"{what} centroid", np.transpose(of.centroid), (2, count)),
+                real(f"{what} inertia", of.inertia, (count,)),
+            ]
         )
+    )
+
+
+class Voussoirs(Protocol):
+    """What a thrust line needs of an arch: mass [kg], centroid (n, 2) [m], inertia [kg m^2] of its voussoirs and
+    the ends of its joints, intrados and extrados (n + 1, 2) [m]."""
+
+    @property
+    def mass(self) -> np.ndarray: ...
+    @property
+    def centroid(self) -> np.ndarray: ...
+    @property
+    def inertia(self) -> np.ndarray: ...
+    @property
+    def intrados(self) -> np.ndarray: ...
+    @property
+    def extrados(self) -> np.ndarray: ...
 
 
 @dataclass(frozen=True)
@@ -44,13 +70,20 @@ class Limits:
     drive: float
 
 
-def restitution(mass, centroid, inertia, joint, hinge, opposite) -> tuple[float, float]:
+def restitution(
+    mass: npt.ArrayLike,
+    centroid: npt.ArrayLike,
+    inertia: npt.ArrayLike,
+    joint: npt.ArrayLike,
+    hinge: npt.ArrayLike,
+    opposite: npt.ArrayLike,
+) -> tuple[float, float]:
     """c_v of the impact: by the thesis (Eqs B.3a-e) and by the workless-impulse projection.
 
     mass (n), centroid (n, 2), inertia (n) of the voussoirs; joint (4), hinge (4, 2) and the opposite
     faces (4, 2) of A, B, C, D. The thesis' value may exceed 1 where A stands above the springing.
     """
-    n = len(mass)
+    n = len(np.asarray(mass))
     thesis, projection, status = _core.api_arch.impact(
         real("mass", mass, (n,)),
         real("centroid", np.transpose(centroid), (2, n)),
@@ -60,19 +93,19 @@ def restitution(mass, centroid, inertia, joint, hinge, opposite) -> tuple[float,
         real("opposite", np.transpose(opposite), (2, 4)),
     )
     check(status, "impact of the arch")
-    return thesis, projection
+    return float(thesis), float(projection)
 
 
 def limits(mechanism: FourHinge) -> Limits:
     """How far the mechanism can turn, and its coefficients at rest (thesis Eq. B.2)."""
     *values, status = _core.api_arch.mechanism_limits(*mechanism.links())
     check(status, "four-hinge mechanism")
-    return Limits(*values)
+    return Limits(*(float(value) for value in values))
 
 
-def pose(mechanism: FourHinge, centroid, q) -> np.ndarray:
+def pose(mechanism: FourHinge, centroid: npt.ArrayLike, q: npt.ArrayLike) -> np.ndarray:
     """Displaced centroid x, y [m] and rotation [rad] of every voussoir, shape (len(q), n, 3)."""
-    n = len(centroid)
+    n = len(np.asarray(centroid))
     placed, status = _core.api_arch.pose(
         *mechanism.links(),
         integers("joint", mechanism.joint, 4),
@@ -80,7 +113,7 @@ def pose(mechanism: FourHinge, centroid, q) -> np.ndarray:
         real("q", np.atleast_1d(q), (None,)),
     )
     check(status, "deformed arch")
-    return placed.transpose(2, 1, 0)
+    return np.transpose(placed)
 
 
 @dataclass(frozen=True)
@@ -105,25 +138,27 @@ class ThrustLine:
         return np.where(np.isnan(self.normal), 0.0, needed)
 
 
-def thrust_line(mechanism: FourHinge, arch, q, v, a, horizontal, vertical) -> ThrustLine:
+def thrust_line(
+    mechanism: FourHinge,
+    arch: Voussoirs,
+    q: npt.ArrayLike,
+    v: npt.ArrayLike,
+    a: npt.ArrayLike,
+    horizontal: npt.ArrayLike,
+    vertical: npt.ArrayLike,
+) -> ThrustLine:
     """Dynamic thrust line (thesis 5.2.3) of the mechanism that rocks to +x.
 
-    `arch` gives mass, centroid, inertia of the voussoirs and the joint ends intrados, extrados (n + 1, 2).
+    Rotation q [rad], its rate and acceleration, and the ground acceleration to +x and up [m/s^2] at each state.
     """
-    n, nt = len(arch.mass), len(q)
+    n = len(arch.mass)
+    faces = np.stack([np.transpose(arch.intrados), np.transpose(arch.extrados)], axis=1)
     normal, shear, position, point, miss, status = _core.api_arch.thrust_line(
         *mechanism.links(),
-        real("mass", arch.mass, (n,)),
-        real("centroid", arch.centroid.T, (2, n)),
-        real("inertia", arch.inertia, (n,)),
         integers("joint", mechanism.joint, 4),
-        real("intrados", arch.intrados.T, (2, n + 1)),
-        real("extrados", arch.extrados.T, (2, n + 1)),
-        real("q", q, (nt,)),
-        real("v", v, (nt,)),
-        real("a", a, (nt,)),
-        real("horizontal", horizontal, (nt,)),
-        real("vertical", vertical, (nt,)),
+        _masses("voussoir", arch, n),
+        real("joint ends", faces, (2, 2, n + 1)),
+        real("states", [np.asarray(x, dtype=float) for x in (q, v, a, horizontal, vertical)], (5, None)),
     )
     check(status, "dynamic thrust line")
     return ThrustLine(normal.T, shear.T, position.T, point.transpose(2, 1, 0), miss)

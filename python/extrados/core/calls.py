@@ -1,18 +1,26 @@
 """How Python calls the core: arrays checked at the door, long calls that Ctrl-C can stop."""
 
 import contextlib
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
 
 _core.api_support.init_libraries()
 
 
-def real(name: str, value, shape: tuple[int | None, ...]) -> np.ndarray:
+#: Values an answer of the core may have: 2 GB.
+MOST_VALUES = 250_000_000
+_MOST_THREADS = max(64, os.cpu_count() or 1)
+
+
+def real(name: str, value: npt.ArrayLike, shape: tuple[int | None, ...]) -> npt.NDArray[np.float64]:
     """`value` as a finite float64 array in Fortran order; None in `shape` leaves a length open."""
     array = np.asfortranarray(value, dtype=np.float64)
     if array.ndim != len(shape) or any(
@@ -25,14 +33,51 @@ def real(name: str, value, shape: tuple[int | None, ...]) -> np.ndarray:
     return array
 
 
-def integers(name: str, value, length: int | None = None) -> np.ndarray:
+def integers(name: str, value: npt.ArrayLike, length: int | None = None) -> npt.NDArray[np.int32]:
     """`value` as an int32 vector; refuses fractions, which f2py would cut off silently."""
     array = np.asarray(value)
-    if array.dtype.kind not in "iu":
-        raise TypeError(f"{name} holds {array.dtype}, expected integers")
     if array.ndim != 1 or (length is not None and array.size != length):
         raise ValueError(f"{name} has shape {array.shape}, expected ({length},)")
+    return _whole(name, array)
+
+
+def indices(name: str, value: npt.ArrayLike, end: int, shape: tuple[int | None, ...]) -> npt.NDArray[np.int32]:
+    """0-based indices below `end` as the core counts them, from 1, in Fortran order; IndexError for others."""
+    array = np.asarray(value)
+    if array.ndim != len(shape) or any(
+        want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
+    ):
+        raise ValueError(f"{name} has shape {array.shape}, expected {shape}")
+    if array.size == 0:
+        return np.zeros(array.shape, dtype=np.int32, order="F")
+    bad = (array < 0) | (array >= end)
+    if bad.any():
+        raise IndexError(f"{name} names {array[bad][0]}, expected 0 to {end - 1}")
+    return np.asfortranarray(_whole(name, array) + np.int32(1))
+
+
+def _whole(name: str, array: npt.NDArray[Any]) -> npt.NDArray[np.int32]:
+    if array.dtype.kind not in "iu" and array.size:
+        raise TypeError(f"{name} holds {array.dtype}, expected integers")
+    if array.size and (array.max() > _INT32.max or array.min() < _INT32.min):
+        raise ValueError(f"{name} holds a number that is too large")
     return np.ascontiguousarray(array, dtype=np.int32)
+
+
+_INT32 = np.iinfo(np.int32)
+
+
+def room_for(*lengths: int) -> None:
+    """ValueError where an answer of these lengths would be larger than MOST_VALUES."""
+    if float(np.prod([float(n) for n in lengths])) > MOST_VALUES:
+        raise ValueError(f"{' x '.join(map(str, lengths))} values are more than {MOST_VALUES:,}: use smaller batches")
+
+
+def thread_count(threads: int) -> int:
+    """Threads to start: as asked, but not more than 64 or the machine's cores. Results do not depend on it."""
+    if threads < 1:
+        raise ValueError(f"threads is {threads}, expected at least 1")
+    return min(int(threads), _MOST_THREADS)
 
 
 _lock = threading.Lock()
@@ -61,7 +106,7 @@ def interruptible() -> Iterator[None]:
         if outermost:
             _asked.clear()
             _core.api_support.set_cancel(0)
-    before = {}
+    before: dict[signal.Signals, Any] = {}
     if main and outermost:
         for number in (signal.SIGINT, signal.SIGTERM):
             before[number] = signal.signal(number, _ask)
@@ -74,14 +119,14 @@ def interruptible() -> Iterator[None]:
             _nesting -= 1
 
 
-def long_call(function: Callable, *args, **keywords):
+def long_call(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
     """Call a facade that may run long: in a thread of its own, so that signals reach Python meanwhile.
 
     Waiting on an Event, not on Thread.join: an interrupted join lies about the thread on CPython
     3.9 to 3.12 (python/cpython#90882).
     """
     done = threading.Event()
-    box: dict = {}
+    box: dict[str, Any] = {}
 
     def work() -> None:
         try:

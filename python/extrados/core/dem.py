@@ -1,21 +1,23 @@
 """Discrete elements in the core (fortran/dem): one run of rigid plane blocks, from rest to the end of a motion."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
-from extrados.core.calls import integers, long_call, real
+from extrados.core import lists
+from extrados.core.calls import indices, integers, long_call, real, room_for, thread_count
 from extrados.core.errors import check, status_code
-from extrados.core.ground import Ground, motion_set
+from extrados.core.ground import Ground, MotionSet, as_motion_set
+from extrados.core.handles import Owner
 from extrados.schema.constants import GRAVITY
 
 #: Why a run ended, by the number the core gives.
-REASONS = ("end", "collapse", "rest", "left", "blow-up", "step", "unsettled", "overlap")
+REASONS = tuple(lists.words("dem_stop").values())
 #: Rows of the energy ledger [J].
-ENERGIES = (
-    "kinetic", "potential", "elastic", "friction", "damping", "mass_damping", "work", "residual", "leapfrog",
-)  # fmt: skip
+ENERGIES = tuple(lists.words("dem_energy").values())
 
 
 @dataclass(frozen=True)
@@ -108,7 +110,7 @@ class Contacts:
 
 @dataclass(frozen=True)
 class Run:
-    """A run. reason: see REASONS; blamed: the bodies it is about.
+    """A run. reason: see REASONS; blamed: the bodies that caused the stop.
 
     time (t) [s]; place (t, n, 3): x, y [m], rotation [rad] relative to the ground; rate (t, n, 3); energy: see
     ENERGIES, each (t) [J]; settled (n, 3): place after settling; residual: greatest energy from nowhere over
@@ -139,6 +141,158 @@ class Run:
 _STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.zeros((1, 1, 0, 4)))
 
 
+class Model(Owner):
+    """Bodies, joints and options in the core; runs under any number of motions, each from the same start.
+
+    shift, rate (n, 3): initial displacement and velocity about the centroids, without settling. Bodies and laws
+    are counted from 0; ValueError or IndexError where one is named that is not there.
+    """
+
+    what = "model of discrete elements"
+
+    def __init__(
+        self,
+        bodies: Bodies,
+        options: Options,
+        *,
+        shift: np.ndarray | None = None,
+        rate: np.ndarray | None = None,
+        moves: Sequence[SupportMove] = (),
+    ):
+        if not (options.end_time > 0.0 and options.output_step > 0.0 and 0.0 < options.fraction <= 1.0):
+            raise ValueError("end time, output step and the fraction of the critical step must be positive")
+        if not bodies.laws or any(not 0 <= k < len(bodies.laws) for k in bodies.joints.values()):
+            raise ValueError("a joint names a law that is not there")
+        n, parts = len(bodies.mass), len(bodies.parts)
+        corners = [len(part) for part in bodies.parts]
+        handle, status = _core.api_dem.create(
+            real("centroid", np.transpose(bodies.centroid), (2, n)),
+            real("mass", bodies.mass, (n,)),
+            real("inertia", bodies.inertia, (n,)),
+            indices("owner", bodies.owner, n, (parts,)),
+            integers("first", np.concatenate([[1], 1 + np.cumsum(corners)])),
+            real("vertices", np.concatenate(bodies.parts).T, (2, sum(corners))),
+            integers("outer", np.concatenate(bodies.outer).astype(np.int32), sum(corners)),
+        )
+        check(status, "bodies")
+        super().__init__(handle)
+        self.count = n
+        self.options = options
+        try:
+            self._put_joints(bodies)
+            if shift is not None or rate is not None:
+                nothing = np.zeros((n, 3))
+                status = _core.api_dem.start(
+                    self.handle,
+                    real("shift", np.transpose(nothing if shift is None else shift), (3, n)),
+                    real("rate", np.transpose(nothing if rate is None else rate), (3, n)),
+                )
+                check(status, "initial displacements")
+            self._put_moves(moves)
+            self._put_options(settle=shift is None and rate is None)
+        except BaseException:
+            self.close()
+            raise
+
+    def _put_joints(self, bodies: Bodies) -> None:
+        depth = bodies.depth
+        rows = [
+            [
+                law.normal_stiffness * depth, law.shear_stiffness * depth, law.friction, law.cohesion * depth,
+                law.tension * depth, law.damping,
+            ]
+            for law in bodies.laws
+        ]  # fmt: skip
+        check(_core.api_dem.laws(self.handle, real("laws", np.transpose(rows), (6, None))), "laws of the joints")
+        if bodies.joints:
+            pairs = indices("joints", np.transpose(list(bodies.joints)), self.count, (2, None))
+            law = indices("joints", list(bodies.joints.values()), len(bodies.laws), (None,))
+            check(_core.api_dem.joints(self.handle, pairs, law), "joints")
+
+    def _put_moves(self, moves: Sequence[SupportMove]) -> None:
+        if not moves:
+            return
+        values = [[m.dx, m.dy, m.turn, m.start, m.duration] for m in moves]
+        status = _core.api_dem.moves(
+            self.handle,
+            indices("support moves", [m.body for m in moves], self.count, (None,)),
+            real("support moves", np.transpose(values), (5, None)),
+        )
+        check(status, "support moves: a body that is no support, or no duration")
+
+    def _put_options(self, settle: bool) -> None:
+        o = self.options
+        limits = [o.end_time, o.step, o.fraction, o.settle_tolerance, o.collapse, o.residual_limit]
+        status = _core.api_dem.settings(
+            self.handle, real("gravity", o.gravity, (2,)), float(o.mass_damping), int(o.moving_base),
+            real("limits", limits, (6,)), real("domain", o.domain, (4,)), int(o.settle_steps) if settle else 0,
+            int(o.stop_at_rest), thread_count(o.threads),
+        )  # fmt: skip
+        check(status, "options of the run")
+
+    def run(
+        self, motions: MotionSet, motion: int = 0, *, scale: float = 1.0, times: npt.ArrayLike | None = None
+    ) -> Run:
+        """Settle under gravity, then move the ground by `scale` times a motion of the set.
+
+        times: ascending output times [s] instead of every output_step.
+        """
+        o = self.options
+        if times is None:
+            room_for(3, self.count, int(min(o.end_time / o.output_step, 1e12)) + 1)
+            times = np.arange(round(o.end_time / o.output_step * (1 - 1e-12)) + 1) * o.output_step
+        wanted = real("times", times, (None,))
+        if not len(wanted) or np.any(np.diff(wanted) < 0.0):
+            raise ValueError("output times must ascend, and there must be one")
+        if not 0 <= motion < len(motions):
+            raise IndexError(f"motion {motion} is not in the set of {len(motions)}")
+        if not np.isfinite(scale):
+            raise ValueError(f"scale is {scale}, expected a number")
+        status = long_call(_core.api_dem.run, self.handle, motions.handle, int(motion) + 1, float(scale), wanted)
+        interrupted = status == status_code("cancelled")
+        if not interrupted:
+            check(status, "discrete elements")
+        return self._last_run(interrupted)
+
+    def _last_run(self, interrupted: bool) -> Run:
+        counts, measures, status = _core.api_dem.summary(self.handle)
+        check(status, "how the run ended")
+        points, reason, first, second, settling, searches, pairs, steps, closed = (int(k) for k in counts)
+        if points:
+            time, place, rate, energy, status = _core.api_dem.history(self.handle, self.count, points)
+            check(status, "history of the run")
+        else:
+            time, energy = np.zeros(0), np.zeros((len(ENERGIES), 0))
+            place = rate = np.zeros((3, self.count, 0))
+        settled, bounces, airborne, status = _core.api_dem.bodies(self.handle, self.count)
+        check(status, "bodies after the run")
+        touching, contact = np.zeros((2, 0), dtype=np.int32), np.zeros((6, 0))
+        if closed:
+            touching, contact, status = _core.api_dem.contacts(self.handle, closed)
+            check(status, "contacts after the run")
+        return Run(
+            reason=REASONS[reason],
+            blamed=[k - 1 for k in (first, second) if k > 0],
+            time=time,
+            place=place.T,
+            rate=rate.T,
+            energy=dict(zip(ENERGIES, energy, strict=True)),
+            settled=settled.T,
+            stop_time=float(measures[2]),
+            steps=steps,
+            settling_steps=settling,
+            searches=searches,
+            most_pairs=pairs,
+            step=float(measures[0]),
+            critical_step=float(measures[1]),
+            residual=float(measures[3]),
+            bounces=bounces,
+            airborne=airborne,
+            contacts=Contacts(touching.T - 1, contact.T[:, :2], contact.T[:, 2:4], contact[4], contact[5]),
+            interrupted=interrupted,
+        )
+
+
 def run(
     bodies: Bodies,
     options: Options,
@@ -150,106 +304,9 @@ def run(
     moves: tuple[SupportMove, ...] = (),
     times: np.ndarray | None = None,
 ) -> Run:
-    """Settle `bodies` under gravity, then move the ground by `scale` times `ground`.
-
-    shift, rate (n, 3): initial displacement and velocity about the centroids, without settling. times: output
-    times [s] instead of every output_step. Bodies and laws are counted from 0.
-    """
-    n = len(bodies.mass)
-    if not (options.end_time > 0.0 and options.output_step > 0.0 and 0.0 < options.fraction <= 1.0):
-        raise ValueError("end time, output step and the fraction of the critical step must be positive")
-    if not bodies.laws or any(not 0 <= k < len(bodies.laws) for k in bodies.joints.values()):
-        raise ValueError("a joint names a law that is not there")
-    if times is None:
-        times = np.arange(round(options.end_time / options.output_step * (1 - 1e-12)) + 1) * options.output_step
-    motions = motion_set([ground or _STILL])
-    depth = bodies.depth
-    law = np.array(
-        [
-            [
-                k.normal_stiffness * depth, k.shear_stiffness * depth, k.friction, k.cohesion * depth,
-                k.tension * depth, k.damping,
-            ]
-            for k in bodies.laws
-        ]
-    )  # fmt: skip
-    table: list[list[tuple[int, int]]] = [[] for _ in range(n)]
-    for (a, b), k in bodies.joints.items():
-        table[min(a, b)].append((max(a, b), k))
-    # f2py refuses empty arrays: one entry that nothing points to stands at the end of both lists.
-    rows = [entry for row in table for entry in row] + [(0, 0)]
-    moving = [*moves, SupportMove(-1, 0.0, 0.0, 0.0, 0.0, 1.0)]
-    initial = shift is not None or rate is not None
-    counts = [len(p) for p in bodies.parts]
-    out = long_call(
-        _core.api_dem.run,
-        real("centroid", bodies.centroid, (n, 2)).T,
-        real("mass", bodies.mass, (n,)),
-        real("inertia", bodies.inertia, (n,)),
-        integers("owner", np.asarray(bodies.owner) + 1, len(bodies.parts)),
-        integers("first", np.concatenate([[1], 1 + np.cumsum(counts)])),
-        real("vertices", np.concatenate(bodies.parts), (sum(counts), 2)).T,
-        integers("outer", np.concatenate(bodies.outer).astype(np.int32), sum(counts)),
-        real("shift", np.zeros((n, 3)) if shift is None else shift, (n, 3)).T,
-        real("rate", np.zeros((n, 3)) if rate is None else rate, (n, 3)).T,
-        real("law", law, (None, 6)).T,
-        integers("table_first", 1 + np.concatenate([[0], np.cumsum([len(row) for row in table])])),
-        integers("table_body", np.array([b + 1 for b, _ in rows], dtype=np.int32)),
-        integers("table_law", np.array([k + 1 for _, k in rows], dtype=np.int32)),
-        integers("move_body", np.array([m.body + 1 for m in moving], dtype=np.int32)),
-        real("moves", np.array([[m.dx, m.dy, m.turn, m.start, m.duration] for m in moving]), (None, 5)).T,
-        int(motions.sampled[0]),
-        float(motions.start[0]),
-        float(motions.step[0]),
-        motions.samples,
-        motions.breaks,
-        motions.linear,
-        motions.harmonic,
-        float(scale),
-        int(options.moving_base),
-        real("gravity", options.gravity, (2,)),
-        float(options.mass_damping),
-        real(
-            "limits",
-            [
-                options.end_time, options.step, options.fraction, options.settle_tolerance, options.collapse,
-                options.residual_limit,
-            ],
-            (6,),
-        ),
-        real("domain", options.domain, (4,)),
-        0 if initial else int(options.settle_steps),
-        int(options.stop_at_rest),
-        int(options.threads),
-        real("times", times, (None,)),
-        8 * len(bodies.parts),
-    )  # fmt: skip
-    time, place, rates, energy, found, measures, bounces, airborne, settled, contact_body, contact, status = out
-    interrupted = status == status_code("cancelled")
-    if not interrupted:
-        check(status, "discrete elements")
-    points, reason, first, second, settling, searches, pairs, steps, closed = (int(k) for k in found)
-    return Run(
-        reason=REASONS[reason],
-        blamed=[k - 1 for k in (first, second) if k > 0],
-        time=time[:points],
-        place=place.T[:points],
-        rate=rates.T[:points],
-        energy=dict(zip(ENERGIES, energy[:, :points], strict=True)),
-        settled=settled.T,
-        stop_time=float(measures[2]),
-        steps=steps,
-        settling_steps=settling,
-        searches=searches,
-        most_pairs=pairs,
-        step=float(measures[0]),
-        critical_step=float(measures[1]),
-        residual=float(measures[3]),
-        bounces=bounces,
-        airborne=airborne,
-        contacts=Contacts(
-            contact_body.T[:closed] - 1, contact.T[:closed, :2], contact.T[:closed, 2:4], contact[4, :closed],
-            contact[5, :closed],
-        ),
-        interrupted=interrupted,
-    )  # fmt: skip
+    """One run of a model that is made for it; see Model and Model.run. No ground: it stands still."""
+    with (
+        Model(bodies, options, shift=shift, rate=rate, moves=moves) as model,
+        as_motion_set([ground or _STILL]) as motions,
+    ):
+        return model.run(motions, scale=scale, times=times)

@@ -2,7 +2,7 @@
 
 from functools import cache
 
-from extrados import _core
+from extrados.core import lists
 
 
 class CoreError(RuntimeError):
@@ -21,23 +21,30 @@ class Cancelled(CoreError):
     """The user asked to stop; results up to that point are valid."""
 
 
+class HandleError(CoreError):
+    """An object of the core was closed, is of another kind, is in use by another call, or not yet built."""
+
+
+class CoreIndexError(CoreError, IndexError):
+    """A number given to the core names no node, body, motion, law ... that is there."""
+
+
+_KINDS: dict[str, type[CoreError]] = {
+    "cancelled": Cancelled, "out_of_memory": CoreMemoryError, "bad_index": CoreIndexError,
+    "closed_handle": HandleError, "wrong_handle": HandleError, "busy": HandleError, "not_ready": HandleError,
+}  # fmt: skip
+
+
 @cache
 def status_list() -> dict[int, tuple[str, str]]:
     """Code -> (name, text), as compiled into the core."""
-    entries = {}
-    index = 0
-    while True:
-        found, code, name, text = _core.api_support.status_entry(index)
-        if not found:
-            return entries
-        entries[code] = tuple(s.decode().rstrip("\0 ").split("\0")[0] for s in (name, text))
-        index += 1
+    return {entry.number: (entry.name, entry.word) for entry in lists.entries("status")}
 
 
 @cache
 def status_code(name: str) -> int:
     """The code of a status by its name."""
-    return next(code for code, (known, _) in status_list().items() if known == name)
+    return lists.number("status", name)
 
 
 def check(status: int, what: str) -> None:
@@ -45,5 +52,4 @@ def check(status: int, what: str) -> None:
     if status == 0:
         return
     name, text = status_list().get(status, ("unknown", f"unknown status {status}"))
-    kind = {"cancelled": Cancelled, "out_of_memory": CoreMemoryError}.get(name, CoreError)
-    raise kind(status, f"{what}: {text}")
+    raise _KINDS.get(name, CoreError)(status, f"{what}: {text}")

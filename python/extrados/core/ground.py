@@ -5,7 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.core.calls import integers, real
+from extrados import _core
+from extrados.core.calls import real
+from extrados.core.errors import check
+from extrados.core.handles import Owner
 
 
 @dataclass(frozen=True)
@@ -30,88 +33,78 @@ class Ground:
         """When the motion is over [s]."""
         if self.samples is not None:
             return self.start + self.step * (self.samples.shape[1] - 1)
-        return float(self.breaks[-1])
+        return float(_given("breaks", self.breaks)[-1])
 
     @property
     def channels(self) -> int:
-        return self.samples.shape[0] if self.samples is not None else self.linear.shape[1]
+        """1, or 2 with a vertical one."""
+        return int(self.samples.shape[0] if self.samples is not None else _given("linear", self.linear).shape[1])
 
     @property
     def terms(self) -> int:
-        return self.harmonic.shape[2] if self.harmonic is not None else 0
+        """Sines on each segment."""
+        return int(self.harmonic.shape[2]) if self.harmonic is not None else 0
 
 
-@dataclass(frozen=True)
-class MotionSet:
-    """Motions stored one behind the other, as the core reads them (fortran/rocking/ensemble.f90)."""
-
-    sampled: np.ndarray
-    first: np.ndarray
-    segments: np.ndarray
-    start: np.ndarray
-    step: np.ndarray
-    samples: np.ndarray
-    breaks: np.ndarray
-    linear: np.ndarray
-    harmonic: np.ndarray
+def _given(name: str, value: np.ndarray | None) -> np.ndarray:
+    if value is None:
+        raise ValueError(f"a ground motion has neither samples nor {name}")
+    return value
 
 
-def motion_set(grounds: Sequence[Ground]) -> MotionSet:
-    """Motions packed into flat arrays; ValueError where one is malformed."""
-    channels = max(g.channels for g in grounds)
-    terms = max(g.terms for g in grounds)
-    samples, breaks, linear, harmonic = [], [], [], []
-    sampled, first, segments = [], [], []
-    n_sample = n_break = 0
-    for ground in grounds:
+class MotionSet(Owner):
+    """Ground motions in the core, to be used by any number of calls and threads.
+
+    ValueError where a motion is malformed, with its number (from 0) where there are several.
+    """
+
+    what = "set of ground motions"
+
+    def __init__(self, grounds: Sequence[Ground]):
+        if not grounds:
+            raise ValueError("a set of ground motions needs one")
+        handle, status = _core.api_signal.create(len(grounds))
+        check(status, self.what)
+        super().__init__(handle)
+        self.count = len(grounds)
+        try:
+            for k, ground in enumerate(grounds):
+                self._put(k + 1, ground)
+        except BaseException:
+            self.close()
+            raise
+
+    def __len__(self) -> int:
+        return self.count
+
+    def _put(self, number: int, ground: Ground) -> None:
         if ground.samples is not None:
-            points = ground.samples.shape[1]
-            if points < 2 or not ground.step > 0.0:
+            rows = real("samples", ground.samples, (None, None))
+            _check_channels(rows.shape[0])
+            if rows.shape[1] < 2 or not ground.step > 0.0:
                 raise ValueError("a sampled motion needs two samples and a step above zero")
-            samples.append(ground.samples)
-            sampled.append(1)
-            first.append(n_sample + 1)
-            segments.append(points - 1)
-            n_sample += points
+            status = _core.api_signal.samples(self.handle, number, float(ground.start), float(ground.step), rows)
         else:
-            edges = real("breaks", ground.breaks, (None,))
+            edges = real("breaks", _given("breaks", ground.breaks), (None,))
             count = len(edges) - 1
-            if count < 1 or np.any(np.diff(edges) <= 0.0):
+            if count < 1 or not (edges[1:] > edges[:-1]).all():
                 raise ValueError("breaks of a motion must ascend")
-            lines = np.zeros((count + 1, channels, 2))
-            lines[:count, : ground.channels] = real("linear", ground.linear, (count, ground.channels, 2))
-            sines = np.zeros((count + 1, channels, terms, 4))
+            lines = real("linear", np.transpose(_given("linear", ground.linear)), (2, None, count))
+            _check_channels(lines.shape[1])
             if ground.terms:
-                sines[:count, : ground.channels, : ground.terms] = real(
-                    "harmonic", ground.harmonic, (count, ground.channels, ground.terms, 4)
-                )
-            breaks.append(edges)
-            linear.append(lines)
-            harmonic.append(sines)
-            sampled.append(0)
-            first.append(n_break + 1)
-            segments.append(count)
-            n_break += count + 1
+                curve = np.transpose(_given("harmonic", ground.harmonic))
+                sines = real("harmonic", curve, (4, ground.terms, lines.shape[1], count))
+            else:
+                sines = np.zeros((4, 0, lines.shape[1], count), order="F")
+            status = _core.api_signal.pieces(self.handle, number, edges, lines, sines)
+        check(status, f"ground motion {number - 1}")
 
-    # One array and one check for all: ensembles bring thousands of motions.
-    rows = np.zeros((max(n_sample, 1), channels))
-    start = 0
-    for block in samples:
-        rows[start : start + block.shape[1], : len(block)] = block.T
-        start += block.shape[1]
-    rows = real("samples", rows.T, (channels, None))
 
-    def stack(parts: list, empty: tuple[int, ...]) -> np.ndarray:
-        return np.concatenate(parts) if parts else np.zeros(empty)
+def _check_channels(channels: int) -> None:
+    if channels not in (1, 2):
+        raise ValueError(f"a ground motion has {channels} channels, expected 1 (horizontal) or 2 (with vertical)")
 
-    return MotionSet(
-        integers("sampled", sampled),
-        integers("first", first),
-        integers("segments", segments),
-        np.array([g.start for g in grounds], dtype=float),
-        np.array([g.step for g in grounds], dtype=float),
-        rows,
-        stack(breaks, (1,)),
-        stack(linear, (1, channels, 2)).T,
-        stack(harmonic, (1, channels, terms, 4)).T,
-    )
+
+def as_motion_set(grounds: "Sequence[Ground] | MotionSet") -> MotionSet:
+    """`grounds` itself where it is a set already, else a new one that is given back when forgotten."""
+    return grounds if isinstance(grounds, MotionSet) else MotionSet(grounds)

@@ -4,13 +4,39 @@
 """
 
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
+from extrados.core import lists
 from extrados.core.calls import real
 from extrados.core.errors import check
 from extrados.core.rocking import Body
+
+
+class Links(Protocol):
+    """What the core needs of a linkage, see limit.linkage.Linkage."""
+
+    @property
+    def side(self) -> int: ...
+    @property
+    def mass(self) -> np.ndarray: ...
+    @property
+    def centroid(self) -> np.ndarray: ...
+    @property
+    def inertia(self) -> np.ndarray: ...
+    @property
+    def joined(self) -> np.ndarray: ...
+    @property
+    def point(self) -> np.ndarray: ...
+    @property
+    def row(self) -> np.ndarray: ...
+    @property
+    def driver(self) -> int: ...
+    @property
+    def sense(self) -> int: ...
 
 
 @dataclass(frozen=True)
@@ -33,7 +59,7 @@ class Table:
     energy: float
 
 
-def _links(linkage) -> tuple:
+def _links(linkage: Links) -> tuple[Any, ...]:
     """The arguments by which the facades describe a linkage."""
     n, h = len(linkage.mass), len(linkage.joined)
     return (
@@ -48,7 +74,7 @@ def _links(linkage) -> tuple:
     )
 
 
-def table(linkage) -> Table:
+def table(linkage: Links) -> Table:
     """Tabulate the mechanism from rest to past its collapse; CoreError where gravity does not hold it shut."""
     numbers, facts, status = _core.api_mechanism.tabulate(
         *_links(linkage), int(linkage.side), int(_core.api_mechanism.table_length())
@@ -68,34 +94,34 @@ class Coefficients:
     potential: np.ndarray
 
 
-def coefficients(side: Table, q) -> Coefficients:
+def coefficients(side: Table, q: npt.ArrayLike) -> Coefficients:
     """What the integrator sees of one side at rotations q [rad]."""
     values, inside, status = _core.api_mechanism.evaluate(side.numbers, real("q", np.atleast_1d(q), (None,)))
     check(status, "table of the mechanism")
     return Coefficients(*np.where(inside != 0, values, np.nan))
 
 
-def follow(linkage, q) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def follow(linkage: Links, q: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places (len(q), parts, 3) of the centroids x, y [m] and rotation [rad], and their first and second derivatives
     by q; NaN where the hinges cannot be closed."""
-    q = real("q", np.atleast_1d(q), (None,))
-    order = np.argsort(q, kind="stable")
-    *arrays, reached, status = _core.api_mechanism.follow(*_links(linkage), q[order])
+    rotations = real("q", np.atleast_1d(q), (None,))
+    order = np.argsort(rotations, kind="stable")
+    *arrays, reached, status = _core.api_mechanism.follow(*_links(linkage), rotations[order])
     check(status, "motion of the mechanism")
     out = []
     for array in arrays:
-        back = np.full((len(q), len(linkage.mass), 3), np.nan)
+        back = np.full((len(rotations), len(linkage.mass), 3), np.nan)
         back[order[:reached]] = array.transpose(2, 1, 0)[:reached]
         out.append(back)
-    return tuple(out)
+    return out[0], out[1], out[2]
 
 
-def restitution(mass, inertia, before, after) -> float:
+def restitution(mass: npt.ArrayLike, inertia: npt.ArrayLike, before: npt.ArrayLike, after: npt.ArrayLike) -> float:
     """c_v of the impact that closes the mechanism `before` and opens `after`, by workless impulses; may be negative.
 
     mass (n), inertia (n) of the blocks; before, after (n, 3): velocities x, y, spin at rest per unit rate.
     """
-    n = len(mass)
+    n = np.size(mass)
     return float(
         _core.api_mechanism.restitution(
             real("mass", mass, (n,)),
@@ -115,4 +141,4 @@ def table_body(right: Table, left: Table, restitution: tuple[float, float]) -> B
     energies = [restitution[0] ** 2 * right.mass / left.mass, restitution[1] ** 2 * left.mass / right.mass]
     if min(restitution) < 0.0 or max(energies) > 1.0 + 1e-9:
         raise ValueError(f"restitution is {restitution}: expected not below 0, and an impact must not create energy")
-    return Body(3, np.concatenate([restitution, right.numbers, left.numbers]))
+    return Body(lists.number("rocking_body", "table"), np.concatenate([restitution, right.numbers, left.numbers]))

@@ -3,29 +3,19 @@
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
-from extrados.core.calls import long_call, real
+from extrados.core import lists
+from extrados.core.calls import long_call, real, room_for, thread_count
 from extrados.core.errors import check
 
-ENVELOPES = {"arctangent": 1, "trapezoid": 2, "jennings": 3, "saragoni-hart": 4}
-SPACINGS = {"log": 1, "uniform": 2}
-SCALINGS = {"thesis": 1, "fourier": 2, "energy": 3}
+ENVELOPES = lists.numbers("envelope")
+SPACINGS = lists.numbers("spacing")
+SCALINGS = lists.numbers("scaling")
 #: Points on the shortest oscillator period: sampled peaks are at most 1.2 % below the true ones.
 POINTS_PER_CYCLE = 20
-MOST_VALUES = 250_000_000
 _I64 = 2**63 - 1
-
-
-def _size(*lengths: int) -> None:
-    if np.prod([float(n) for n in lengths]) > MOST_VALUES:
-        raise ValueError(f"{' x '.join(map(str, lengths))} values are more than {MOST_VALUES:,}: use smaller batches")
-
-
-def _threads(threads: int) -> int:
-    if threads < 1:
-        raise ValueError(f"threads is {threads}, expected at least 1")
-    return int(threads)
 
 
 def _step(step: float) -> float:
@@ -34,7 +24,7 @@ def _step(step: float) -> float:
     return float(step)
 
 
-def _batch(motions: np.ndarray) -> np.ndarray:
+def _batch(motions: npt.ArrayLike) -> np.ndarray:
     """(count, points) or (points,) as the core's (points, count)."""
     motions = np.atleast_2d(np.asarray(motions, dtype=float))
     if motions.ndim != 2 or motions.shape[1] < 2:
@@ -42,7 +32,7 @@ def _batch(motions: np.ndarray) -> np.ndarray:
     return real("motions", np.ascontiguousarray(motions).T, (None, None))
 
 
-def envelope(kind: str, parameters, points: int, step: float) -> np.ndarray:
+def envelope(kind: str, parameters: npt.ArrayLike, points: int, step: float) -> np.ndarray:
     """Envelope at 0, step, ... (points). parameters: start, duration [s] and two of the kind, see c/quake/envelope.c."""
     value, status = _core.api_motion.envelope(
         ENVELOPES[kind], real("parameters", parameters, (4,)), int(points), _step(step)
@@ -51,7 +41,9 @@ def envelope(kind: str, parameters, points: int, step: float) -> np.ndarray:
     return value
 
 
-def line_spectrum(intensity, frequency, amplitude, wanted: float, lines) -> np.ndarray:
+def line_spectrum(
+    intensity: npt.ArrayLike, frequency: npt.ArrayLike, amplitude: npt.ArrayLike, wanted: float, lines: npt.ArrayLike
+) -> np.ndarray:
     """Fourier amplitudes at `lines` [Hz]; amplitude (intensities, frequencies), log-log in between."""
     intensity, frequency = real("intensity", intensity, (None,)), real("frequency", frequency, (None,))
     table = real("amplitude", np.asarray(amplitude).T, (frequency.size, intensity.size))
@@ -62,14 +54,16 @@ def line_spectrum(intensity, frequency, amplitude, wanted: float, lines) -> np.n
     return value
 
 
-def line_widths(lines, spacing: str) -> np.ndarray:
+def line_widths(lines: npt.ArrayLike, spacing: str) -> np.ndarray:
     """Share of the band each line stands for [Hz]; bin edges at geometric (log) or arithmetic (uniform) means."""
     width, status = _core.api_motion.line_widths(SPACINGS[spacing], real("lines", lines, (None,)))
     check(status, "widths of the lines")
     return width
 
 
-def line_amplitudes(value, width, scaling: str, factor: float, duration: float) -> np.ndarray:
+def line_amplitudes(
+    value: npt.ArrayLike, width: npt.ArrayLike, scaling: str, factor: float, duration: float
+) -> np.ndarray:
     """Amplitudes of the sines [unit of value / s]; duration: integral of the squared envelope [s]. Thesis Eq. 6.6."""
     value = real("value", value, (None,))
     amplitude, status = _core.api_motion.line_amplitudes(
@@ -86,7 +80,16 @@ def phases(seed: int, index: int, count: int) -> np.ndarray:
     return phase
 
 
-def generate(lines, amplitude, window, step: float, seed: int, first: int, count: int, threads: int = 1) -> np.ndarray:
+def generate(
+    lines: npt.ArrayLike,
+    amplitude: npt.ArrayLike,
+    window: npt.ArrayLike,
+    step: float,
+    seed: int,
+    first: int,
+    count: int,
+    threads: int = 1,
+) -> np.ndarray:
     """Motions first .. first + count - 1 of the set `seed` (count, points), thesis Eqs 6.6 to 6.8.
 
     lines [Hz] and their amplitudes [m/s^2]; window: envelope at 0, step, ... The bits of motion k depend on
@@ -95,11 +98,11 @@ def generate(lines, amplitude, window, step: float, seed: int, first: int, count
     lines, window = real("lines", lines, (None,)), real("window", window, (None,))
     if not (-_I64 <= seed <= _I64 and first >= 0 and count >= 1):
         raise ValueError(f"seed {seed}, first {first} or count {count} is out of range")
-    _size(window.size, count)
-    _size(window.size, 2 * lines.size)
+    room_for(window.size, count)
+    room_for(window.size, 2 * lines.size)
     motions, status = long_call(
         _core.api_motion.generate, lines, real("amplitude", amplitude, lines.shape), _step(step), window,
-        int(seed), int(first), int(count), _threads(threads),
+        int(seed), int(first), int(count), thread_count(threads),
     )  # fmt: skip
     check(status, "generated motions")
     return motions.T
@@ -128,7 +131,13 @@ class Spectra:
 
 
 def response_spectra(
-    motions, step: float, periods, dampings=(0.05,), *, threads: int = 1, points_per_cycle: int = POINTS_PER_CYCLE
+    motions: npt.ArrayLike,
+    step: float,
+    periods: npt.ArrayLike,
+    dampings: npt.ArrayLike = (0.05,),
+    *,
+    threads: int = 1,
+    points_per_cycle: int = POINTS_PER_CYCLE,
 ) -> Spectra:
     """Response spectra of one motion (points) or several (count, points) [m/s^2], from rest.
 
@@ -140,9 +149,9 @@ def response_spectra(
         raise ValueError("response spectra need a period, and dampings from 0 to below 1")
     if periods.min() * 4096 < points_per_cycle * _step(step):
         raise ValueError(f"period {periods.min():g} s is too short for a time step of {step:g} s")
-    _size(3, periods.size, dampings.size, batch.shape[1])
+    room_for(3, periods.size, dampings.size, batch.shape[1])
     peak, status = long_call(
-        _core.api_motion.spectra, batch, _step(step), periods, dampings, int(points_per_cycle), _threads(threads)
+        _core.api_motion.spectra, batch, _step(step), periods, dampings, int(points_per_cycle), thread_count(threads)
     )
     check(status, "response spectra")
     peak = np.moveaxis(peak, (0, 1, 2, 3), (0, 3, 2, 1))
@@ -151,7 +160,7 @@ def response_spectra(
     return Spectra(periods, dampings, *np.ascontiguousarray(peak))
 
 
-def oscillator(motion, step: float, period: float, damping: float) -> tuple[np.ndarray, np.ndarray]:
+def oscillator(motion: npt.ArrayLike, step: float, period: float, damping: float) -> tuple[np.ndarray, np.ndarray]:
     """Displacement [m] and velocity [m/s] of one oscillator relative to the ground at the samples, from rest."""
     u, v, status = _core.api_motion.oscillator(
         real("motion", motion, (None,)), _step(step), float(period), float(damping), POINTS_PER_CYCLE
@@ -185,19 +194,19 @@ class Measures:
         return self.t75 - self.t05
 
 
-def measures(motions, step: float, threads: int = 1) -> Measures:
+def measures(motions: npt.ArrayLike, step: float, threads: int = 1) -> Measures:
     """Measures of one motion (points) or several (count, points) [m/s^2]; exact for straight lines between samples."""
-    value, status = long_call(_core.api_motion.motion_measure, _batch(motions), _step(step), _threads(threads))
+    value, status = long_call(_core.api_motion.motion_measure, _batch(motions), _step(step), thread_count(threads))
     check(status, "intensity measures")
     return Measures(*value)
 
 
-def kinematics(motion, step: float) -> tuple[np.ndarray, np.ndarray]:
+def kinematics(motion: npt.ArrayLike, step: float) -> tuple[np.ndarray, np.ndarray]:
     """Velocity [m/s] and displacement [m] at the samples of an acceleration [m/s^2], from rest."""
     return _core.api_motion.kinematics(real("motion", motion, (None,)), _step(step))
 
 
-def fourier(series, length: int | None = None) -> np.ndarray:
+def fourier(series: npt.ArrayLike, length: int | None = None) -> np.ndarray:
     """Transform (length // 2 + 1) complex of a real series padded with zeros to `length`; GSL, not scaled."""
     series = real("series", series, (None,))
     length = int(length or series.size)
@@ -208,7 +217,7 @@ def fourier(series, length: int | None = None) -> np.ndarray:
     return re + 1j * im
 
 
-def fourier_inverse(transform, length: int) -> np.ndarray:
+def fourier_inverse(transform: npt.ArrayLike, length: int) -> np.ndarray:
     """Real series (length) of a transform made by `fourier`."""
     transform = np.asarray(transform)
     half = int(length) // 2 + 1

@@ -4,15 +4,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
+from extrados.core import lists
 from extrados.core.arch import FourHinge
-from extrados.core.calls import integers, long_call, real
+from extrados.core.calls import indices, long_call, real, room_for, thread_count
 from extrados.core.errors import check, status_code, status_list
-from extrados.core.ground import Ground, motion_set
+from extrados.core.ground import Ground, MotionSet, as_motion_set
+from extrados.core.handles import Owner
 
-OUTCOMES = ("no-hinging", "recovery", "collapse")
-EVENTS = {1: "uplift", 2: "impact", 3: "peak", 4: "rest", 5: "collapse"}
+__all__ = [
+    "EVENTS", "OUTCOMES", "Body", "BodyList", "Ensemble", "Ground", "MotionSet", "Response", "arch_body", "block_body",
+    "ensemble", "history",
+]  # fmt: skip
+
+#: Outcomes by their number, from 0; events by theirs.
+OUTCOMES = tuple(lists.words("rocking_outcome").values())
+EVENTS = lists.words("rocking_event")
 
 
 @dataclass(frozen=True)
@@ -27,8 +36,12 @@ def arch_body(mechanism: FourHinge, restitution: float) -> Body:
     """The symmetric arch; restitution c_v in [0, 1]."""
     if not 0.0 <= restitution <= 1.0:
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
-    hinge, mass, centroid, inertia = mechanism.links()
-    return Body(1, np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]))
+    hinge, (mass, x, y, inertia) = mechanism.links()
+    centroid = np.vstack([x, y])
+    return Body(
+        lists.number("rocking_body", "arch"),
+        np.concatenate([hinge.T.ravel(), mass, centroid.T.ravel(), inertia, [restitution]]),
+    )
 
 
 def block_body(
@@ -48,7 +61,35 @@ def block_body(
         raise ValueError(f"mass, inertia, height and toes of a block must be above zero, got {values[1:6]}")
     if not all(0.0 <= c <= 1.0 for c in restitution):
         raise ValueError(f"restitution is {restitution}, expected 0 to 1")
-    return Body(2, np.array(values))
+    return Body(lists.number("rocking_body", "block"), np.array(values))
+
+
+class BodyList(Owner):
+    """Rocking structures in the core, to be used by any number of calls and threads."""
+
+    what = "list of rocking structures"
+
+    def __init__(self, bodies: Sequence[Body]):
+        if not bodies:
+            raise ValueError("a list of rocking structures needs one")
+        handle, status = _core.api_rocking.create(len(bodies))
+        check(status, self.what)
+        super().__init__(handle)
+        self.count = len(bodies)
+        try:
+            for k, body in enumerate(bodies):
+                status = _core.api_rocking.body(handle, k + 1, body.kind, real("body", body.parameters, (None,)))
+                check(status, f"rocking structure {k}")
+        except BaseException:
+            self.close()
+            raise
+
+    def __len__(self) -> int:
+        return self.count
+
+
+def _as_body_list(bodies: "Sequence[Body] | BodyList") -> BodyList:
+    return bodies if isinstance(bodies, BodyList) else BodyList(bodies)
 
 
 @dataclass(frozen=True)
@@ -98,54 +139,68 @@ def history(
     start_rate: float = 0.0,
     room: int = 20000,
 ) -> Response:
-    """Rock `body` under `ground` times `scale` until collapse or `end_time` [s]."""
-    if not (end_time > 0.0 and output_step > 0.0 and 0.0 < tolerance < 1.0):
+    """Rock `body` under `ground` times `scale` until collapse or `end_time` [s].
+
+    It starts with `start_rotation` >= 0 [rad] and `start_rate` [rad/s] to the side `start_side`, 1 to +x or -1. `room`:
+    events kept.
+    """
+    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0):
         raise ValueError("end time, output step and tolerance must be positive")
-    motions = motion_set([ground])
+    if not np.isfinite(scale):
+        raise ValueError(f"scale is {scale}, expected a number")
+    if start_side not in (1, -1) or not start_rotation >= 0.0:
+        raise ValueError(f"start is {start_rotation} rad to side {start_side}, expected 0 or more to side 1 or -1")
+    if not 0 <= room <= 10**7:
+        raise ValueError(f"room is {room}, expected 0 to 10,000,000 events")
+    room_for(8, int(min(end_time / output_step, 1e12)))
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
-    out = long_call(
-        _core.api_rocking.history,
-        body.kind,
-        real("body", body.parameters, (None,)),
-        int(motions.sampled[0]),
-        float(ground.start),
-        float(ground.step),
-        motions.samples,
-        motions.breaks,
-        motions.linear,
-        motions.harmonic,
-        float(scale),
-        float(end_time),
-        float(tolerance),
-        int(start_side),
-        float(start_rotation),
-        float(start_rate),
-        times,
-        int(room),
-    )
-    outcome, state, points, kinds, event, events, summary, work, loss, status = out
+    with MotionSet([ground]) as motions, BodyList([body]) as bodies:
+        counts, measures, state, kinds, event, status = long_call(
+            _core.api_rocking.history,
+            bodies.handle,
+            motions.handle,
+            np.array([1, 1], dtype=np.int32),
+            float(scale),
+            float(end_time),
+            float(tolerance),
+            real("start", [start_side, start_rotation, start_rate], (3,)),
+            times,
+            max(int(room), 1),
+        )
+    outcome, half_cycles, impacts, steps, rejected, settled, points, events = (int(k) for k in counts)
     interrupted = status == status_code("cancelled")
     if not interrupted:
         check(status, "rocking response")
     found = min(events, room)
     state = state[:, :points]
-    if not (np.isfinite(state).all() and np.isfinite(summary).all() and np.isfinite([work, loss]).all()):
+    if not (np.isfinite(state).all() and np.isfinite(measures).all()):
         check(status_code("not_finite"), "rocking response")
+    peak, peak_ratio, stop_time, work, loss = (float(x) for x in measures)
+    rotation, rate, acceleration, shaking, vertical, kinetic, potential, ledger = state
     return Response(
-        OUTCOMES[outcome[0]],
-        int(outcome[1]),
-        int(outcome[2]),
-        *(float(x) for x in summary),
-        int(outcome[3]),
-        int(outcome[4]),
-        times[:points],
-        *state,
-        [(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)],
-        int(events),
-        work,
-        loss,
-        bool(outcome[5]),
-        interrupted,
+        outcome=OUTCOMES[outcome],
+        half_cycles=half_cycles,
+        impacts=impacts,
+        peak=peak,
+        peak_ratio=peak_ratio,
+        stop_time=stop_time,
+        steps=steps,
+        rejected=rejected,
+        time=times[:points],
+        rotation=rotation,
+        rate=rate,
+        acceleration=acceleration,
+        ground=shaking,
+        vertical=vertical,
+        kinetic=kinetic,
+        potential=potential,
+        ledger=ledger,
+        events=[(EVENTS[int(k)], float(t), float(x)) for k, (t, x) in zip(kinds[:found], event.T[:found], strict=True)],
+        events_found=events,
+        work=work,
+        loss=loss,
+        settled=bool(settled),
+        interrupted=interrupted,
     )
 
 
@@ -166,47 +221,47 @@ class Ensemble:
 
 
 def ensemble(
-    bodies: Sequence[Body],
-    grounds: Sequence[Ground],
-    run_body,
-    run_motion,
-    run_scale,
-    end_time,
+    bodies: Sequence[Body] | BodyList,
+    grounds: Sequence[Ground] | MotionSet,
+    run_body: npt.ArrayLike,
+    run_motion: npt.ArrayLike,
+    run_scale: npt.ArrayLike,
+    end_time: npt.ArrayLike,
     *,
-    start_rotation=0.0,
+    start_rotation: npt.ArrayLike = 0.0,
     tolerance: float = 1e-8,
     stop_when_safe: bool = True,
     threads: int = 1,
 ) -> Ensemble:
     """Run pairs of bodies and motions (0-based indices); results do not depend on `threads`.
 
-    run_scale, end_time [s] and start_rotation (> 0 to +x) [rad] are one number or one for each run.
+    bodies and grounds may be sets made before: they are then not handed over again. run_scale, end_time [s] and start_rotation (> 0 to +x) [rad] are one number or one for each run.
 
     With `stop_when_safe` a run ends once the motion is over and the energy left is below the barrier:
     outcome and peak are known then, the number of impacts is not.
     """
-    motions = motion_set(grounds)
-    n = len(run_body)
-    run_body, run_motion = integers("run_body", run_body, n), integers("run_motion", run_motion, n)
-    if n and not (
-        0 <= run_body.min() and run_body.max() < len(bodies)
-        and 0 <= run_motion.min() and run_motion.max() < len(grounds)
-    ):  # fmt: skip
-        raise ValueError("a run names a body or a motion that is not there")
-    if threads < 1:
-        raise ValueError(f"threads is {threads}, expected at least 1")
+    n = len(np.asarray(run_body))
+    if not n:
+        raise ValueError("an ensemble needs a run")
+    with np.errstate(invalid="ignore"):
+        values = {
+            name: real(name, np.broadcast_to(np.asarray(value, dtype=float), (n,)), (n,))
+            for name, value in (("run_scale", run_scale), ("end_time", end_time), ("start_rotation", start_rotation))
+        }
+    if not 0.0 < tolerance < 1.0:
+        raise ValueError(f"tolerance is {tolerance}, expected between 0 and 1")
+    structures, motions = _as_body_list(bodies), as_motion_set(grounds)
     out = long_call(
         _core.api_rocking.ensemble,
-        integers("kind", [b.kind for b in bodies]),
-        np.asfortranarray(np.stack([real("body", b.parameters, (None,)) for b in bodies], axis=1)),
-        motions.sampled, motions.first, motions.segments, motions.start, motions.step,
-        motions.samples, motions.breaks, motions.linear, motions.harmonic,
-        run_body + np.int32(1), run_motion + np.int32(1),
-        real("run_scale", np.broadcast_to(run_scale, n), (n,)),
-        real("end_time", np.broadcast_to(end_time, n), (n,)),
-        real("start_rotation", np.broadcast_to(start_rotation, n), (n,)),
-        float(tolerance), int(stop_when_safe), int(threads),
-    )  # fmt: skip
+        structures.handle,
+        motions.handle,
+        indices("run_body", run_body, len(structures), (n,)),
+        indices("run_motion", run_motion, len(motions), (n,)),
+        *values.values(),
+        float(tolerance),
+        int(stop_when_safe),
+        thread_count(threads),
+    )
     outcome, peak, stop_time, run_status, status = out
     cancelled = status_code("cancelled")
     if status != cancelled:

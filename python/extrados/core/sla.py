@@ -2,24 +2,36 @@
 
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados import _core
-from extrados.core.calls import integers, long_call, real
+from extrados.core.calls import indices, integers, long_call, real, room_for, thread_count
 from extrados.core.errors import check, status_code
+from extrados.core.handles import Owner
+from extrados.core.sla_parts import (
+    ELEMENTS,
+    EVENTS,
+    LAWS,
+    STOPS,
+    Bars,
+    Behaviour,
+    Events,
+    Freedoms,
+    Monitor,
+    Plane,
+    Softening,
+    Springs,
+    Stop,
+)  # fmt: skip
 
-LAWS = {"linear": 1, "exponential": 2, "hordijk": 3}
-ELEMENTS = {"T3": 3, "T6": 6, "Q4": 4, "Q8": 8}
-EVENTS = {
-    1: "tension n", 2: "tension s", 3: "compression n", 4: "compression s",
-    5: "closing n", 6: "closing s", 7: "opening n", 8: "opening s",
-}  # fmt: skip
-STOPS = {
-    0: "", 1: "mechanism", 2: "no point limits the load", 3: "all intervals are empty",
-    4: "target displacement", 5: "target load", 6: "load fell below the fraction of its peak",
-}  # fmt: skip
+__all__ = [
+    "ELEMENTS", "EVENTS", "LAWS", "REPORT", "STOPS", "BadElement", "Bars", "Behaviour", "Events", "Freedoms",
+    "Mechanism", "Model", "Monitor", "Plane", "Softening", "Springs", "Stop", "body_force", "intervals",
+    "largest_band", "memory_limit", "teeth",
+]  # fmt: skip
+
 REPORT = (
     "strain_n", "strain_s", "strain_ns", "stress_n", "stress_s", "stress_ns", "cos", "sin", "ratio_n", "ratio_s",
     "tooth_n", "tooth_s", "lambda_lo", "lambda_hi", "volume", "crush_n", "crush_s", "shut",
@@ -43,30 +55,6 @@ class BadElement(ValueError):
         self.element = element
 
 
-@dataclass(frozen=True)
-class Softening:
-    """How a material loses strength in one sense of stress.
-
-    strength [Pa], energy [N/m] per crack area; `ripple` p is the half-width of the teeth over the strength;
-    `exact` teeth carry the energy of the law exactly, else they are those of the ripple (Rots et al. 2008);
-    without `overshoot` the first tooth ends at the strength itself.
-    """
-
-    strength: float
-    energy: float
-    law: str = "linear"
-    ripple: float = 0.1
-    exact: bool = True
-    overshoot: bool = True
-
-    def row(self, young: float, band: float) -> list[float]:
-        """The line of the core's tooth tables."""
-        return [
-            LAWS[self.law], young, self.strength, self.energy, band, self.ripple, float(self.exact),
-            float(self.overshoot),
-        ]  # fmt: skip
-
-
 def teeth(softening: Softening, young: float, band: float) -> tuple[np.ndarray, np.ndarray]:
     """Secant moduli [Pa] and peak stresses [Pa] of the teeth of a crack band `band` [m] wide."""
     s = softening
@@ -74,31 +62,34 @@ def teeth(softening: Softening, young: float, band: float) -> tuple[np.ndarray, 
         LAWS[s.law], young, s.strength, s.energy, band, s.ripple, int(s.exact), int(s.overshoot), MOST_TEETH
     )
     check(status, f"teeth of a {s.law} law, band {band:g} m (largest {largest_band(s, young):g} m)")
-    return modulus[:n].copy(), strength[:n].copy()
+    return np.array(modulus[:n]), np.array(strength[:n])
 
 
 def largest_band(softening: Softening, young: float) -> float:
     """The crack band width beyond which the law snaps back [m]."""
-    return _core.api_sla.band(LAWS[softening.law], young, softening.strength, softening.energy)
+    return float(_core.api_sla.band(LAWS[softening.law], young, softening.strength, softening.energy))
 
 
-def intervals(alpha: float, beta: float, a, b) -> tuple[np.ndarray, np.ndarray]:
+def intervals(alpha: float, beta: float, a: npt.ArrayLike, b: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Multipliers lo, hi (n) that keep r <= alpha - beta m under stresses a + lambda b, both (n, 3)."""
     a = real("a", np.transpose(a), (3, None))
-    return _core.api_sla.intervals(alpha, beta, a, real("b", np.transpose(b), (3, a.shape[1])))
+    lo, hi = _core.api_sla.intervals(alpha, beta, a, real("b", np.transpose(b), (3, a.shape[1])))
+    return lo, hi
 
 
-def body_force(kind: str, points: tuple[int, int], xy, connect, density) -> np.ndarray:
+def body_force(
+    kind: str, points: tuple[int, int], xy: npt.ArrayLike, connect: npt.ArrayLike, density: npt.ArrayLike
+) -> np.ndarray:
     """Consistent nodal forces (nodes, 2) [N] of a force per wall area (elements, 2) [N/m^2]."""
-    connect = np.asfortranarray(np.asarray(connect).T + 1, dtype=np.int32)
+    place = real("xy", np.transpose(xy), (2, None))
+    nodes = indices("connect", np.transpose(connect), place.shape[1], (ELEMENTS[kind], None))
     force, bad, status = _core.api_sla.body_force(
-        ELEMENTS[kind], *points, real("xy", np.transpose(xy), (2, None)), connect,
-        real("density", np.transpose(density), (2, connect.shape[1])),
-    )  # fmt: skip
+        ELEMENTS[kind], *points, place, nodes, real("density", np.transpose(density), (2, nodes.shape[1]))
+    )
     if bad:
         raise BadElement(bad - 1, "element")
     check(status, "body force")
-    return force.T.copy()
+    return np.array(force.T)
 
 
 def memory_limit() -> int:
@@ -109,180 +100,18 @@ def memory_limit() -> int:
         return 4 << 30
 
 
-@dataclass
-class Events:
-    """What was recorded, one row per event; n_* before the damage of that event is done.
-
-    load: multiplier; limit_t, limit_c: least upper and greatest lower limit; stored, external, dissipated
-    (path), crack (area of the teeth) energies [J]; compliance fB.uB; residual of the last guard check.
-    point (0-based), code (see EVENTS), equilibrium; monitors (events, monitors) [m].
-    """
-
-    load: np.ndarray
-    limit_t: np.ndarray
-    limit_c: np.ndarray
-    stored: np.ndarray
-    external: np.ndarray
-    dissipated: np.ndarray
-    crack: np.ndarray
-    compliance: np.ndarray
-    residual: np.ndarray
-    point: np.ndarray
-    code: np.ndarray
-    number: np.ndarray
-    equilibrium: np.ndarray
-    monitors: np.ndarray
-    reason: str = ""
-    guard: tuple[int, int, int] = (0, 0, 0)
-    interrupted: bool = False
-    crack_total: float = 0.0  # with the last event applied [J]
-
-    def __len__(self) -> int:
-        return len(self.load)
-
-    @property
-    def ledger_error(self) -> float:
-        """Greatest imbalance of the energies over the greatest work."""
-        if not len(self):
-            return 0.0
-        gap = self.external - self.stored - self.dissipated
-        scale = np.maximum(np.abs(self.external), np.abs(self.stored)).max()
-        return float(np.abs(gap).max() / scale) if scale > 0.0 else 0.0
-
-    @staticmethod
-    def join(parts: Sequence["Events"]) -> "Events":
-        """Batches one behind the other."""
-        last = parts[-1]
-        columns = {
-            name: np.concatenate([getattr(p, name) for p in parts])
-            for name in Events.__dataclass_fields__
-            if name not in ("reason", "guard", "interrupted", "crack_total")
-        }
-        return Events(
-            **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total
-        )
-
-
-@dataclass(frozen=True)
-class Monitor:
-    """A displacement watched: a weighted sum over node (0-based), direction (0 x, 1 y) and share."""
-
-    node: np.ndarray
-    direction: np.ndarray
-    share: np.ndarray
-
-    @staticmethod
-    def of(node: int, direction: int) -> "Monitor":
-        return Monitor(np.array([node]), np.array([direction]), np.array([1.0]))
-
-
-@dataclass(frozen=True)
-class Stop:
-    """When a run ends by itself: `load` carried, `displacement` of the first monitor, `fraction` of the peak
-    load after it, compliance over the first (a mechanism). `refuse_overload`: the first state must carry A."""
-
-    load: float = np.inf
-    displacement: float = np.inf
-    fraction: float = -1.0
-    compliance: float = 1e6
-    refuse_overload: bool = False
-
-
-@dataclass(frozen=True)
-class Plane:
-    """Plane-stress elements of one kind, all arrays by element (or one value for all).
-
-    connect (elements, nodes) 0-based; thickness [m], young [Pa], nu, band [m]; tension and compression
-    softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
-    strength that reduces the tensile one (0 none); `axis` angle of the only crack normal allowed [rad], NaN
-    where cracks choose theirs; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
-    """
-
-    kind: str
-    connect: np.ndarray
-    thickness: float | np.ndarray
-    young: float | np.ndarray
-    nu: float | np.ndarray
-    band: float | np.ndarray = 0.0
-    tension: Softening | Sequence[Softening | None] | None = None
-    compression: Softening | Sequence[Softening | None] | None = None
-    lateral: float | np.ndarray = 0.0
-    axis: float | np.ndarray = np.nan
-    points: tuple[int, int] = (2, 2)
-    selective: bool = False
-
-
-@dataclass(frozen=True)
-class Bars:
-    """Bars of two nodes: connect (bars, 2) 0-based, area [m^2], young [Pa], band [m], softening as of Plane."""
-
-    connect: np.ndarray
-    area: float | np.ndarray
-    young: float | np.ndarray
-    band: float | np.ndarray = 0.0
-    tension: Softening | Sequence[Softening | None] | None = None
-    compression: Softening | Sequence[Softening | None] | None = None
-
-
-@dataclass(frozen=True)
-class Springs:
-    """Linear springs between freedoms: node (springs, 2) 0-based, -1 the ground; direction 0 x, 1 y;
-    stiffness [N/m]."""
-
-    node: np.ndarray
-    direction: np.ndarray
-    stiffness: np.ndarray
-
-
-@dataclass(frozen=True)
-class Behaviour:
-    """Of cracked material: `isotropic` damage; shear `retention` constant, None for thesis Eq. 4.11; `closure`
-    with at most `most_changes` openings and closings of a crack; stiffness `floor` left after the last tooth."""
-
-    isotropic: bool = False
-    retention: float | None = None
-    closure: bool = False
-    most_changes: int = 10
-    floor: float = 1e-6
-
-
-@dataclass
-class Freedoms:
-    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it."""
-
-    equation: np.ndarray
-    factor: np.ndarray
-
-    @staticmethod
-    def make(nodes: int, held=(), ties: Sequence[Sequence[tuple[int, int, float]]] = ()) -> "Freedoms":
-        """held: (node, direction) pairs; ties: lists of (node, direction, factor) that move as one."""
-        equation = np.zeros((nodes, 2), dtype=np.int64)
-        factor = np.ones((nodes, 2))
-        for node, direction in held:
-            equation[node, direction] = -1
-        number = 0
-        for tie in ties:
-            for node, direction, share in tie:
-                if equation[node, direction] != 0:
-                    what = "held" if equation[node, direction] < 0 else "tied already"
-                    raise ValueError(f"node {node + 1} cannot be tied in {'xy'[direction]}: it is {what}")
-                equation[node, direction] = number + 1
-                factor[node, direction] = share
-            number += 1
-        free = equation == 0
-        equation[free] = number + 1 + np.arange(int(free.sum()))
-        return Freedoms(np.where(equation < 0, -1, equation - 1), factor)
-
-
-class Model:
+class Model(Owner):
     """A model in the core; close it, or use it in a `with`.
 
-    xy (nodes, 2) [m]. `algorithm` "update" changes the factor at each event, "refactor" makes it anew.
+    xy (nodes, 2) [m]. `algorithm` "update" changes the factor at each event, "refactor" makes it anew. IndexError
+    where an element, a spring or a monitor names a node that is not there.
     """
+
+    what = "model of sequentially linear analysis"
 
     def __init__(
         self,
-        xy,
+        xy: npt.ArrayLike,
         freedoms: Freedoms,
         groups: Sequence[Plane | Bars | Springs],
         behaviour: Behaviour | None = None,
@@ -292,32 +121,37 @@ class Model:
         threads: int = 1,
         memory: int | None = None,
     ):
-        behaviour = behaviour or Behaviour()
-        self.nodes = len(xy)
-        self._handle = 0
-        self.behaviour = behaviour
+        if algorithm not in ("update", "refactor"):
+            raise ValueError(f"algorithm is {algorithm!r}, expected 'update' or 'refactor'")
+        self.behaviour = behaviour = behaviour or Behaviour()
         self.plane_points: list[tuple[Plane, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
+        place = real("xy", np.transpose(xy), (2, None))
+        self.nodes = place.shape[1]
+        equation = np.asarray(freedoms.equation)
+        if equation.shape != (self.nodes, 2):
+            raise ValueError(f"equations have shape {equation.shape}, expected ({self.nodes}, 2)")
+        equations = int(equation.max(initial=-1)) + 1
+        if equations > 2 * self.nodes:
+            raise IndexError(f"a freedom belongs to equation {equations} of {2 * self.nodes} freedoms")
         handle, status = _core.api_sla.create(
-            real("xy", np.transpose(xy), (2, self.nodes)),
-            np.asfortranarray(freedoms.equation.T + 1, dtype=np.int32),
-            real("factor", freedoms.factor.T, (2, self.nodes)),
+            place,
+            indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1),
+            real("factor", np.transpose(freedoms.factor), (2, self.nodes)),
             int(behaviour.isotropic), retention, int(behaviour.closure), int(behaviour.most_changes),
             float(behaviour.floor),
         )  # fmt: skip
-        self._handle = int(handle)
+        check(status, "model")
+        super().__init__(handle)
         try:
-            check(status, "model")
             for group in groups:
                 self._add(group)
-            if algorithm not in ("update", "refactor"):
-                raise ValueError(f"algorithm is {algorithm!r}, expected 'update' or 'refactor'")
-            equations = int(freedoms.equation.max()) + 1
             metis = equations > 3000 if ordering is None else ordering == "metis"
             limit = memory_limit() if memory is None else memory
             sizes, status = long_call(
-                _core.api_sla.prepare, self._handle, int(metis), limit // 8, int(algorithm == "refactor"), int(threads)
-            )
+                _core.api_sla.prepare, self.handle, int(metis), limit // 8, int(algorithm == "refactor"),
+                thread_count(threads),
+            )  # fmt: skip
             self.equations, self.points, self.nonzeros, self.factor_values = (int(x) for x in sizes)
             if status == status_code("too_large"):
                 raise MemoryError(
@@ -330,99 +164,102 @@ class Model:
             self.close()
             raise
 
-    def __enter__(self) -> "Model":
-        return self
-
-    def __exit__(self, *_) -> None:
-        self.close()
-
-    def close(self) -> None:
-        """Give the memory back."""
-        if self._handle:
-            _core.api_sla.free(self._handle)
-            self._handle = 0
-
-    @staticmethod
-    def _tables(count: int, young, band, *laws) -> tuple[np.ndarray, list[np.ndarray]]:
-        """Distinct rows of tooth tables (8, rows) and, for each law, the row of each element (1-based, 0 none)."""
-        found: dict[tuple, int] = {}
+    def _tables(self, count: int, group: Plane | Bars) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Hand over the tooth tables of a group; Young's modulus and, for tension and compression, the table of
+        each element (1-based, 0 none)."""
+        young, band = _each("young", group.young, count), _each("band", group.band, count)
+        found: dict[tuple[float, ...], int] = {}
         numbers = []
-        for law in laws:
-            each = [law] * count if law is None or isinstance(law, Softening) else law
+        for law in (group.tension, group.compression):
+            one_for_all = law is None or isinstance(law, Softening)
+            each = [law] * count if one_for_all else list(law)  # type: ignore[arg-type]
+            if len(each) != count:
+                raise ValueError(f"{len(each)} softening laws for {count} elements")
             number = np.zeros(count, dtype=np.int32)
             for k, softening in enumerate(each):
-                if softening is not None:
-                    key = tuple(softening.row(float(young[k]), float(band[k])))
-                    number[k] = found.setdefault(key, len(found) + 1)
+                if isinstance(softening, Softening):
+                    row = tuple(softening.row(float(young[k]), float(band[k])))
+                    number[k] = found.setdefault(row, len(found) + 1)
             numbers.append(number)
-        rows = np.array(list(found), dtype=float).reshape(-1, 8)
-        if not len(rows):
-            rows = np.array([[1, 1e9, 1e6, 1e2, 1e-3, 0.5, 1, 1]], dtype=float)  # f2py wants one row; none refers to it
-        return np.asfortranarray(rows.T), numbers
+        if found:
+            rows = real("softening", np.transpose(list(found)), (8, None))
+            bad, status = _core.api_sla.tables(self.handle, rows)
+            if bad:
+                kind, modulus, strength, energy, width = rows[:5, bad - 1]
+                name = next(word for word, number in LAWS.items() if number == int(kind))
+                largest = largest_band(Softening(strength, energy, name), modulus)
+                check(
+                    status,
+                    f"teeth of a {name} law with E {modulus:g} Pa, strength {strength:g} Pa, energy {energy:g} N/m: "
+                    f"band {width:g} m, the largest is {largest:g} m",
+                )
+            check(status, "softening laws")
+        return young, numbers[0], numbers[1]
 
     def _add(self, group: Plane | Bars | Springs) -> None:
         if isinstance(group, Springs):
-            count = len(group.stiffness)
-            status = _core.api_sla.add_springs(
-                self._handle,
-                np.asfortranarray(np.asarray(group.node).T + 1, dtype=np.int32),
-                np.asfortranarray(np.asarray(group.direction).T + 1, dtype=np.int32),
-                real("stiffness", group.stiffness, (count,)),
-            )
-            check(status, "springs")
+            self._add_springs(group)
             return
-        connect = np.asarray(group.connect)
-        count = len(connect)
-
-        def each(name: str, value) -> np.ndarray:
-            return real(name, np.broadcast_to(np.asarray(value, dtype=float), count).copy(), (count,))
-
-        young, band = each("young", group.young), each("band", group.band)
-        rows, (table, crush) = self._tables(count, young, band, group.tension, group.compression)
-        one_based = np.asfortranarray(connect.T + 1, dtype=np.int32)
+        per = 2 if isinstance(group, Bars) else ELEMENTS[group.kind]
+        connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
+        count = connect.shape[1]
+        young, tension, compression = self._tables(count, group)
         if isinstance(group, Bars):
-            bad, bad_row, status = _core.api_sla.add_bars(
-                self._handle, one_based, each("area", group.area), young, table, crush, rows
+            bad, status = _core.api_sla.bars(
+                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(tension, compression)
             )
             what = "bar"
         else:
-            axis = np.broadcast_to(np.asarray(group.axis, dtype=float), count)
+            axis = np.broadcast_to(np.asarray(group.axis, dtype=float), (count,))
             given = np.isfinite(axis)
-            bad, bad_row, status = _core.api_sla.add_plane(
-                self._handle, ELEMENTS[group.kind], *group.points, int(group.selective), one_based,
-                each("thickness", group.thickness), young, each("nu", group.nu), table, crush,
-                each("lateral", group.lateral), given.astype(np.int32), np.where(given, axis, 0.0), rows,
+            properties = _rows(
+                _each("thickness", group.thickness, count), young, _each("nu", group.nu, count),
+                _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
+            )  # fmt: skip
+            bad, status = _core.api_sla.plane(
+                self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
+                properties, _rows(tension, compression, given.astype(np.int32)),
             )  # fmt: skip
             what = "element"
-            per = {"T3": 1, "T6": 3}.get(group.kind, group.points[0] * group.points[1])
+            points = {"T3": 1, "T6": 3}.get(group.kind, group.points[0] * group.points[1])
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
-            self.plane_points.append((group, first, per))
+            self.plane_points.append((group, first, points))
         if bad:
             raise BadElement(int(bad) - 1, what)
-        if bad_row:
-            row = rows[:, bad_row - 1]
-            law = next(name for name, number in LAWS.items() if number == int(row[0]))
-            softening = Softening(row[2], row[3], law)
-            check(
-                status,
-                f"teeth of a {law} law with E {row[1]:g} Pa, strength {row[2]:g} Pa, energy {row[3]:g} N/m: "
-                f"band {row[4]:g} m, the largest is {largest_band(softening, row[1]):g} m",
-            )
         check(status, f"{what}s")
+
+    def _add_springs(self, group: Springs) -> None:
+        count = len(group.stiffness)
+        ground = np.asarray(group.node) == -1  # the ground is the core's node 0
+        node = indices("node of a spring", np.asarray(group.node).T + 1, self.nodes + 1, (2, count)) - np.int32(1)
+        direction = np.where(ground, 0, np.asarray(group.direction))
+        status = _core.api_sla.springs(
+            self.handle, node, indices("direction of a spring", direction.T, 2, (2, count)),
+            real("stiffness", group.stiffness, (count,)),
+        )  # fmt: skip
+        check(status, "springs")
 
     def factorise(self) -> float:
         """Factor of the present damage; returns the smallest over the largest pivot."""
-        node, direction, ratio, status = long_call(_core.api_sla.factorise, self._handle)
+        node, direction, ratio, status = long_call(_core.api_sla.factorise, self.handle)
         if status == status_code("not_positive_definite"):
             raise Mechanism(int(node) - 1, "xy"[max(int(direction) - 1, 0)], float(ratio))
         check(status, "factor of the stiffness matrix")
         return float(ratio)
 
-    def loads(self, constant, reference, *, carried: bool = False, events: int = 0, ledger=(0.0, 0.0, 0.0)) -> None:
+    def loads(
+        self,
+        constant: npt.ArrayLike,
+        reference: npt.ArrayLike,
+        *,
+        carried: bool = False,
+        events: int = 0,
+        ledger: npt.ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:
         """Start a stage under nodal forces (nodes, 2) [N]: constant + lambda reference."""
         status = long_call(
             _core.api_sla.loads,
-            self._handle,
+            self.handle,
             real("constant", np.transpose(constant), (2, self.nodes)),
             real("reference", np.transpose(reference), (2, self.nodes)),
             int(carried),
@@ -434,55 +271,81 @@ class Model:
     def run(self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None) -> Events:
         """Up to `room` events; the last one recorded is chosen but not applied until the next call."""
         stop = stop or Stop()
-        first = np.cumsum([1] + [len(m.node) for m in monitors]).astype(np.int32)
-        huge = np.finfo(float).max
-        count, reals, ints, watched, guard, cracked, reason, status = long_call(
-            _core.api_sla.run, self._handle, int(room), min(stop.load, huge), min(stop.displacement, huge),
-            float(stop.fraction), float(stop.compliance), int(stop.refuse_overload), first,
-            integers("node", np.concatenate([m.node for m in monitors])) + np.int32(1),
-            integers("direction", np.concatenate([m.direction for m in monitors])) + np.int32(1),
-            real("share", np.concatenate([m.share for m in monitors]), (None,)),
+        if room < 1 or not monitors:
+            raise ValueError("a run needs room for an event, and a monitor")
+        room_for(13 + len(monitors), room)
+        first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
+        huge = float(np.finfo(float).max)
+        node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
+        direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
+        limits = [min(stop.load, huge), min(stop.displacement, huge), stop.fraction, stop.compliance]
+        counts, reals, ints, watched, cracked, status = long_call(
+            _core.api_sla.run, self.handle, int(room), real("stop", limits, (4,)), int(stop.refuse_overload), first,
+            _rows(node, direction), real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
         interrupted = status == status_code("cancelled")
         if not interrupted:
             check(status, "events")
-        reals, ints = reals[:, :count].copy(), ints[:, :count]
+        count, checks, solutions, factors, reason = (int(k) for k in counts)
+        reals, ints = reals[:, :count].copy(), ints[:, :count].copy()
+        load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual = reals
         return Events(
-            *reals, ints[0] - 1, ints[1].copy(), ints[2].copy(), ints[3].astype(bool), watched[:, :count].T.copy(),
-            STOPS[int(reason)], tuple(int(g) for g in guard), interrupted, float(cracked),
+            load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual,
+            point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
+            monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
+            interrupted=interrupted, crack_total=float(cracked),
         )  # fmt: skip
 
     def displacement(self, load: float) -> np.ndarray:
         """Displacements (nodes, 2) [m] under constant + load * reference."""
-        ua, ub = _core.api_sla.displacement(self._handle, self.nodes)
-        return (ua + load * ub).T.copy()
+        ua, ub, status = _core.api_sla.displacement(self.handle, self.nodes)
+        check(status, "displacements")
+        return np.array((ua + load * ub).T)
 
     def residual(self) -> float:
         """Greater norm of the residual forces of the two displacements over that of their load, measured now."""
-        return float(long_call(_core.api_sla.measure, self._handle))
+        ratio, status = long_call(_core.api_sla.measure, self.handle)
+        check(status, "residual forces")
+        return float(ratio)
 
     def report(self, load: float) -> dict[str, np.ndarray]:
         """State of all points at a multiplier, columns as in REPORT."""
-        values = _core.api_sla.report(self._handle, float(load), self.points)
+        values, status = _core.api_sla.report(self.handle, float(load), self.points)
+        check(status, "state of the points")
         return dict(zip(REPORT, values.copy(), strict=True))
 
     def damage(self) -> np.ndarray:
         """The damage of all points (11, points), to be kept or set again."""
-        return _core.api_sla.damage(self._handle, 1, np.zeros((11, self.points), order="F"))
+        values, status = _core.api_sla.damage(self.handle, self.points)
+        check(status, "damage of the points")
+        return np.array(values, order="F")
 
-    def set_damage(self, damage: np.ndarray) -> None:
+    def set_damage(self, damage: npt.ArrayLike) -> None:
         """Go on from a stored damage: the factor is made anew."""
-        _core.api_sla.damage(self._handle, 0, real("damage", damage, (11, self.points)))
+        status = _core.api_sla.set_damage(self.handle, real("damage", damage, (11, self.points)))
+        check(status, "stored damage")
         self.factorise()
 
     def standing(self) -> np.ndarray:
         """Where the loop stands between two calls of `run`, beside loads and damage."""
-        return _core.api_sla.standing(self._handle).copy()
+        values, status = _core.api_sla.standing(self.handle)
+        check(status, "where the events stand")
+        return np.array(values)
 
-    def renew(self, damage: np.ndarray, standing: np.ndarray) -> None:
+    def renew(self, damage: npt.ArrayLike, standing: npt.ArrayLike) -> None:
         """Go on from a damage and where the loop stood, under the loads of the stage, with a new factor.
 
         Whoever goes on from the same two gets the same bits, after whatever history. Raises Mechanism.
         """
         self.set_damage(damage)
-        check(long_call(_core.api_sla.resume, self._handle, real("standing", standing, (27,))), "displacements")
+        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (27,))), "stored events")
+
+
+def _each(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:
+    """One value for all elements, or one for each."""
+    return real(name, np.broadcast_to(np.asarray(value, dtype=float), (count,)).copy(), (count,))
+
+
+def _rows(*rows: np.ndarray) -> np.ndarray:
+    """Arrays by element as the rows of one, in Fortran order."""
+    return np.asfortranarray(np.stack(rows))

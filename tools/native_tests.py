@@ -1,4 +1,4 @@
-"""Run the Fortran tests of the build that this environment uses; exits with their status."""
+"""Run the Fortran and C tests of the build that this environment uses; exits with their status."""
 
 import subprocess
 import sys

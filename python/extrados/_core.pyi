@@ -1,0 +1,12 @@
+"""The compiled core as the type checker sees it: facades that f2py wraps (fortran/api), called by extrados.core alone."""
+
+from typing import Any
+
+api_arch: Any
+api_mechanism: Any
+api_dem: Any
+api_motion: Any
+api_rocking: Any
+api_signal: Any
+api_sla: Any
+api_support: Any

@@ -1,0 +1,210 @@
+"""What a sequentially linear analysis is made of: laws, elements, freedoms, monitors, and what it records."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.core import lists
+
+LAWS = lists.numbers("sla_law")
+ELEMENTS = lists.numbers("sla_element")
+EVENTS = lists.words("sla_event")
+STOPS = lists.words("sla_stop")
+
+
+@dataclass(frozen=True)
+class Softening:
+    """How a material loses strength in one sense of stress.
+
+    strength [Pa], energy [N/m] per crack area; `ripple` p is the half-width of the teeth over the strength;
+    `exact` teeth carry the energy of the law exactly, else they are those of the ripple (Rots et al. 2008);
+    without `overshoot` the first tooth ends at the strength itself.
+    """
+
+    strength: float
+    energy: float
+    law: str = "linear"
+    ripple: float = 0.1
+    exact: bool = True
+    overshoot: bool = True
+
+    def row(self, young: float, band: float) -> list[float]:
+        """The line of the core's tooth tables."""
+        return [
+            LAWS[self.law], young, self.strength, self.energy, band, self.ripple, float(self.exact),
+            float(self.overshoot),
+        ]  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Monitor:
+    """A displacement watched: a weighted sum over node (0-based), direction (0 x, 1 y) and share."""
+
+    node: np.ndarray
+    direction: np.ndarray
+    share: np.ndarray
+
+    @staticmethod
+    def of(node: int, direction: int) -> "Monitor":
+        return Monitor(np.array([node]), np.array([direction]), np.array([1.0]))
+
+
+@dataclass(frozen=True)
+class Stop:
+    """When a run ends by itself: `load` carried, `displacement` of the first monitor, `fraction` of the peak
+    load after it, compliance over the first (a mechanism). `refuse_overload`: the first state must carry A."""
+
+    load: float = np.inf
+    displacement: float = np.inf
+    fraction: float = -1.0
+    compliance: float = 1e6
+    refuse_overload: bool = False
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Plane-stress elements of one kind, all arrays by element (or one value for all).
+
+    connect (elements, nodes) 0-based; thickness [m], young [Pa], nu, band [m]; tension and compression
+    softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
+    strength that reduces the tensile one (0 none); `axis` angle of the only crack normal allowed [rad], NaN
+    where cracks choose theirs; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
+    """
+
+    kind: str
+    connect: np.ndarray
+    thickness: float | np.ndarray
+    young: float | np.ndarray
+    nu: float | np.ndarray
+    band: float | np.ndarray = 0.0
+    tension: Softening | Sequence[Softening | None] | None = None
+    compression: Softening | Sequence[Softening | None] | None = None
+    lateral: float | np.ndarray = 0.0
+    axis: float | np.ndarray = np.nan
+    points: tuple[int, int] = (2, 2)
+    selective: bool = False
+
+
+@dataclass(frozen=True)
+class Bars:
+    """Bars of two nodes: connect (bars, 2) 0-based, area [m^2], young [Pa], band [m], softening as of Plane."""
+
+    connect: np.ndarray
+    area: float | np.ndarray
+    young: float | np.ndarray
+    band: float | np.ndarray = 0.0
+    tension: Softening | Sequence[Softening | None] | None = None
+    compression: Softening | Sequence[Softening | None] | None = None
+
+
+@dataclass(frozen=True)
+class Springs:
+    """Linear springs between freedoms: node (springs, 2) 0-based, -1 the ground; direction 0 x, 1 y;
+    stiffness [N/m]."""
+
+    node: np.ndarray
+    direction: np.ndarray
+    stiffness: np.ndarray
+
+
+@dataclass(frozen=True)
+class Behaviour:
+    """Of cracked material: `isotropic` damage; shear `retention` constant, None for thesis Eq. 4.11; `closure`
+    with at most `most_changes` openings and closings of a crack; stiffness `floor` left after the last tooth."""
+
+    isotropic: bool = False
+    retention: float | None = None
+    closure: bool = False
+    most_changes: int = 10
+    floor: float = 1e-6
+
+
+@dataclass
+class Freedoms:
+    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it."""
+
+    equation: np.ndarray
+    factor: np.ndarray
+
+    @staticmethod
+    def make(
+        nodes: int,
+        held: Iterable[tuple[int, int]] = (),
+        ties: Sequence[Sequence[tuple[int, int, float]]] = (),
+    ) -> "Freedoms":
+        """held: (node, direction) pairs; ties: lists of (node, direction, factor) that move as one."""
+        held = list(held)
+        for node, direction, *_ in [*held, *(entry for tie in ties for entry in tie)]:
+            if not (0 <= node < nodes and direction in (0, 1)):
+                raise IndexError(f"a freedom names node {node}, direction {direction} of {nodes} nodes in the plane")
+        equation = np.zeros((nodes, 2), dtype=np.int64)
+        factor = np.ones((nodes, 2))
+        for node, direction in held:
+            equation[node, direction] = -1
+        number = 0
+        for tie in ties:
+            for node, direction, share in tie:
+                if equation[node, direction] != 0:
+                    what = "held" if equation[node, direction] < 0 else "tied already"
+                    raise ValueError(f"node {node + 1} cannot be tied in {'xy'[direction]}: it is {what}")
+                equation[node, direction] = number + 1
+                factor[node, direction] = share
+            number += 1
+        free = equation == 0
+        equation[free] = number + 1 + np.arange(int(free.sum()))
+        return Freedoms(np.where(equation < 0, -1, equation - 1), factor)
+
+
+@dataclass
+class Events:
+    """What was recorded, one row per event; n_* before the damage of that event is done.
+
+    load: multiplier; limit_t, limit_c: least upper and greatest lower limit; stored, external, dissipated
+    (path), crack (area of the teeth) energies [J]; compliance fB.uB; residual of the last guard check.
+    point (0-based), code (see EVENTS), equilibrium; monitors (events, monitors) [m].
+    """
+
+    load: np.ndarray
+    limit_t: np.ndarray
+    limit_c: np.ndarray
+    stored: np.ndarray
+    external: np.ndarray
+    dissipated: np.ndarray
+    crack: np.ndarray
+    compliance: np.ndarray
+    residual: np.ndarray
+    point: np.ndarray
+    code: np.ndarray
+    number: np.ndarray
+    equilibrium: np.ndarray
+    monitors: np.ndarray
+    reason: str = ""
+    guard: tuple[int, int, int] = (0, 0, 0)
+    interrupted: bool = False
+    crack_total: float = 0.0  # with the last event applied [J]
+
+    def __len__(self) -> int:
+        return len(self.load)
+
+    @property
+    def ledger_error(self) -> float:
+        """Greatest imbalance of the energies over the greatest work."""
+        if not len(self):
+            return 0.0
+        gap = self.external - self.stored - self.dissipated
+        scale = np.maximum(np.abs(self.external), np.abs(self.stored)).max()
+        return float(np.abs(gap).max() / scale) if scale > 0.0 else 0.0
+
+    @staticmethod
+    def join(parts: Sequence["Events"]) -> "Events":
+        """Batches one behind the other."""
+        last = parts[-1]
+        columns = {
+            name: np.concatenate([getattr(p, name) for p in parts])
+            for name in Events.__dataclass_fields__
+            if name not in ("reason", "guard", "interrupted", "crack_total")
+        }
+        return Events(
+            **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total
+        )

@@ -1,0 +1,120 @@
+/* The sparse factor on a grid of springs: solutions, rank-1 changes and events against the matrix itself. */
+#include <assert.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "extrados.h"
+
+enum { side = 9, n = side * side, most = 3 * n };
+
+static double dense[n][n]; /* in the order of the factor */
+static int64_t start[n + 1], row[most], place[n];
+static double value[most];
+
+/* Five-point Laplacian with a varying diagonal, columns in the given order. */
+static void assemble(const int64_t *order) {
+  double plain[n][n];
+  int64_t count = 0;
+  memset(plain, 0, sizeof plain);
+  for (int i = 0; i < n; i++) {
+    plain[i][i] = 4.1 + 0.01 * (i % 7);
+    if (i % side) plain[i][i - 1] = plain[i - 1][i] = -1.0;
+    if (i >= side) plain[i][i - side] = plain[i - side][i] = -1.0;
+  }
+  for (int i = 0; i < n; i++)
+    for (int j = 0; j < n; j++) dense[i][j] = plain[order[i]][order[j]];
+  for (int j = 0; j < n; j++) {
+    start[j] = count;
+    for (int i = j; i < n; i++)
+      if (dense[i][j] != 0.0) {
+        row[count] = i;
+        value[count++] = dense[i][j];
+      }
+  }
+  start[n] = count;
+}
+
+/* Greatest entry of K x - b. */
+static double residual(const double *x, const double *b) {
+  double worst = 0.0;
+  for (int i = 0; i < n; i++) {
+    double sum = -b[i];
+    for (int j = 0; j < n; j++) sum += dense[i][j] * x[j];
+    worst = fmax(worst, fabs(sum));
+  }
+  return worst;
+}
+
+static void change(int sign, int count, const int *index, const double *w) {
+  for (int i = 0; i < count; i++)
+    for (int j = 0; j < count; j++) dense[index[i]][index[j]] += sign * w[i] * w[j];
+}
+
+int main(void) {
+  int64_t order[n], values, weakest;
+  double ratio, b[2 * n], x[2 * n], z[n], full[n];
+  void *handle;
+  for (int i = 0; i < n; i++) order[i] = i;
+  assemble(order);
+  for (int ordering = 0; ordering < 2; ordering++) {
+    assert(extrados_sparse_order(n, start, row, ordering, order) == EXTRADOS_ok);
+    memset(place, 0, sizeof place);
+    for (int i = 0; i < n; i++) place[order[i]]++;
+    for (int i = 0; i < n; i++) assert(place[i] == 1);
+  }
+  assemble(order);
+  assert(extrados_sparse_new(n, start, row, &handle, &values) == EXTRADOS_ok && values >= start[n]);
+  assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_ok);
+  assert(ratio > 0.1 && ratio <= 1.0 && weakest >= 0 && weakest < n);
+
+  for (int i = 0; i < 2 * n; i++) x[i] = b[i] = sin(1.0 + i);
+  assert(extrados_sparse_solve(handle, 2, x) == EXTRADOS_ok);
+  assert(residual(x, b) < 1e-13 && residual(x + n, b + n) < 1e-13);
+  memcpy(x, b, sizeof x);
+  assert(extrados_sparse_plain(handle, value, 2, x) == EXTRADOS_ok);
+  assert(residual(x, b) < 1e-13 && residual(x + n, b + n) < 1e-13);
+  assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_ok);
+
+  /* A spring between two neighbours of the grid is added, then taken away again. */
+  int pair[2] = {-1, -1};
+  for (int64_t k = start[n / 2] + 1; k < start[n / 2 + 1]; k++) {
+    pair[0] = n / 2;
+    pair[1] = (int)row[k];
+  }
+  assert(pair[0] >= 0);
+  const double w[2] = {0.7, -0.7};
+  assert(extrados_sparse_rank1(handle, 1, 2, pair, w) == EXTRADOS_ok);
+  change(1, 2, pair, w);
+  memcpy(x, b, sizeof x);
+  assert(extrados_sparse_solve(handle, 1, x) == EXTRADOS_ok && residual(x, b) < 1e-13);
+  assert(extrados_sparse_event(handle, 1, 2, pair, w, z) == EXTRADOS_ok);
+  memset(full, 0, sizeof full);
+  full[pair[0]] = w[0];
+  full[pair[1]] = w[1];
+  assert(residual(z, full) < 1e-14);
+  assert(extrados_sparse_rank1(handle, -1, 2, pair, w) == EXTRADOS_ok);
+  change(-1, 2, pair, w);
+  memcpy(x, b, sizeof x);
+  assert(extrados_sparse_solve(handle, 1, x) == EXTRADOS_ok && residual(x, b) < 1e-13);
+
+  /* What is not definite, and what is no number, is refused. */
+  const double strong[1] = {3.0};
+  const int one[1] = {n / 2};
+  assert(extrados_sparse_rank1(handle, -1, 1, one, strong) == EXTRADOS_not_positive_definite);
+  value[start[n - 1]] = -1.0;
+  assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_not_positive_definite);
+  value[start[n - 1]] = NAN;
+  assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_not_finite);
+  value[start[n - 1]] = 4.2;
+  assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_ok);
+  x[3] = INFINITY;
+  assert(extrados_sparse_solve(handle, 1, x) == EXTRADOS_not_finite);
+  assert(extrados_sparse_rank1(handle, 2, 1, one, strong) == EXTRADOS_invalid_argument);
+  extrados_sparse_free(&handle);
+  extrados_sparse_free(&handle);
+  assert(!handle);
+  puts("sparse: all right");
+  return 0;
+}
