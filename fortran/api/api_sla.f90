@@ -159,7 +159,7 @@ contains
       !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
       !> angle of the only crack normal allowed [rad]
       real(c_double), intent(in) :: property(5, elements)
-      !> Table of tension teeth, of compression teeth (0 none), 1: the crack normal is given
+      !> Table of tension teeth, of compression teeth (0 none); 1: the crack normal is given, 2: also the shear is kept
       integer(c_int), intent(in) :: choice(3, elements)
       integer(c_int), intent(out) :: bad                      !! inverted element
       integer(c_int), intent(out) :: status

@@ -21,6 +21,10 @@ module sla_plane
    private
    public :: plane_group, plane_group_new
 
+   !> Cracks choose their direction; or they have a given one and keep the shear stiffness: a joint that opens and
+   !> closes but does not slide
+   integer(c_int), parameter :: axis_free = 0, axis_joint = 2
+
    type, extends(point_group) :: plane_group
       type(element_rule) :: rule
       logical :: selective = .false.                     !! shear strain from the element's middle
@@ -33,7 +37,7 @@ module sla_plane
       integer(c_int), allocatable :: crush_table(:)      !! compression teeth, 0 none
       real(wp), allocatable :: lateral(:)                !! compressive strength that reduces ft, 0 none [Pa]
       type(tooth_tables) :: teeth
-      integer(c_int), allocatable :: axis(:)             !! 1: only one crack direction, given beforehand
+      integer(c_int), allocatable :: axis(:)             !! axis_free, 1 one crack direction given, axis_joint
       ! The damage: everything else below follows from it.
       real(wp), allocatable :: turn(:, :)                !! (2, points) cosine and sine of the crack normal
       integer(c_int), allocatable :: cracked(:)          !! 1 once the crack axes are fixed
@@ -70,7 +74,7 @@ contains
       integer(c_int), intent(in) :: table(:)
       integer(c_int), intent(in) :: crush_table(:)
       real(wp), intent(in) :: lateral(:)            !! [Pa]
-      integer(c_int), intent(in) :: axis(:)
+      integer(c_int), intent(in) :: axis(:)         !! 0 cracks choose, 1 one normal given, 2 also the shear is kept
       real(wp), intent(in) :: axis_angle(:)         !! of the crack normal [rad]
       type(tooth_tables), intent(in) :: teeth
       type(material_options), intent(in) :: options
@@ -123,8 +127,8 @@ contains
          group%weight(p + 1:p + per) = area(1:per) * thickness(e)
          do k = p + 1, p + per
             group%turn(:, k) = [1.0_wp, 0.0_wp]
-            if (axis(e) /= 0) group%turn(:, k) = [cos(axis_angle(e)), sin(axis_angle(e))]
-            group%cracked(k) = merge(1_c_int, 0_c_int, axis(e) /= 0)
+            if (axis(e) /= axis_free) group%turn(:, k) = [cos(axis_angle(e)), sin(axis_angle(e))]
+            group%cracked(k) = merge(1_c_int, 0_c_int, axis(e) /= axis_free)
          end do
       end do
       group%tooth = 1
@@ -165,6 +169,10 @@ contains
          return
       end if
       self%stiff(1:3, p) = ratio * [modulus(1), nu / e0 * modulus(1) * modulus(2), modulus(2)]
+      if (self%axis(e) == axis_joint) then
+         self%stiff(4, p) = 0.5_wp * e0 / (1.0_wp + nu)
+         return
+      end if
       least = minval(modulus)
       if (self%options%retention < 0.0_wp .or. least >= e0) then
          self%stiff(4, p) = 0.5_wp * least / (1.0_wp + nu * least / e0)
@@ -335,10 +343,10 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
-      real(wp) :: f, fc
+      real(wp) :: f, fc, gain
       integer :: k
 
-      if (self%cracked(p) == 0 .or. (self%options%isotropic .and. self%axis(e) == 0)) then
+      if (self%cracked(p) == 0 .or. (self%options%isotropic .and. self%axis(e) == axis_free)) then
          f = self%limit(1, p)
          if (f < unbounded) then
             call cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
@@ -350,7 +358,7 @@ contains
          if (f < unbounded) call cone(f, -1.0_wp, sa, sb, lambda, noise, p, code_compression + 1, found)
          return
       end if
-      do k = 1, merge(1, 2, self%axis(e) /= 0)
+      do k = 1, merge(1, 2, self%axis(e) /= axis_free)
          f = self%limit(k, p)
          if (f < unbounded) call linear_bound(sa(k), sb(k), f, f, lambda, noise, p, code_tension + k - 1, found)
          fc = self%limit(k + 2, p)
@@ -362,7 +370,9 @@ contains
          if (self%shut(k, p) /= 0) then
             call linear_bound(sa(k), sb(k), 0.0_wp, f, lambda, noise, p, code_open + k - 1, found)
          else if (self%changes(k, p) < self%options%most_changes) then
-            call linear_bound(-sa(k), -sb(k), 0.0_wp, f, lambda, noise, p, code_close + k - 1, found)
+            ! Measured by the strain: the stress that an open crack has left drowns in rounding.
+            gain = self%young(e) / direction_modulus(self, e, p, k)
+            call linear_bound(-gain * sa(k), -gain * sb(k), 0.0_wp, f, lambda, noise, p, code_close + k - 1, found)
          end if
       end do
 

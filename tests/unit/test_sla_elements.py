@@ -9,7 +9,7 @@ from extrados.core.sla import (
     Bars,
     Behaviour,
     Freedoms,
-    Mechanism,
+    FreeNode,
     Model,
     Monitor,
     Plane,
@@ -259,7 +259,7 @@ def test_closing_a_crack_restores_the_stiffness() -> None:
 def test_a_free_node_is_named() -> None:
     xy = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
     group = Plane("Q4", np.array([[0, 1, 2, 3]]), 0.1, YOUNG, NU)
-    with pytest.raises(Mechanism, match=r"node \d is free to move in [xy]"):
+    with pytest.raises(FreeNode, match=r"node \d is free to move in [xy]"):
         Model(xy, Freedoms.make(4, [(0, 0), (0, 1)]), [group])
 
 
@@ -270,7 +270,7 @@ def test_an_indefinite_matrix_is_seen() -> None:
         Bars(np.array([[0, 1]]), 0.01, YOUNG),
         Springs(np.array([[1, -1]]), np.array([[0, 0]]), np.array([-0.02 * YOUNG])),
     ]
-    with pytest.raises(Mechanism):
+    with pytest.raises(FreeNode):
         Model(xy, Freedoms.make(2, [(0, 0), (0, 1), (1, 1)]), groups)
 
 

@@ -88,7 +88,7 @@ class Building:
         return self.joint_property("friction")
 
     def joint_property(self, name: str) -> np.ndarray:
-        """Friction, cohesion, tension or normal_stiffness of every joint (NaN where no value is given).
+        """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given).
 
         BadGeometry where [[joints.types]] names a joint that is not there, or one twice.
         """
@@ -122,7 +122,8 @@ class Building:
                     raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and ground")
 
     def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
-        """Finite elements; `seed` replaces that of a random pattern."""
+        """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
+        of a random pattern."""
         options = options or MeshOptions()
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
         return self._view("mesh", tables, lambda: self._mesh(options, seed))
@@ -137,7 +138,9 @@ class Building:
                 from extrados.building.mesh.file import read_mesh
 
                 return read_mesh(self, options)
-        raise NoView(f"a structure of kind '{self.structure.kind}' has no mesh yet")
+        from extrados.building.mesh.stones import make_stones
+
+        return make_stones(self, options)
 
     def _structure(self) -> Structure:
         if self.structure is None:

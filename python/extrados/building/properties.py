@@ -55,6 +55,7 @@ class JointType(Table):
     normal_stiffness: Stiffness | None = key(None, "normal stiffness per area", gt=0)
     cohesion: Stress | None = key(None, "cohesion of the mortar, lost at the first failure", ge=0)
     tension: Stress | None = key(None, "tensile strength of the mortar, lost at the first failure", ge=0)
+    fracture_energy: Energy | None = key(None, "energy of a crack in the mortar per area", gt=0)
 
 
 class Joints(Table):
@@ -65,6 +66,9 @@ class Joints(Table):
     )
     cohesion: Stress = key(0.0, "cohesion of mortar, lost at the first failure", ge=0)
     tension: Stress = key(0.0, "tensile strength of mortar, lost at the first failure", ge=0)
+    fracture_energy: Energy | None = key(
+        None, "energy of a crack in the mortar per area; sequentially linear analysis needs it with a tension", gt=0
+    )
     normal_stiffness: Stiffness | None = key(
         None, "normal stiffness per area; default E over the length of stone that a joint stands for",
         source="thesis Eq. 7.10", gt=0,

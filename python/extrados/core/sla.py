@@ -27,9 +27,28 @@ from extrados.core.sla_parts import (
 )  # fmt: skip
 
 __all__ = [
-    "ELEMENTS", "EVENTS", "LAWS", "REPORT", "STOPS", "BadElement", "Bars", "Behaviour", "Events", "Freedoms",
-    "Mechanism", "Model", "Monitor", "Plane", "Softening", "Springs", "Stop", "body_force", "intervals",
-    "largest_band", "memory_limit", "teeth",
+    "ELEMENTS",
+    "EVENTS",
+    "LAWS",
+    "REPORT",
+    "STOPS",
+    "BadElement",
+    "Bars",
+    "Behaviour",
+    "Events",
+    "FreeNode",
+    "Freedoms",
+    "Model",
+    "Monitor",
+    "Plane",
+    "Softening",
+    "Springs",
+    "Stop",
+    "body_force",
+    "intervals",
+    "largest_band",
+    "memory_limit",
+    "teeth",
 ]  # fmt: skip
 
 REPORT = (
@@ -39,7 +58,7 @@ REPORT = (
 MOST_TEETH = 4096
 
 
-class Mechanism(ValueError):
+class FreeNode(ValueError):
     """The structure is free to move; node (0-based) and direction name where."""
 
     def __init__(self, node: int, direction: str, ratio: float):
@@ -218,7 +237,7 @@ class Model(Owner):
             )  # fmt: skip
             bad, status = _core.api_sla.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(tension, compression, given.astype(np.int32)),
+                properties, _rows(tension, compression, (1 + int(group.joint)) * given.astype(np.int32)),
             )  # fmt: skip
             what = "element"
             points = {"T3": 1, "T6": 3}.get(group.kind, group.points[0] * group.points[1])
@@ -243,7 +262,7 @@ class Model(Owner):
         """Factor of the present damage; returns the smallest over the largest pivot."""
         node, direction, ratio, status = long_call(_core.api_sla.factorise, self.handle)
         if status == status_code("not_positive_definite"):
-            raise Mechanism(int(node) - 1, "xy"[max(int(direction) - 1, 0)], float(ratio))
+            raise FreeNode(int(node) - 1, "xy"[max(int(direction) - 1, 0)], float(ratio))
         check(status, "factor of the stiffness matrix")
         return float(ratio)
 

@@ -69,7 +69,8 @@ class Plane:
     connect (elements, nodes) 0-based; thickness [m], young [Pa], nu, band [m]; tension and compression
     softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
     strength that reduces the tensile one (0 none); `axis` angle of the only crack normal allowed [rad], NaN
-    where cracks choose theirs; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
+    where cracks choose theirs; `joint`: cracks there keep the shear stiffness, so that the joint opens but does not
+    slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
     """
 
     kind: str
@@ -84,6 +85,7 @@ class Plane:
     axis: float | np.ndarray = np.nan
     points: tuple[int, int] = (2, 2)
     selective: bool = False
+    joint: bool = False
 
 
 @dataclass(frozen=True)

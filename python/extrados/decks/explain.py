@@ -175,17 +175,18 @@ def starter(kind: str) -> str:
     if kind == "panel" or (section == "structure" and "blocks" in kinds.table("structure", kind).lacks):
         asked = "sla"  # a wall that is given whole is cut into elements
     analysis = kinds.table("analysis", asked)
+    beside = getattr(kinds.table(section, kind), "starter_beside", {}) if section == "structure" else {}
     structure = analysis.structures[0] if section == "analysis" and analysis.structures else structure
     lines = [f'title = "A first {kind} deck"', ""]
     if analysis.view or analysis.structures:
         lines += _section(kinds.table("structure", structure), "[structure]", structure)
         for name in OVERRIDES:
             if any(use.startswith(f"{name}.") for use in analysis.uses):
-                lines += _section(PLAIN[name], f"[{name}]")
+                lines += _section(PLAIN[name], f"[{name}]", given=beside.get(name))
     if analysis.needs_motion or section == "motion":
         motion = kind if section == "motion" else analysis.starter_motion
         lines += _section(kinds.table("motion", motion), "[motion]", motion)
-    lines += _section(analysis, "[[analysis]]", asked)
+    lines += _section(analysis, "[[analysis]]", asked, beside.get("analysis"))
     return "\n".join(lines)
 
 
@@ -197,15 +198,16 @@ _STARTER = {
 }  # fmt: skip
 
 
-def _section(model: type[Table], header: str, kind: str = "") -> list[str]:
+def _section(model: type[Table], header: str, kind: str = "", given: dict[str, str] | None = None) -> list[str]:
+    starter = {**model.starter, **(given or {})}
     lines = [f"# {_summary(model)}", header] + ([f'kind = "{kind}"'] if kind else [])
     for name, about in _properties(model).items():
         if name == "kind" or (kind and name in OVERRIDES):
             continue
         facts = _facts(about)
         comment = f"  # {about.get('description', '')}" + (f" ({facts})" if facts else "")
-        if name in model.starter:
-            lines.append(f"{name} = {model.starter[name]}{comment}")
+        if name in starter:
+            lines.append(f"{name} = {starter[name]}{comment}")
         elif "default" in about:
             default = about["default"]
             value = "..." if default is None else _toml(default)

@@ -97,12 +97,20 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
     """The states to draw: at the greatest load and the last."""
-    load = run.array(name, f"{prefix}state_load")
-    return sorted({int(load.argmax()), len(load) - 1})
+    events = run.array(name, f"{prefix}state_event")
+    return sorted({_peak(run, name, prefix), len(events) - 1})
+
+
+def _peak(run: Stored, name: str, prefix: str) -> int:
+    """The state at the peak, or of the greatest load where that was not kept."""
+    numbers = run[name].get("minus", {}) if prefix else run[name]
+    there = np.flatnonzero(run.array(name, f"{prefix}state_event") == numbers.get("peak_event"))
+    return int(there[0]) if len(there) else int(run.array(name, f"{prefix}state_load").argmax())
 
 
 def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
-    xy, at, band = (run.array(name, n) for n in ("node", "point_xy", "point_band"))
+    reach = "point_reach" if "point_reach" in run.arrays[name] else "point_band"
+    xy, at, reach = (run.array(name, n) for n in ("node", "point_xy", reach))
     states = _peak_state(run, name, prefix)
     span = np.ptp(xy, axis=0)
     with _panels(span, len(states)) as (fig, axes):
@@ -115,14 +123,14 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
             angle = run.array(name, f"{prefix}state_angle")[s]
             widths = [run.array(name, f"{prefix}state_width_{d}")[s] for d in "ns"]
             most = max(w.max() for w in widths)
-            place = at + factor * _at_points(run, name, moved, at, xy)
+            place = at + factor * _at_points(run, name, moved)
             for width, turn in zip(widths, (0.5 * np.pi, 0.0), strict=True):
                 # A crack runs across its normal; those too fine to matter are left out
                 shown = width > max(1e-3 * most, 1e-9)
                 if not shown.any():
                     continue
                 along = angle[shown] + turn
-                half = 0.42 * band[shown][:, None] * np.column_stack([np.cos(along), np.sin(along)])
+                half = 0.42 * reach[shown][:, None] * np.column_stack([np.cos(along), np.sin(along)])
                 lines = LineCollection(
                     np.stack([place[shown] - half, place[shown] + half], axis=1), cmap="inferno_r",
                     norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * width[shown] / most,
@@ -138,17 +146,11 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
     return title, "Cracks on the deformed wall, at the peak and at the end; colour and thickness give the width."
 
 
-def _at_points(run: Stored, name: str, moved: np.ndarray, at: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    """Displacements carried from the nodes to the points: that of the element's corners on the mean."""
-    rows = []
+def _at_points(run: Stored, name: str, moved: np.ndarray) -> np.ndarray:
+    """Displacements carried from the nodes to the points: the mean of their element's corners."""
     blocks = [a.data for n, a in sorted(run.arrays[name].items()) if n.startswith("elements_") and n[9:].isdigit()]
-    for connect in blocks:
-        rows.append(moved[connect[:, : CORNERS[connect.shape[1]]]].mean(axis=1))
-    per_element = np.concatenate(rows)
-    centres = np.concatenate([xy[c[:, : CORNERS[c.shape[1]]]].mean(axis=1) for c in blocks])
-    from scipy.spatial import cKDTree
-
-    return per_element[cKDTree(centres).query(at)[1]]
+    per_element = np.concatenate([moved[c[:, : CORNERS[c.shape[1]]]].mean(axis=1) for c in blocks])
+    return per_element[run.array(name, "point_element")]
 
 
 def _panels(span: np.ndarray, count: int):
@@ -161,7 +163,7 @@ def _panels(span: np.ndarray, count: int):
 def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     xy, at = run.array(name, "node"), run.array(name, "point_xy")
     load = run.array(name, f"{prefix}state_load")
-    s = int(load.argmax())
+    s = _peak(run, name, prefix)
     span = np.ptp(xy, axis=0)
     with _panels(span, 2) as (fig, axes):
         for ax, key, title, cmap in zip(

@@ -12,6 +12,7 @@ import numpy as np
 
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
+from extrados.analyses.sla.contact import settle
 from extrados.analyses.sla.curve import envelope
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import SlaModel
@@ -82,7 +83,9 @@ def run_curves(
                     f"resume_from: that wall has {damage.shape[1]} points with its bars, this one {core_model.points}"
                 )
             core_model.set_damage(damage)
-        elif options.constant_damage and np.any(model.constant):
+        else:
+            settle(core_model, model)
+        if damage is None and options.constant_damage and np.any(model.constant):
             stage_a = _constant_stage(core_model, model, options, progress)
         start = core_model.damage()
         ledger, events = _totals(stage_a)
@@ -120,7 +123,7 @@ def _constant_stage(
     """Bring the constant loads from 0 to 1, with damage where they ask for it."""
     core_model.loads(np.zeros_like(model.constant), model.constant)
     parts, done = [], 0
-    stop = core.Stop(load=1.0, compliance=options.mechanism_ratio)
+    stop = core.Stop(load=1.0, compliance=model.mechanism_ratio)
     while True:
         part = core_model.run(min(500, options.events - done), [model.control], stop)
         parts.append(part)
@@ -153,7 +156,7 @@ def _reference_stage(
     begin = time.perf_counter()
     target = np.inf if options.target_displacement is None else options.target_displacement
     stop = core.Stop(
-        displacement=target, fraction=options.stop_fraction or -1.0, compliance=options.mechanism_ratio,
+        displacement=target, fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
         refuse_overload=fresh and bool(np.any(model.constant)),
     )  # fmt: skip
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
@@ -207,11 +210,15 @@ def _reference_stage(
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, states = core.Events.join(way.parts), way.states
     events.monitors *= sign  # positive in the sense of the load
+    collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+    if collapsed and model.mesh.has_joints:
+        # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
+        events.equilibrium[-1] = False
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before
-        if events.reason != "mechanism" or events.compliance[-1] > options.mechanism_ratio * events.compliance[0]:
+        if events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
             curve.residual = core_model.residual()
         if not (done - 1 in wanted and states):
             states.append(_state(core_model, len(events) - 1, float(events.load[-1])))
@@ -239,7 +246,11 @@ def _replay(
     core_model.set_damage(damage)
     core_model.loads(model.constant, sign * model.reference)
     again = core_model.run(event - first + 1, [model.control], core.Stop())
-    if len(again) != event - first + 1 or abs(again.load[-1] - events.load[event]) > 1e-6 * abs(events.load[event]):
+    # Near a mechanism of stiff stones the last digits of the load depend on the way there
+    tolerance = 1e-4 if model.mesh.has_joints else 1e-6
+    if len(again) != event - first + 1 or abs(again.load[-1] - events.load[event]) > tolerance * abs(
+        events.load[event]
+    ):
         return None
     return _state(core_model, event, float(again.load[-1]))
 

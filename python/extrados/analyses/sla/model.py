@@ -15,6 +15,12 @@ from extrados.core import sla as core
 
 AXES = {"x": 0, "y": 1}
 POINTS_PER_THREAD = 20_000
+#: Growth of the compliance that counts as a mechanism: of walls, and of stones, which may be slender
+MECHANISM, MECHANISM_OF_STONES = 1e4, 1e5
+#: Openings and closings of a joint's point before it is left open: they change no stress, so that many do no harm
+MOST_CHANGES_OF_JOINTS = 1000
+#: Stiffness left in an open joint: its row is so thin that the millionth left in a cracked wall would hold the stones
+FLOOR_OF_JOINTS = 1e-11
 
 
 @dataclass
@@ -32,6 +38,8 @@ class SlaModel:
     control: core.Monitor
     bands: list[np.ndarray]  # crack band of the elements of each plane group [m]
     point_xy: np.ndarray  # (points, 2) of the plane groups [m]
+    mechanism_ratio: float  # growth of the compliance that ends a run
+    acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
 
     def open(self, options: Sla, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
@@ -41,7 +49,7 @@ class SlaModel:
             return core.Model(
                 self.mesh.xy, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads
             )
-        except core.Mechanism as error:
+        except core.FreeNode as error:
             x, y = self.mesh.xy[error.node]
             raise Refused(
                 f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
@@ -68,11 +76,16 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
                     held.add((node, AXES[letter]))
                 else:
                     springs.append((node, AXES[letter], support.stiffness))
+    if mesh.ground is not None:
+        held |= {(node, axis) for node in mesh.ground.tolist() for axis in (0, 1)}
+    if mesh.has_joints and options.cracking == "isotropic":
+        raise BadGeometry("joints open along their own direction: isotropic cracking is for walls without stones")
+    constant_loads, reference_loads = loads_of(mesh, options)
     ties = [
         [(int(n), AXES[tie.direction], 1.0) for n in mesh.nodes_at(tie, f"ties[{i}]")]
         for i, tie in enumerate(mesh.ties)
     ]
-    moved = next((load for load in options.reference if load.kind == "displacement"), None)
+    moved = next((load for load in reference_loads if load.kind == "displacement"), None)
     if moved is not None:
         tie = []
         for part in moved.parts:
@@ -119,8 +132,8 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     for i, x in enumerate(options.section_x):
         if not mesh.low[0] <= x <= mesh.high[0]:
             raise BadGeometry(f"section_x[{i}] is {x:g} m, the wall reaches from {mesh.low[0]:g} to {mesh.high[0]:g} m")
-    constant = nodal_forces(mesh, options.constant, "constant")
-    reference = nodal_forces(mesh, options.reference, "reference")
+    constant = nodal_forces(mesh, constant_loads, "constant")
+    reference = nodal_forces(mesh, reference_loads, "reference")
     if moved is not None:
         node, direction, share = max(ties[-1], key=lambda term: abs(term[2]))
         reference[node, direction] = 1.0 / share  # unit force on the common displacement
@@ -132,15 +145,37 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         raise BadGeometry("the reference load is zero")
     if (freedoms.equation[np.abs(reference) > 0] < 0).all():
         raise BadGeometry("the reference load acts on held nodes only")
+    closure = mesh.has_joints if options.crack_closure is None else options.crack_closure
+    if mesh.has_joints and not closure:
+        raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
+    acceleration = None
+    if all(load.kind == "gravity" for load in reference_loads):
+        acceleration = float(np.hypot(*np.sum([[load.ax, load.ay] for load in reference_loads], axis=0)))
     return SlaModel(
         mesh, freedoms, groups,
-        core.Behaviour(options.cracking == "isotropic", options.shear_retention, options.crack_closure),
+        core.Behaviour(
+            options.cracking == "isotropic", options.shear_retention, closure,
+            MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
+            FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor,
+        ),
         constant, reference, unit, _control(mesh, options, reference, unit), bands, np.concatenate(points),
+        options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM), acceleration,
     )  # fmt: skip
 
 
+def loads_of(mesh: Mesh, options: Sla) -> tuple[list[Load], list[Load]]:
+    """The constant and the reference loads, with the defaults of the tables for those not given."""
+    constant, reference = options.constant, options.reference
+    if constant is None:
+        constant = [Load(kind="gravity")] if reference is None or mesh.has_joints else []
+    return constant, [Load(kind="gravity", ax="1 g", ay="0 g")] if reference is None else reference
+
+
 def crack_band(mesh: Mesh, group: ElementGroup, options: Sla) -> np.ndarray:
-    """h of each element [m]: given, or sqrt(2 A) of linear and sqrt(A) of quadratic elements."""
+    """h of each element [m]: the thickness of a row along a joint, or given, or sqrt(2 A) of linear and sqrt(A) of
+    quadratic elements."""
+    if group.band is not None:
+        return np.full(len(group.connect), group.band)
     if options.crack_band is not None:
         return np.full(len(group.connect), options.crack_band)
     area = element_areas(mesh.xy, group.kind, group.connect)
@@ -189,7 +224,7 @@ def _plane(mesh: Mesh, group: ElementGroup, band: np.ndarray, factors: np.ndarra
         tension if any(t is not None for t in tension) else None,
         crushing if any(c is not None for c in crushing) else None,
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
-        group.axis, group.gauss, mesh.selective,
+        group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None,
     )  # fmt: skip
 
 
@@ -225,8 +260,10 @@ def nodal_forces(mesh: Mesh, loads: Sequence[Load], word: str) -> np.ndarray:
     for i, load in enumerate(loads):
         what = f"{word}[{i}]"
         if load.kind == "gravity":
-            heavy = False
-            for group in mesh.groups:
+            if mesh.mass is not None:
+                force += mesh.mass[:, None] * [load.ax, load.ay]
+            heavy = mesh.mass is not None
+            for group in mesh.groups if mesh.mass is None else []:
                 density = np.array([m.density for m in mesh.materials])[group.material]
                 heavy |= bool((density > 0).any())
                 per_area = (density * group.thickness)[:, None] * [load.ax, load.ay]

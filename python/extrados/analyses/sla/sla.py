@@ -20,8 +20,11 @@ from extrados.core.sla import EVENTS, Plane, teeth
 from extrados.results.model import Array, Result, TableData
 from extrados.results.store import StoreError, read
 from extrados.results.vtu import pvd, vtu
+from extrados.schema.constants import GRAVITY
 
 UNBOUNDED = 1e300
+#: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
+HINGE, WIDE = 0.95, 0.1
 PREFIXES = ("", "minus_")  # of the arrays of the first curve, whatever its sense, and of the second, to -
 
 
@@ -133,6 +136,7 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     numbers: dict[str, Any] = {
         "sense": curve.sense,
         "peak_load_N": float(events.load[peak] * unit) if peak >= 0 else None,
+        **_acceleration(model, float(events.load[peak]) if peak >= 0 else None),
         "peak_displacement_m": float(events.monitors[peak, 0]) if peak >= 0 else None,
         "displacement_of_constant_loads_m": curve.before,
         "peak_event": peak + 1 if peak >= 0 else None,
@@ -176,6 +180,13 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     return numbers
 
 
+def _acceleration(model: SlaModel, peak: float | None) -> dict[str, float | None]:
+    """The peak multiplier as an acceleration, where the reference load is one of masses alone."""
+    if model.acceleration is None:
+        return {}
+    return {"peak_acceleration_g": None if peak is None else peak * model.acceleration / GRAVITY}
+
+
 def _residual(curve: Curve) -> float | None:
     """The greatest residual that was measured, by the guard or at the end; None where none was."""
     measured = [curve.residual] if curve.residual is not None else []
@@ -187,10 +198,11 @@ def _residual(curve: Curve) -> float | None:
 def _tooth_counts(model: SlaModel) -> list[int]:
     """Least and greatest number of teeth of the cracking elements (of the widest and narrowest bands)."""
     laws = {}
-    for group in model.groups:
+    dry = [group.dry for group in model.mesh.groups] + [None] * len(model.groups)
+    for group, without in zip(model.groups, dry, strict=False):
         if isinstance(group, Plane) and group.tension is not None:
             for k, law in enumerate(group.tension):
-                if law is not None:
+                if law is not None and (without is None or not without[k]):
                     band = float(group.band[k])
                     low, high = laws.get((law, float(group.young[k])), (band, band))
                     laws[law, float(group.young[k])] = (min(low, band), max(high, band))
@@ -224,7 +236,54 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         _curve_arrays(result, model, curve, prefix)
     _sections(result, model, options, first)
     _fields(result, model, curves)
-    result.answer = _answer(result.results, len(curves) > 1)
+    if model.mesh.has_joints:
+        result.results["hinges"] = _joints(result, model, first)
+        result.answer = _answer_of_stones(result.results, len(curves) > 1)
+    else:
+        result.answer = _answer(result.results, len(curves) > 1)
+
+
+def _joints(result: Result, model: SlaModel, curve: Curve) -> list[str]:
+    """Openings of the joints at the peak as a table; the names of the hinges: open but for an edge, and wide among them."""
+    state = next((s for s in curve.states if s.event == curve.peak), None)
+    if state is None:
+        return []
+    start = 0
+    for group, points in zip(model.mesh.groups, _split(model, len(model.point_xy)), strict=True):
+        start = int(points[0])
+        if group.joint is not None:
+            break
+    joint = np.repeat(group.joint, len(points) // len(group.joint))
+    rows = slice(start, start + len(joint))
+    width = point_fields(model, state, result.arrays["point_band"].data)["width_n"][rows]
+    area = state.report["volume"][rows]
+    count = len(model.mesh.joint_names)
+    share = np.bincount(joint, np.where(width > 0.0, area, 0.0), count) / np.bincount(joint, area, count)
+    most = np.zeros(count)
+    np.maximum.at(most, joint, width)
+    result.tables["joints"] = TableData(
+        {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}, {"greatest_opening": "m"}
+    )
+    hinges = np.flatnonzero((share > HINGE) & (most > WIDE * most.max()))
+    return [model.mesh.joint_names[j] for j in hinges]
+
+
+def _answer_of_stones(r: dict[str, Any], both: bool) -> str:
+    if r["peak_load_N"] is None or r["stop"] not in ("mechanism", "no point limits the load") or not r["events"]:
+        return _answer(r, both)
+    by_masses = "peak_acceleration_g" in r
+
+    def capacity(of: dict[str, Any]) -> str:
+        kilonewtons = f"{of['peak_load_N'] / 1e3:.4g} kN"
+        return f"an acceleration of {of['peak_acceleration_g']:.4g} g ({kilonewtons})" if by_masses else kilonewtons
+
+    text = f"The stones become a mechanism at {capacity(r)}; joints open but do not slide."
+    if names := r["hinges"]:
+        shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+        text += f" Hinges: {shown}."
+    if both and r.get("minus", {}).get("peak_load_N") is not None:
+        text += f" In the opposite sense: {capacity(r['minus'])}."
+    return text
 
 
 def _answer(r: dict[str, Any], both: bool) -> str:
@@ -254,7 +313,16 @@ def _mesh_arrays(model: SlaModel) -> dict[str, Array]:
     per = [len(model.point_xy) and b.gauss[0] * b.gauss[1] for b in model.mesh.groups]
     per = [{"T3": 1, "T6": 3}.get(b.kind, n) for b, n in zip(model.mesh.groups, per, strict=True)]
     band = np.concatenate([np.repeat(h, n) for h, n in zip(model.bands, per, strict=True)])
+    owner = np.repeat(np.arange(model.mesh.elements()), np.repeat(per, [len(g.connect) for g in model.mesh.groups]))
+    arrays["point_element"] = Array(owner, ("points",), "", "element of the point, from 0, group after group")
     arrays["point_band"] = Array(band, ("points",), "m", "crack band width")
+    if model.mesh.has_joints:
+        reach = [
+            h if g.joint is None else np.hypot(*(model.mesh.xy[g.connect[:, 1]] - model.mesh.xy[g.connect[:, 0]]).T) / g.gauss[0]
+            for g, h in zip(model.mesh.groups, model.bands, strict=True)
+        ]  # fmt: skip
+        reach = np.concatenate([np.repeat(h, n) for h, n in zip(reach, per, strict=True)])
+        arrays["point_reach"] = Array(reach, ("points",), "m", "length along a crack that a point stands for")
     return arrays
 
 

@@ -80,15 +80,19 @@ class Sla(BuildingAnalysis):
     view: ClassVar = "mesh"
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
-        "material.compressive_strength",
+        "material.compressive_strength", "joints.tension",
     )  # fmt: skip
-    starter: ClassVar = {
-        "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
-        "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
-        "target_displacement": '"2 mm"',
-    }
-    constant: list[Load] = key([], "loads A, there from the start", max_length=100)
-    reference: list[Load] = key(about="loads B that lambda multiplies", min_length=1, max_length=100)
+    constant: list[Load] | None = key(
+        None,
+        "loads A, there from the start; default the weight of stones, and of walls whose reference is not given",
+        max_length=100,
+    )
+    reference: list[Load] | None = key(
+        None,
+        "loads B that lambda multiplies; default all masses times 1 g to +x, so that lambda is an acceleration in g",
+        min_length=1,
+        max_length=100,
+    )
     constant_damage: bool = key(
         True, "bring A from 0 to 1 with damage before B; without it B acts on the undamaged wall", source="thesis 4.3.1"
     )
@@ -102,7 +106,9 @@ class Sla(BuildingAnalysis):
     events: int = key(5000, "most events", ge=1, le=10_000_000)
     target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
     stop_fraction: float = key(0.0, "stop where the load falls below this part of its peak", ge=0, lt=1)
-    mechanism_ratio: float = key(1e4, "stop where the compliance has grown by this factor", ge=10, le=1e12)
+    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] | None = key(
+        None, "stop where the compliance has grown by this factor; default 1e4, of stones 1e5"
+    )
     teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
     ripple: float = key(0.1, "half-width p of the teeth over the strength", source="thesis 4.2", ge=0.005, le=0.5)
     overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
@@ -113,7 +119,9 @@ class Sla(BuildingAnalysis):
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
         None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
     )
-    crack_closure: bool = key(False, "cracks that close regain their stiffness")
+    crack_closure: bool | None = key(
+        None, "cracks that close regain their stiffness; default true for stones, whose joints must, false for walls"
+    )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
@@ -136,9 +144,10 @@ class Sla(BuildingAnalysis):
 
     @model_validator(mode="after")
     def _consistent(self) -> "Sla":
-        if any(load.kind == "displacement" for load in self.constant):
+        if any(load.kind == "displacement" for load in self.constant or []):
             raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
-        if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
+        reference = self.reference or []
+        if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
             raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
         if len(set(self.seeds)) < len(self.seeds):
             raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")

@@ -28,12 +28,16 @@ class ElementGroup:
     material: np.ndarray  # (elements) index into Mesh.materials
     linear: np.ndarray  # (elements) bool
     axis: np.ndarray  # (elements) [rad], NaN where cracks choose
+    band: float | None = None  # crack band [m]; None where the analysis sets it
+    joint: np.ndarray | None = None  # (elements) the joint that a row of elements stands for
+    dry: np.ndarray | None = None  # (elements) bool, of rows: the joint has no tensile strength
 
 
 @dataclass(frozen=True)
 class Mesh:
     """xy (nodes, 2) [m]; size: typical element size [m]; held, ties and bars by the places where they act;
-    named: further materials by name, for bars."""
+    named: further materials by name, for bars. Of stones: mass (nodes) [kg] that stands for the density of the
+    elements, ground: nodes on the ground, held unless `held` says what is, joint_names of the rows of elements."""
 
     xy: np.ndarray
     groups: list[ElementGroup]
@@ -45,6 +49,13 @@ class Mesh:
     named: dict[str, Material] = field(default_factory=dict)
     selective: bool = False
     warnings: list[str] = field(default_factory=list)
+    mass: np.ndarray | None = None
+    ground: np.ndarray | None = None
+    joint_names: list[str] = field(default_factory=list)
+
+    @property
+    def has_joints(self) -> bool:
+        return any(group.joint is not None for group in self.groups)
 
     @property
     def low(self) -> np.ndarray:
@@ -129,6 +140,8 @@ def build_mesh(
 ) -> Mesh:
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     wall = building.structure
+    if options.joint_thickness is not None:
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: leave joint_thickness out")
     if not len(connect):
         raise BadGeometry("the mesh has no elements")
     used, renumbered = np.unique(connect, return_inverse=True)

@@ -22,8 +22,20 @@ class Refinement(Table):
 class MeshOptions(Table):
     """Kind, size and pattern of the elements."""
 
-    size: Length | None = key(None, "wanted size of the elements; default a twentieth of a wall's lesser side", gt=0)
-    element: Literal["T3", "T6", "Q4", "Q8"] = key("Q4", "kind of element")
+    size: Length | None = key(
+        None,
+        "wanted size of the elements; default a twentieth of a wall's lesser side, an eighth of the median joint of stones",
+        gt=0,
+    )
+    joint_thickness: Length | None = key(
+        None,
+        "thickness of the row of elements along each joint between stones; default 1/25 of the size, and at most a fifth "
+        "of the shortest element along a joint",
+        gt=0,
+    )
+    element: Literal["T3", "T6", "Q4", "Q8"] = key(
+        "Q4", "kind of element; stones have triangles where quadrilaterals do not fit"
+    )
     pattern: Literal["structured", "random"] = key(
         "structured", "structured grid, or triangles on randomly moved points (no mesh lines for cracks to follow)"
     )

@@ -51,8 +51,17 @@ class Bar(Table):
 
 
 class Wall(Structure):
-    """What all finite-element walls share."""
+    """What all finite-element walls share. starter_beside: values of the other tables in a starter deck."""
 
+    starter_beside: ClassVar = {
+        "material": {"tensile_strength": '"0.2 MPa"', "fracture_energy": '"50 N/m"'},
+        "analysis": {
+            "constant": '[{ kind = "gravity" }, { kind = "pressure", edge = "top", value = "0.1 MPa" }]',
+            "reference": '[{ kind = "spread", edge = "top", fx = "1 kN" }]',
+            "target_displacement": '"2 mm"',
+            "ripple": "0.2",
+        },
+    }
     thickness: Length = key(about="thickness out of plane", gt=0)
     regions: list[Region] = key([], "parts that differ; a later one overrides an earlier", max_length=1000)
     ties: list[Tie] = key([], "nodes that move as one", max_length=100)

@@ -1,0 +1,239 @@
+"""Buildings of stones as finite elements: their meshes, and the load at which they become a mechanism."""
+
+import math
+import random
+
+import numpy as np
+import pytest
+
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
+from extrados.building.errors import BadGeometry
+from extrados.building.geometry.assembly import GROUND
+from extrados.building.geometry.polygons import properties, signed_area
+from extrados.building.mesh.mesh import Mesh, element_areas
+from extrados.building.mesh.options import MeshOptions
+from extrados.building.mesh.triangles import fill_ring
+from extrados.decks.reader import make_deck
+
+BLOCKS = [
+    {"name": "left", "points": [[0.0, 0.0], [1.0, 0.0], [1.0, 3.0], [0.0, 3.0]]},
+    {"name": "right", "points": [[3.0, 0.0], [4.0, 0.0], [4.0, 3.0], [3.0, 3.0]]},
+    {"name": "lintel", "points": [[0.2, 3.0], [3.8, 3.0], [3.8, 3.5], [0.2, 3.5]]},
+    {"name": "load", "points": [[1.5, 3.5], [2.5, 3.5], [2.0, 4.2]]},
+]
+STRUCTURES = {
+    "arch": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7},
+    "pointed-arch": {"kind": "pointed-arch", "span": 6.0, "radius": 6.0, "thickness": 0.5, "voussoirs": 12},
+    "elliptical-arch": {"kind": "elliptical-arch", "span": 8.0, "rise": 3.0, "thickness": 0.6, "voussoirs": 12},
+    "vault": {"kind": "vault", "preset": "dejong-a"},
+    "aisled-vault": {"kind": "aisled-vault", "preset": "vezelay-like"},
+    "block": {"kind": "block", "width": 1.0, "height": 4.0},
+    "column": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4, "top_width": 0.8},
+    "brickwork": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 3, "courses": 4},
+    "blocks": {"kind": "blocks", "block": BLOCKS},
+}  # fmt: skip
+
+
+def context(structure: dict, folder=None, joints: dict | None = None, **analysis) -> Context:
+    data = {"structure": structure, "analysis": [{"kind": "sla", **analysis}]}
+    if joints:
+        data["joints"] = joints
+    return Context(make_deck(data, folder) if folder else make_deck(data))
+
+
+def sla(structure: dict, folder=None, joints: dict | None = None, **analysis):
+    return run_analyses(context(structure, folder, joints, **analysis))[0]
+
+
+def tilt(structure: dict, folder=None) -> float:
+    data = {"structure": structure, "joints": {"friction": "no-sliding"}, "analysis": {"kind": "tilt"}}
+    found = run_analyses(Context(make_deck(data, folder) if folder else make_deck(data)))[0]
+    return found.results["collapse_acceleration_g"]
+
+
+def edges(connect: np.ndarray) -> np.ndarray:
+    """Directed sides of elements, each as from and to."""
+    return np.concatenate([np.column_stack([c, np.roll(c, -1)]) for c in connect])
+
+
+def check_mesh(mesh: Mesh, assembly, thickness: float) -> None:
+    """Elements turn the right way, meet side to side and nowhere else, fill the stones, and stand along every joint."""
+    for group in mesh.groups:
+        assert (element_areas(mesh.xy, group.kind, group.connect) > 0.0).all()
+    assert len(np.unique(np.concatenate([g.connect.ravel() for g in mesh.groups]))) == len(mesh.xy)
+    sides = np.concatenate([edges(g.connect) for g in mesh.groups])
+    # No side is used twice the same way round: elements do not overlap where they meet
+    assert len(np.unique(sides, axis=0)) == len(sides)
+
+    (rows,) = [g for g in mesh.groups if g.joint is not None]
+    assert set(rows.joint.tolist()) == set(range(len(assembly.a)))
+    stones = np.concatenate([edges(g.connect) for g in mesh.groups if g.joint is None])
+    there = {tuple(side) for side in stones.tolist()}
+    ground = set(mesh.ground.tolist())
+    for quad, j in zip(rows.connect.tolist(), rows.joint.tolist(), strict=True):
+        along = mesh.xy[quad[1]] - mesh.xy[quad[0]]
+        assert abs(along @ assembly.tangent[j]) > 0.9 * np.hypot(*along)  # integration points lie along the joint
+        for a, b in ((quad[1], quad[0]), (quad[3], quad[2])):  # both long sides lie on a stone, or on the ground
+            on_ground = a in ground and b in ground
+            assert on_ground or (a, b) in there
+            assert not on_ground or GROUND in (assembly.a[j], assembly.b[j])
+    length = np.array([
+        np.hypot(*np.diff(mesh.xy[rows.connect[rows.joint == j][:, :2]], axis=1)[:, 0].T).sum()
+        for j in range(len(assembly.a))
+    ])  # fmt: skip
+    assert np.abs(length - assembly.length).max() < 12.0 * thickness  # at sharp corners more than at right ones
+
+    area = sum(element_areas(mesh.xy, g.kind, g.connect).sum() for g in mesh.groups)
+    stones_area = sum(signed_area(o) for o in assembly.outlines)
+    pores = 4.0 * thickness**2 * sum(len(o) + 2 * len(assembly.joints_of(i)) for i, o in enumerate(assembly.outlines))
+    # Arcs are drawn by chords of the elements
+    assert abs(area - stones_area) < pores + 0.003 * stones_area
+
+    total, fill = assembly.mass.sum(), 0.0 if assembly.fill is None else assembly.fill[:, 0].sum()
+    assert mesh.mass.sum() == pytest.approx(total + fill, rel=1e-12)
+    moment = assembly.mass @ assembly.centroid
+    if assembly.fill is not None:
+        moment = moment + assembly.fill[:, 0] @ assembly.fill[:, 1:]
+    assert mesh.mass @ mesh.xy == pytest.approx(moment, rel=1e-9, abs=1e-9 * total * assembly.size)
+
+
+@pytest.mark.parametrize("element", ["Q4", "T3"])
+@pytest.mark.parametrize("kind", STRUCTURES)
+def test_the_mesh_of_every_kind(kind: str, element: str) -> None:
+    building = context(STRUCTURES[kind]).building
+    mesh = building.mesh(MeshOptions(element=element))
+    (rows,) = [g for g in mesh.groups if g.joint is not None]
+    check_mesh(mesh, building.blocks(), rows.band)
+    if element == "T3":
+        assert {g.kind for g in mesh.groups if g.joint is None} == {"T3"}
+
+
+def random_wall(seed: int) -> list[list[tuple[float, float]]]:
+    """Courses of stones of random lengths between level beds, their heads askew; some stones cut into two triangles."""
+    rng = random.Random(seed)
+    found, low = [], 0.0
+    for _ in range(4):
+        high = low + rng.uniform(0.3, 0.8)
+        cuts = sorted(rng.uniform(0.4, 3.6) for _ in range(rng.randint(1, 4)))
+        cuts = [c for k, c in enumerate(cuts) if k == 0 or c - cuts[k - 1] > 0.4]
+        feet = [0.0, *cuts, 4.0]
+        heads = [0.0, *(c + rng.uniform(-0.15, 0.15) for c in cuts), 4.0]
+        for k in range(len(feet) - 1):
+            quad = [(feet[k], low), (feet[k + 1], low), (heads[k + 1], high), (heads[k], high)]
+            found += [[quad[0], quad[1], quad[2]], [quad[0], quad[2], quad[3]]] if rng.random() < 0.3 else [quad]
+        low = high
+    return found
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_the_mesh_of_random_drawings(tmp_path, seed: int) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new(units=6)
+    for ring in random_wall(seed):
+        drawing.modelspace().add_lwpolyline(ring, close=True)
+    drawing.saveas(tmp_path / "wall.dxf")
+    building = context({"kind": "blocks", "file": "wall.dxf"}, tmp_path).building
+    mesh = building.mesh()
+    (rows,) = [g for g in mesh.groups if g.joint is not None]
+    check_mesh(mesh, building.blocks(), rows.band)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_triangles_keep_the_ring(seed: int) -> None:
+    """Star-shaped rings with edges far longer than the elements, which Delaunay alone would cut."""
+    rng = np.random.default_rng(seed)
+    angle = np.sort(rng.uniform(0.0, 2.0 * math.pi, 40))
+    reach = rng.uniform(0.15, 1.0, 40)
+    ring = np.column_stack([reach * np.cos(angle), reach * np.sin(angle)])
+    xy, triangles = fill_ring(ring, 0.2)
+    area = element_areas(xy, "T3", triangles)
+    assert (area > 0.0).all()
+    assert area.sum() == pytest.approx(properties(ring)[0], rel=1e-9)
+    there = {tuple(side) for side in edges(triangles).tolist()}
+    assert all((k, (k + 1) % len(ring)) in there for k in range(len(ring)))
+
+
+@pytest.mark.parametrize("kind", STRUCTURES)
+def test_stones_become_a_mechanism_where_limit_analysis_says(kind: str) -> None:
+    """From below: hinges form at the outermost integration point of a joint, a little inside its end."""
+    found = sla(STRUCTURES[kind])
+    assert not found.reason
+    exact = tilt(STRUCTURES[kind])
+    assert 0.975 * exact < found.results["peak_acceleration_g"] < 1.0005 * exact
+    assert found.results["energy_residual_ratio"] < 1e-4
+    assert "do not slide" in found.answer
+
+
+def test_the_peak_converges_from_below() -> None:
+    peaks = [
+        sla(STRUCTURES["arch"], mesh={"size": 1.5 / n}).results["peak_acceleration_g"] for n in (4, 6, 8, 12)
+    ]  # fmt: skip
+    exact = tilt(STRUCTURES["arch"])
+    lacking = 1.0 - np.array(peaks) / exact
+    assert (lacking > 0.0).all() and (np.diff(lacking) < 0.0).all()
+    assert lacking[-1] < 0.005
+
+
+def test_both_ways_of_solving_agree() -> None:
+    peaks = [sla(STRUCTURES["blocks"], algorithm=a).results["peak_acceleration_g"] for a in ("update", "refactor")]
+    assert peaks[0] == pytest.approx(peaks[1], rel=1e-4)
+
+
+def test_hinges_are_those_of_the_mechanism() -> None:
+    found = sla(STRUCTURES["arch"], directions=["+", "-"])
+    assert found.results["hinges"] == ["joint 0", "joint 3", "joint 5", "joint 7"]
+    assert found.results["minus"]["peak_load_N"] == pytest.approx(found.results["peak_load_N"], rel=1e-6)
+    table = found.tables["joints"].columns
+    assert len(table["joint"]) == 8 and (np.asarray(table["open_part"]) <= 1.0).all()
+
+
+def test_mortar_adds_strength_and_is_lost() -> None:
+    """With mortar the peak lies above that of dry joints; once it is torn, the load is that of dry joints."""
+    dry = sla(STRUCTURES["arch"]).results["peak_acceleration_g"]
+    joints = {"tension": 3e5, "fracture_energy": 30.0}
+    strong = sla(STRUCTURES["arch"], joints=joints, ripple=0.3)
+    assert strong.results["peak_acceleration_g"] > 1.2 * dry
+    weak = sla(STRUCTURES["arch"], joints={"tension": 1e3, "fracture_energy": 1.0}, ripple=0.3)
+    assert weak.results["peak_acceleration_g"] == pytest.approx(dry, rel=0.005)
+
+
+def test_the_row_carries_the_stiffness_of_the_joint() -> None:
+    """A block pressed down by its weight sinks by the mean pressure over the stiffness, in series with the ground."""
+    structure = {"kind": "block", "width": 2.0, "height": 1.0}
+    data = {
+        "structure": structure, "material": {"young": 1e13}, "joints": {"normal_stiffness": 2e8},
+        "supports": {"stiffness": 6e8},
+        "analysis": {"kind": "sla", "control": [{"edge": "top", "direction": "y"}]},
+    }  # fmt: skip
+    found = run_analyses(Context(make_deck(data)))[0]
+    pressure = 2000.0 * 9.80665 * 1.0
+    assert found.results["displacement_of_constant_loads_m"] == pytest.approx(-pressure / 1.5e8, rel=1e-3)
+
+
+def test_what_does_not_fit_is_refused() -> None:
+    assert "no fracture_energy" in sla(STRUCTURES["arch"], joints={"tension": 1e5}).reason
+    assert "isotropic" in sla(STRUCTURES["arch"], cracking="isotropic").reason
+    assert "crack_closure" in sla(STRUCTURES["arch"], crack_closure=False).reason
+    assert "joint_thickness" in sla(STRUCTURES["arch"], mesh={"joint_thickness": 0.5}).reason
+    panel = {"kind": "panel", "width": 1.0, "height": 1.0, "thickness": 0.2}
+    assert "no joints" in sla(panel, mesh={"joint_thickness": 0.01}).reason
+    with pytest.raises(BadGeometry, match="Q4"):
+        context(STRUCTURES["arch"]).building.mesh(MeshOptions(element="Q8"))
+    # An arch too thin for its own weight
+    thin = {**STRUCTURES["arch"], "thickness": 0.5, "voussoirs": 20}
+    assert "not carried" in sla(thin).reason
+
+
+def test_a_wall_takes_the_default_loads() -> None:
+    """Gravity, and all masses times 1 g to +x: the first tooth of a slender cantilever wall by beam theory."""
+    data = {
+        "structure": {"kind": "panel", "width": 0.5, "height": 5.0, "thickness": 0.3},
+        "material": {"density": 2000.0, "tensile_strength": 2e5, "fracture_energy": 100.0},
+        "analysis": {"kind": "sla", "events": 3, "mesh": {"size": 0.05}},
+    }
+    found = run_analyses(Context(make_deck(data)))[0]
+    weight = 2000.0 * 9.80665 * 5.0
+    beam = (2e5 + weight) / (2000.0 * 9.80665 * 3.0 * 5.0**2 / 0.5)
+    assert found.results["first_event_load_N"] / found.results["reference_load_N"] == pytest.approx(beam, rel=0.1)
+    assert "peak_acceleration_g" in found.results
