@@ -22,6 +22,10 @@ def records() -> Path:
     return folder
 
 
+#: Ends the wait for processes that hang [s]; no measure of how long they may take.
+PATIENCE = 600
+
+
 @pytest.fixture
 def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen]]]:
     """A scheduler and two workers on the loopback, as processes of their own."""
@@ -44,21 +48,15 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen]]]:
         processes.append(
             start("dask_worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-nanny", "--no-dashboard")
         )
-    deadline = time.monotonic() + 60
     while not file.exists() or not file.read_text().strip():
-        assert time.monotonic() < deadline
+        assert processes[0].poll() is None, "the scheduler did not start"
         time.sleep(0.1)
     address = json.loads(file.read_text())["address"]
     from distributed import Client
 
-    with Client(address, timeout=60) as client:
-        client.wait_for_workers(2, timeout=60)
+    with Client(address, timeout=PATIENCE) as client:
+        client.wait_for_workers(2, timeout=PATIENCE)
     yield address, processes
     for process in processes:
-        if process.poll() is None:
-            process.terminate()
-    for process in processes:
-        try:
-            process.wait(10)
-        except subprocess.TimeoutExpired:
-            process.kill()
+        process.kill()
+        process.wait()

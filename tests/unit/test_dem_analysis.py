@@ -1,5 +1,6 @@
 """Discrete elements as a user asks for them: answers beside the other strategies, and refusals that name the block."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -287,3 +288,84 @@ def test_limit_analysis_takes_columns_and_walls() -> None:
         {"structure": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 8}, "analysis": [{"kind": "tilt"}]}
     )
     assert found["collapse_acceleration_g"] == pytest.approx(0.25, rel=1e-6)
+
+
+PIER = [[0.0, 0.0], [1.0, 0.0], [1.0, 2.0], [0.0, 2.0]]
+STRUCTURES = {
+    "arch": ARCH,
+    "pointed-arch": {"kind": "pointed-arch", "span": 6.0, "radius": 6.0, "thickness": 0.8, "voussoirs": 8},
+    "elliptical-arch": {"kind": "elliptical-arch", "span": 8.0, "rise": 3.0, "thickness": 1.0, "voussoirs": 9},
+    "vault": {
+        "kind": "vault", "radius": 5.0, "thickness": 0.6, "embrace": 120.0, "voussoirs": 8, "face": 4.2,
+        "buttress_width": 2.0, "height": 9.0,
+    },
+    "aisled-vault": {
+        "kind": "aisled-vault", "radius": 4.8, "thickness": 0.6, "voussoirs": 8, "springing": 12.5, "pier_width": 1.9,
+        "aisle_thickness": 0.45, "aisle_voussoirs": 6, "aisle_springing": 6.0, "half_width": 12.5,
+        "buttress_width": 1.8, "buttress_top": 8.5,
+    },
+    "blocks": {"kind": "blocks", "block": [{"name": "pier", "points": PIER}]},
+    "JSON": {"kind": "blocks", "file": "pier.json"},
+    "DXF": {"kind": "blocks", "file": "pier.dxf"},
+    "block": {"kind": "block", "width": 1.0, "height": 4.0},
+    "column": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 3},
+    "brickwork": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 2, "courses": 3},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", STRUCTURES)
+def test_every_structure_of_stones(name: str, tmp_path: Path) -> None:
+    """Its properties are the building's: softer ground, joints that differ; it moves, and is drawn."""
+    from extrados.session import run_deck
+
+    from extrados.plots.dem import draw_dem
+    from extrados.results.store import read
+
+    (tmp_path / "pier.json").write_text(json.dumps({"blocks": [{"name": "pier", "points": PIER}]}))
+    if name == "DXF":
+        drawing = pytest.importorskip("ezdxf").new(units=6)
+        drawing.modelspace().add_lwpolyline(PIER, close=True)
+        drawing.saveas(tmp_path / "pier.dxf")
+
+    def answer(**tables) -> object:
+        deck = {
+            "structure": STRUCTURES[name],
+            "motion": {"kind": "step-pulse", "amplitude": "0.3 g", "duration": 0.1},
+            "analysis": [{"kind": "dem", "end_time": 0.1, "output_step": 0.02}],
+            **tables,
+        }
+        return run_deck(Context(make_deck(deck, tmp_path)), tmp_path / "run", figures=False)[1][0]
+
+    soft = answer(supports={"stiffness": 1e8})
+    slippery = answer(joints={"types": [{"joints": ["ground"], "friction": 0.05}]})
+    plain = answer()
+    assert soft.status == plain.status == "ok" and plain["peak_displacement_m"] > 0.0
+    assert soft["joint_stiffness_min_Pa_per_m"] < 1e8 < plain["joint_stiffness_min_Pa_per_m"]
+    if slippery.status == "refused":
+        assert "does not come to rest" in slippery.reason and ("arch" in name or name == "vault")  # it slides apart
+    else:
+        assert slippery["peak_slip_m"] > 10.0 * plain["peak_slip_m"]
+    assert draw_dem(read(tmp_path / "run"), "dem", tmp_path) and list((tmp_path / "figures").glob("*.png"))
+
+
+def test_a_start_that_it_cannot_take_is_refused() -> None:
+    """Only a block starts rotated; elsewhere the deck may say so for the other strategies alone."""
+    deck = {"structure": ARCH, "motion": PULSE, "initial": {"rotation_ratio": 0.2}}
+    short = {"kind": "dem", "end_time": 0.1}
+    refused, ran = answers({**deck, "analysis": [short, {**short, "initial": {"rotation_ratio": 0.0}}]})
+    assert refused.status == "refused" and "rotation_ratio" in refused.reason
+    assert ran.status == "ok"
+
+
+def test_the_domain_starts_as_the_deck_says() -> None:
+    """A block that leans already falls to a shorter pulse."""
+    domain = {"kind": "dem-domain", "amplitudes": ["0.6 g"], "durations": [0.05, 0.8], "accuracy": 0.02}
+    block = {"kind": "block", "width": 1.0, "height": 4.0}
+    joints = {"friction": 2.0, "normal_stiffness": 1e8}
+    shortest = [
+        answers({"structure": block, "joints": joints, "initial": {"rotation_ratio": ratio}, "analysis": [domain]})[0][
+            "shortest_durations_s"
+        ][0]
+        for ratio in (0.0, 0.5)
+    ]
+    assert shortest[1] != shortest[0] and min(shortest) > 0.0

@@ -2,6 +2,7 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import tomllib
@@ -10,13 +11,15 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
+from extrados.session import run_deck
 
 from extrados.analyses.context import Context
+from extrados.analyses.dem import dem_domain
 from extrados.analyses.run import run_analyses
 from extrados.analyses.sla.model import build
 from extrados.core import calls
 from extrados.core import sla as core
-from extrados.decks.reader import make_deck
+from extrados.decks.reader import make_deck, read_deck
 from extrados.results.checkpoint import Checkpoint, folder_of
 
 BLOCK = """
@@ -176,10 +179,6 @@ def assert_same(one: Path, two: Path) -> None:
         assert path.read_bytes() == (two / path.name).read_bytes(), path.name
 
 
-def words(deck: Path, out: Path, *more: str) -> list[str]:
-    return ["run", str(deck), "--no-figures", "--quiet", "--out", str(out), *more]
-
-
 def written(kind: str, folder: Path) -> Path:
     deck = folder / "deck.toml"
     deck.write_text(DECKS[kind])
@@ -187,20 +186,23 @@ def written(kind: str, folder: Path) -> Path:
     return deck
 
 
+def run(deck: Path, out: Path, **context) -> None:
+    run_deck(Context(read_deck(deck), **context), out, figures=False)
+
+
 @pytest.mark.skipif(os.name != "posix", reason="SIGKILL is POSIX")
 @pytest.mark.parametrize("kind", DECKS)
 def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
-    deck = written(kind, tmp_path)
-    python = [sys.executable, "-c"]
+    deck, one, two = written(kind, tmp_path), tmp_path / "a", tmp_path / "b"
     keeps = 3 if kind.startswith("sla, one") else 2  # of that wall: in its second curve
-    killed = subprocess.run([*python, KILLED, str(keeps), *words(deck, tmp_path / "a", "--threads", "1")])
-    assert killed.returncode == -9 and not (tmp_path / "a" / "summary.json").exists()
-    assert len(list(folder_of(tmp_path / "a").glob("*/*.npz"))) == keeps
-    plain = [sys.executable, "-m", "extrados.cli"]
-    subprocess.run([*plain, *words(deck, tmp_path / "a", "--resume", "--threads", "2")], check=True)
-    subprocess.run([*plain, *words(deck, tmp_path / "b", "--threads", "2")], check=True)
-    assert_same(tmp_path / "a", tmp_path / "b")
-    assert not folder_of(tmp_path / "a").exists()
+    words = ["run", str(deck), "--no-figures", "--quiet", "--threads", "1", "--out", str(one)]
+    killed = subprocess.run([sys.executable, "-c", KILLED, str(keeps), *words])
+    assert killed.returncode == -signal.SIGKILL and not (one / "summary.json").exists()
+    assert len(list(folder_of(one).glob("*/*.npz"))) == keeps
+    run(deck, one, resume=True, threads=2)
+    run(deck, two, threads=2)
+    assert_same(one, two)
+    assert not folder_of(one).exists()
 
 
 @pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds"])
@@ -231,14 +233,29 @@ def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.
     assert kept <= set(folder_of(out).glob("*/*.npz")) and again
 
 
-@pytest.mark.parametrize("kind", ["dem-domain", "sla seeds", "sweep"])
-def test_cluster_gives_the_same_bytes(kind: str, cluster, tmp_path: Path) -> None:
+def test_ctrl_c_between_two_rounds_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    rounds = []
+    real = dem_domain.Search.fails
+
+    def fails(self, pulses):
+        rounds.append(real(self, pulses))
+        calls._ask()
+        return rounds[-1]
+
+    monkeypatch.setattr(dem_domain.Search, "fails", fails)
+    (found,) = run_analyses(Context(make_deck(tomllib.loads(DECKS["dem-domain"]))))
+    assert found.status == "interrupted" and len(rounds) == 1
+
+
+def test_cluster_gives_the_same_bytes(cluster, tmp_path: Path) -> None:
     address, _ = cluster
-    deck = written(kind, tmp_path)
-    plain = [sys.executable, "-m", "extrados.cli"]
-    subprocess.run([*plain, *words(deck, tmp_path / "a", "--scheduler", address)], check=True)
-    subprocess.run([*plain, *words(deck, tmp_path / "b")], check=True)
-    assert_same(tmp_path / "a", tmp_path / "b")
+    for kind in ("dem-domain", "sla seeds", "sweep"):
+        folder = tmp_path / kind
+        folder.mkdir()
+        deck = written(kind, folder)
+        run(deck, folder / "a", scheduler=address)
+        run(deck, folder / "b")
+        assert_same(folder / "a", folder / "b")
 
 
 def test_a_new_factor_forgets_the_history(tmp_path: Path) -> None:

@@ -171,15 +171,15 @@ def _in_threads(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     todo = _pieces(batches.missing(), lambda: pace.size)
     threads = max(1, context.threads)
     each = max(1, threads // (batches.count - batches.done))
-    upcoming = next(todo, None)
     pending: dict[Future, int] = {}
     stopped = False
     pool = ThreadPoolExecutor(threads)
     try:
-        while pending or (upcoming is not None and not stopped):
-            while upcoming is not None and len(pending) < threads and not stopped:
-                pending[pool.submit(_timed, job, *upcoming, each)] = upcoming[0]
-                upcoming = next(todo, None)
+        while True:
+            while not stopped and len(pending) < threads and (piece := next(todo, None)):
+                pending[pool.submit(_timed, job, *piece, each)] = piece[0]
+            if not pending:
+                break
             finished, _ = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)
             for future in finished:
                 first = pending.pop(future)
