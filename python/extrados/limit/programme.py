@@ -19,6 +19,18 @@ ROUNDS = 300
 INNER_REST = 1e-5
 
 
+# Of the total load: joints pressed by less carry nothing but rounding.
+CARRIES = 1e-7
+# Of the joints' length: where the search for the most central line may end.
+SETTLED = 1e-9
+
+
+def _eccentric(lean: np.ndarray, normal: np.ndarray) -> float:
+    """Greatest |n_q - n_p| / N over the joints that carry anything."""
+    carries = normal > CARRIES
+    return float((np.abs(lean[carries]) / normal[carries]).max()) if carries.any() else 0.0
+
+
 class LimitAnalysis:
     """All programmes of one assembly; successive solves start from the last basis."""
 
@@ -204,7 +216,9 @@ class LimitAnalysis:
 
         The part is measured about the middle of each joint; its inverse is the geometric safety factor, and
         above one it says by how much the joints would have to grow. Dinkelbach's iteration on
-        max |n_q - n_p| / N, from the mean of admissible states where some are given. Without crushing.
+        max |n_q - n_p| / N over the joints that carry anything, from the mean of admissible states where some
+        are given; where it creeps, as in walls whose head joints come to carry nothing, by halving. Without
+        crushing.
         """
         m = len(self.assembly.a)
         cost = np.zeros(self.system.unknowns + 1)
@@ -215,11 +229,11 @@ class LimitAnalysis:
             fixed = self._cone if fixed is None else fixed + self._cone
         part, share = 1.0, np.ones(m)
         if start:
-            share = np.maximum(sum(s.normal for s in start) / len(start) / self.loads.scale, 1e-12)
+            normal = sum(s.normal for s in start) / len(start) / self.loads.scale
             lean = sum(s.normal * (2.0 * s.position - 1.0) for s in start) / len(start) / self.loads.scale
-            part = float((np.abs(lean) / share).max())
-        programme = None
-        for _ in range(50):
+            part, share = _eccentric(lean, normal), np.maximum(normal, CARRIES)
+        programme, best, low, high = None, None, 0.0, np.inf
+        for _ in range(ROUNDS):
             rows = self._rows(self._joints, (part + 1.0, part - 1.0, 0.0)) + self._rows(
                 self._joints, (part - 1.0, part + 1.0, 0.0)
             )
@@ -231,11 +245,16 @@ class LimitAnalysis:
                 programme.pass_rows(rows, slack)
             solution = programme.minimise(cost, (gamma, gamma))
             corners = self.system.corners(solution.x[:-1])
-            normal = np.maximum(corners[:, 0] + corners[:, 1], 1e-12)
-            new = float((np.abs(corners[:, 1] - corners[:, 0]) / normal).max())
-            if abs(part - new) < 1e-9:
-                return self._unclipped(solution, corners), new
-            part, share = new, normal
+            normal = corners[:, 0] + corners[:, 1]
+            new = _eccentric(corners[:, 1] - corners[:, 0], normal)
+            if solution.x[-1] < -SETTLED:
+                low = part
+            creeps = best is not None and new > 0.5 * (low + high)
+            if new < high:
+                best, high, share = self._unclipped(solution, corners), new, np.maximum(normal, CARRIES)
+            if abs(part - new) < SETTLED or high - low < SETTLED:
+                return best, high
+            part = 0.5 * (low + high) if creeps else high
         raise NoAnswer("the most central thrust line did not settle")
 
     def _unclipped(self, solution: Solution, corners: np.ndarray) -> State:
