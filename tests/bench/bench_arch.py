@@ -6,8 +6,8 @@ import time
 import numpy as np
 from tests.bench.timing import seconds
 
-from extrados.building.rockers.arch import ArchModel
 from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time
+from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import make_arch
 from extrados.core import rocking
 from extrados.limit.programme import LimitAnalysis

@@ -11,9 +11,9 @@ import sys
 import time
 
 import numpy as np
+from extrados.building.templates.wall_tables import Panel
 
 from extrados.building.mesh.panel import make_panel
-from extrados.building.templates.wall_tables import Panel
 from extrados.core.sla import Freedoms, Model, Monitor, Plane, Softening, body_force
 
 #: elements a side -> events by update, by refactorisation

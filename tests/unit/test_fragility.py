@@ -7,8 +7,6 @@ import pytest
 
 import extrados
 from extrados.analyses.codes.code_rules import asce43, ishiyama, piers
-from extrados.building.rockers.block import BlockModel
-from extrados.building.rockers.rocker import RockingModel
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.analyses.statistics.resonance import (
@@ -17,6 +15,8 @@ from extrados.analyses.statistics.resonance import (
     least_cap,
     optimal_motion,
 )
+from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.rocker import RockingModel
 from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
@@ -86,8 +86,8 @@ def test_uncertain_values_are_sampled_evenly() -> None:
     plain = run({"kind": "fragility", "count": 256, "seed": 5})
     assert np.array_equal(result.arrays["peak_ratio"].data, again.arrays["peak_ratio"].data)
     assert not np.array_equal(result.arrays["peak_ratio"].data, plain.arrays["peak_ratio"].data)
-    from extrados.building.rockers.rocker import rocking_model
     from extrados.analyses.statistics.fragility import sampled_models
+    from extrados.building.rockers.rocker import rocking_model
 
     context = Context(
         make_deck(

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from arch_oracle import Oracle
 
-from extrados.building.rockers.arch import ArchModel, minimum_thickness
 from extrados.analyses.context import Refused
+from extrados.building.rockers.arch import ArchModel, minimum_thickness
 from extrados.building.templates.arch import make_arch
 from extrados.core import rocking
 from extrados.motions import pulses

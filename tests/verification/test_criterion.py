@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from extrados.building.rockers.arch import ArchModel
 from extrados.analyses.rocking.rocking import criterion
+from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import make_arch
 from extrados.motions.impulse import primary_impulses
 

@@ -137,7 +137,7 @@ def assess(
     try:
         thrusts = {
             name: beside(
-                f"the least and greatest thrust of the {name}", lambda joint=joints[0]: limit.thrust(joint), (NoAnswer,)
+                f"the least and greatest thrust of the {name}", lambda joints=joints: limit.thrust(joints), (NoAnswer,)
             )
             for name, joints in assembly.chains.items()
         }

@@ -1,9 +1,12 @@
 """The questions of limit analysis put to an assembly: collapse, standing, thrust, safety (thesis chapter 3)."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.equilibrium import spanning_tree
+from extrados.limit.graphic import senses
 from extrados.limit.interior import Interior, collapse_load
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.solver import BOUND, Immovable, NoAnswer, NoEquilibrium, Programme, Solution
@@ -23,6 +26,20 @@ INNER_REST = 1e-5
 CARRIES = 1e-7
 # Of the joints' length: where the search for the most central line may end.
 SETTLED = 1e-9
+
+# Of the joints' length: to which the most central line of a wall is found.
+LEAST_PART = 1e-3
+
+
+def _mixed(one: State, two: State, gamma: float, part: float) -> State | None:
+    """The state at gamma between two of joints cut down to a part; None where gamma does not lie between theirs."""
+    if not two.gamma <= gamma <= one.gamma:
+        return None
+    share = (gamma - two.gamma) / (one.gamma - two.gamma)
+    normal = share * one.normal + (1.0 - share) * two.normal
+    lean = share * one.normal * (one.position - 0.5) + (1.0 - share) * two.normal * (two.position - 0.5)
+    position = 0.5 + part * lean / np.maximum(normal, 1e-300)
+    return State(gamma, normal, share * one.shear + (1.0 - share) * two.shear, position)
 
 
 def _eccentric(lean: np.ndarray, normal: np.ndarray) -> float:
@@ -197,19 +214,16 @@ class LimitAnalysis:
             return False
         return True
 
-    def thrust(self, joint: int, gamma: float = 0.0) -> tuple[State, State]:
-        """States of least and greatest horizontal force across `joint` at a fixed gamma."""
-        a = self.assembly
+    def thrust(self, joints: list[int], gamma: float = 0.0) -> tuple[State, State]:
+        """States of least and greatest horizontal thrust of a chain, across the first of its joints, at a fixed gamma."""
+        a, joint = self.assembly, joints[0]
+        sense = senses(a, joints)[0]
         corner_cost = np.zeros((len(a.a), 3))
         corner_cost[joint] = a.normal[joint, 0], a.normal[joint, 0], a.tangent[joint, 0]
-        cost = self.system.cost(corner_cost * (1.0 if a.normal[joint, 0] >= 0.0 else -1.0))
+        cost = self.system.cost(corner_cost * sense)
         found = [self.optimise(sign * cost, (gamma, gamma)) for sign in (1.0, -1.0)]
         least, greatest = (self._state(solution, corners) for solution, _, corners in found)
         return least, greatest
-
-    def horizontal(self, state: State, joint: int) -> float:
-        """Horizontal force across a joint in a state [N]."""
-        return abs(float(state.force(self.assembly)[joint, 0]))
 
     def central(self, gamma: float = 0.0, start: list[State] | None = None) -> tuple[State, float]:
         """The most central state at a given gamma, and the least part of the joints' length that holds it.
@@ -220,6 +234,8 @@ class LimitAnalysis:
         are given; where it creeps, as in walls whose head joints come to carry nothing, by halving. Without
         crushing.
         """
+        if isinstance(self.system, Sparse):
+            return self._central_of_wall(gamma)
         m = len(self.assembly.a)
         cost = np.zeros(self.system.unknowns + 1)
         cost[-1] = -1.0
@@ -256,6 +272,38 @@ class LimitAnalysis:
                 return best, high
             part = 0.5 * (low + high) if creeps else high
         raise NoAnswer("the most central thrust line did not settle")
+
+    def _central_of_wall(self, gamma: float) -> tuple[State, float]:
+        """The same of a wall, by halving: joints cut down to a part about their middles bear gamma, or do not.
+
+        The state is the mixture, at gamma, of the two at which the wall of shorter joints collapses.
+        """
+
+        def held(part: float) -> State | None:
+            a = self.assembly
+            half = 0.5 * part * (a.q - a.p)
+            limit = LimitAnalysis(
+                replace(a, p=a.middle - half, q=a.middle + half), self.friction, loads=self.loads, form="sparse"
+            )
+            try:
+                ends = [limit.collapse(direction)[0] for direction in (1, -1)]
+            except NoEquilibrium:
+                return None
+            return _mixed(*ends, gamma, part)
+
+        low, high = 0.0, 1.0
+        best = held(high)
+        if best is None:
+            raise NoEquilibrium("no admissible thrust line")
+        trial = LEAST_PART
+        while high - low > LEAST_PART:
+            state = held(trial)
+            if state is None:
+                low = trial
+            else:
+                best, high = state, trial
+            trial = 0.5 * (low + high)
+        return best, high if high > LEAST_PART else 0.0
 
     def _unclipped(self, solution: Solution, corners: np.ndarray) -> State:
         """State whose line may leave the joints: positions below 0 or above 1."""

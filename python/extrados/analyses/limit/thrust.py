@@ -1,9 +1,12 @@
 """thrust: admissible thrust lines at a given acceleration, safety, reactions, friction needed (thesis 3.2)."""
 
+from typing import Any
+
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import (
+    chain_of,
     geometry_arrays,
     graphic_arrays,
     limit_of,
@@ -12,7 +15,8 @@ from extrados.analyses.limit.common import (
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
 from extrados.building.geometry.assembly import Assembly
-from extrados.limit.answer import CannotStand, assess
+from extrados.limit.answer import Answer, CannotStand, assess, safety_factor
+from extrados.limit.graphic import thrust_of
 from extrados.limit.programme import NoEquilibrium, State
 from extrados.results.model import Result, TableData
 
@@ -21,40 +25,37 @@ def run(context: Context, options: Thrust) -> Result:
     """Least, greatest and most central thrust line, each with its force polygon."""
     assembly: Assembly = context.building.blocks()
     limit = limit_of(context.building, options)
-    chain = options.chain or next(iter(assembly.chains))
-    if chain not in assembly.chains:
-        raise Refused(f"chain: there is no '{chain}'; there are {', '.join(assembly.chains)}")
-    springing = assembly.chains[chain][0]
+    chain = chain_of(assembly, options.chain)
     try:
         answer = assess(assembly, limit=limit)
     except CannotStand as error:
         raise Refused(f"the structure cannot stand under its own weight: {error}") from None
     low, high = answer.back_state.gamma, answer.gamma
+    ends = {}
     try:
-        least, most = limit.thrust(springing, options.gamma)
-        central, part = limit.central(options.gamma, start=[least, most])
+        if chain is not None:
+            ends = dict(zip(("least", "most"), limit.thrust(assembly.chains[chain], options.gamma), strict=True))
+        central, part = limit.central(options.gamma, start=list(ends.values()))
     except NoEquilibrium:
         raise Refused(
             f"at {options.gamma:g} g no thrust line is admissible: the structure bears {low:.4f} to {high:.4f} g"
         ) from None
-    states = {"least": least, "most": most, "central": central}
+    states = {**ends, "central": central}
+    safety = safety_factor(part)
     result = Result("thrust")
     result.results = {
         "gamma_g": options.gamma,
         "chain": chain,
         "admissible_interval_g": [low, high],
-        "geometric_safety_factor": 1.0 / part,
+        "geometric_safety_factor": safety,
         "least_part_of_joints": part,
         "weight_N": answer.loads.scale,
         "depth_m": assembly.depth,
         "duality_gap": answer.gap,
     }
     for name, state in states.items():
-        thrust = limit.horizontal(state, springing)
         result.results[name] = {
-            "horizontal_N": thrust,
-            "horizontal_kN_per_m": thrust / assembly.depth / 1e3,
-            "over_weight": thrust / answer.loads.scale,
+            **_horizontal(answer, state, chain),
             "required_friction": float(state.friction.max()),
             "required_friction_joint": assembly.joint_names[int(state.friction.argmax())],
             "greatest_eccentricity_ratio": float(np.abs(state.position - 0.5).max()),
@@ -66,15 +67,45 @@ def run(context: Context, options: Thrust) -> Result:
     for name, state in states.items():
         result.arrays.update(state_arrays(assembly, name, state, about[name]))
         result.arrays.update(graphic_arrays(answer, name, state, about[name]))
-    r = result.results
-    result.answer = (
-        f"At {options.gamma:g} g the thrust of the {chain} lies between {r['least']['horizontal_kN_per_m']:.4g} and "
-        f"{r['most']['horizontal_kN_per_m']:.4g} kN per metre of depth at its left springing; the most central line "
-        f"({r['central']['horizontal_kN_per_m']:.4g} kN/m) keeps to the middle {100 * part:.1f} % of the joints "
-        f"(geometric safety factor {1 / part:.2f}) and needs a friction of {r['central']['required_friction']:.2f}. "
-        f"Lines are admissible from {low:.4f} to {high:.4f} g."
-    )
+    result.warnings += answer.warnings
+    result.answer = _words(result.results, assembly)
     return result
+
+
+def _horizontal(answer: Answer, state: State, chain: str | None) -> dict[str, float]:
+    """Horizontal thrust of a chain; nothing where there is none."""
+    if chain is None:
+        return {}
+    thrust = thrust_of(answer.assembly, state, answer.assembly.chains[chain])
+    return {
+        "horizontal_N": thrust,
+        "horizontal_kN_per_m": thrust / answer.assembly.depth / 1e3,
+        "over_weight": thrust / answer.loads.scale,
+    }
+
+
+def _words(r: dict[str, Any], assembly: Assembly) -> str:
+    part, safety, central = r["least_part_of_joints"], r["geometric_safety_factor"], r["central"]
+    keeps = (
+        f"keeps to the middle {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
+        if np.isfinite(safety)
+        else "can run through the middles of all joints"
+    )
+    needs = f"{keeps} and needs a friction of {central['required_friction']:.2f}"
+    if r["chain"] is None:
+        text = (
+            f"At {r['gamma_g']:g} g the most central state {needs}. No stones form an arch or a stack here, so no chain has "
+            "a least and a greatest thrust."
+        )
+    else:
+        least, most, middle = (r[which]["horizontal_kN_per_m"] for which in ("least", "most", "central"))
+        where = "base" if np.ptp(assembly.middle[assembly.chains[r["chain"]], 0]) == 0.0 else "left springing"
+        text = (
+            f"At {r['gamma_g']:g} g the thrust of the {r['chain']} lies between {least:.4g} and {most:.4g} kN per metre of "
+            f"depth at its {where}; the most central line ({middle:.4g} kN/m) {needs}."
+        )
+    low, high = r["admissible_interval_g"]
+    return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g."
 
 
 def _table(assembly: Assembly, state: State) -> TableData:

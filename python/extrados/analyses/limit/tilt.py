@@ -17,13 +17,14 @@ from extrados.building.building import Building
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
+from extrados.limit.graphic import thrust_of
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import NoEquilibrium
 from extrados.results.model import Array, Result
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 
-MOST_NAMED = 12  # hinges and sliding joints told in words
+MOST_NAMED = 6  # hinges and sliding joints told in words
 
 #: Above this the joints of masonry slide
 USUAL_FRICTION = 0.7
@@ -72,8 +73,8 @@ def run(context: Context, options: Tilt) -> Result:
             "the mechanism carried on: places of the centroids, rotations",
         ),
     }  # fmt: skip
-    if assembly.chains:
-        first = next(iter(assembly.chains))
+    if answer.least:
+        first = next(iter(answer.least))
         for word, state_of in (("least", answer.least[first]), ("most", answer.most[first])):
             about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
             result.arrays.update(state_arrays(assembly, word, state_of, about))
@@ -81,6 +82,7 @@ def run(context: Context, options: Tilt) -> Result:
     if options.fracture:
         _fracture(context.building, options, answer, result)
     result.answer = _words(assembly, answer, hinges, result)
+    result.warnings += answer.warnings
     needed = result.results["required_friction"]
     if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
@@ -97,12 +99,12 @@ def run(context: Context, options: Tilt) -> Result:
 def _thrusts(answer: Answer) -> dict[str, object]:
     """Least and greatest horizontal thrust upright of each chain [N]; the first also by the common names."""
 
-    def horizontal(name: str, state) -> float:
-        return abs(float(state.force(answer.assembly)[answer.assembly.chains[name][0], 0]))
-
     table = {
-        name: {"min_N": horizontal(name, answer.least[name]), "max_N": horizontal(name, answer.most[name])}
-        for name in answer.assembly.chains
+        name: {
+            f"{end}_N": thrust_of(answer.assembly, states[name], answer.assembly.chains[name])
+            for end, states in (("min", answer.least), ("max", answer.most))
+        }
+        for name in answer.least
     }
     if not table:
         return {}
@@ -169,7 +171,7 @@ def _words(assembly: Assembly, answer: Answer, hinges: list[dict], result: Resul
     if assembly.chains:
         where = _some([f"{h['side']} of {h['name']}" for h in hinges])
     else:
-        where = _some([f"joint {h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges])
+        where = _some([f"{h['name']} (x = {h['x_m']:.2f}, y = {h['y_m']:.2f} m)" for h in hinges])
     slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
     moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
     text = (

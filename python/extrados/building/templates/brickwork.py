@@ -122,13 +122,13 @@ def _lintels(bond: Bond, length: float, height: float, holes: list[Box]) -> dict
         top = min([head + tall, height, *(o[2] for o in over if o[2] > head)])
         low, high = max(0.0, left - bearing), min(length, right + bearing)
         for k, (a, b, c, d) in enumerate(holes):
-            if k == i or d + (tall if d < height else 0.0) <= head or c >= top:
+            its_lintel = d < top and head < d + tall and d < height
+            if k == i or not (its_lintel or (c < top and head < d)):
                 continue
-            beside = d > head  # the opening itself stands beside the lintel, else only its lintel does
             if a >= right:
-                high = min(high, a if beside else 0.5 * (right + a))
+                high = min(high, 0.5 * (right + a) if its_lintel else a)
             if b <= left:
-                low = max(low, b if beside else 0.5 * (left + b))
+                low = max(low, 0.5 * (left + b) if its_lintel else b)
         # A hair beyond the wall or the top of a course would leave a sliver.
         top = height if height - top < small else top
         found[i] = (low, high, head, top)

@@ -1,5 +1,6 @@
 """Columns of drums: stones one upon the other."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Literal
 
@@ -48,7 +49,8 @@ def make_column(
         )
         for i in range(n)
     ]  # fmt: skip
-    return stones_and_joints(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
+    made = stones_and_joints(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
+    return replace(made, chains={"stack": list(range(n))})
 
 
 class Column(Structure):
