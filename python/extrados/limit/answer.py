@@ -13,7 +13,6 @@ from extrados.limit.loads import Loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.systems import Sparse
 
-MOST_LINES = 12
 Found = TypeVar("Found")
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
 CENTRAL = 1e-6  # of the joints' length: a line this near to all middles runs through them
@@ -89,9 +88,9 @@ class Answer:
         """Thrust lines (k, 2) [m]: along each chain, and down each block that stands on the ground."""
         points = state.points(self.assembly)
         lines = {name: points[joints] for name, joints in self.assembly.chains.items()}
-        standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
-        if not self.assembly.chains and len(standing) > MOST_LINES:
+        if not lines:
             return lines  # the first course of a wall: a line down each stone says nothing
+        standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
         for block in sorted(standing - {b for j in self.assembly.chains.values() for b in self._inner(j)}):
             line = pier_line(self.assembly, self.loads, state, block)
             if len(line):
