@@ -61,6 +61,12 @@ class Building:
         named = {name: material.density for name, material in self.materials.items()}
         return structure.weighed(structure.assembly(density, self.folder), density, named)
 
+    def pier_blocks(self) -> Assembly:
+        """A wall as few rigid bodies: piers between its openings, spandrels over them."""
+        return self._view(
+            "piers", (self.structure, self.material.density), lambda: self._structure().piers(self.material.density)
+        )
+
     def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
         """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches
         what falls."""

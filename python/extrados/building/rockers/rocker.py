@@ -7,14 +7,14 @@ import numpy as np
 
 from extrados.building.errors import NoView
 from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel, block_model
+from extrados.building.rockers.block import WALLS, BlockModel, block_model
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core.rocking import Body
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
 
-MONOLITHS = ("block", "column")
+MONOLITHS = ("block", "column", *WALLS)
 
 
 @dataclass(frozen=True)

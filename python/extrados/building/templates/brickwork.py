@@ -1,7 +1,6 @@
 """Walls of units in running bond: the maker, the keys by which a wall is laid, and the kind `brickwork`."""
 
 import itertools
-from bisect import bisect_left, bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,15 +11,15 @@ from pydantic import model_validator
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.boxes import SAME, Box, contacts, openings_within, outline
 from extrados.building.places import Opening
 from extrados.building.structure import Structure
 from extrados.building.templates.masonry import stones_and_joints
+from extrados.building.templates.piers import make_piers
 from extrados.schema.quantities import Length
 from extrados.schema.table import Table, key
 
 MOST_UNITS = 20000
-SAME = 1e-6  # of a unit: edges nearer than this are one
-Box = tuple[float, float, float, float]  # x from, x to, y from, y to [m]
 
 
 @dataclass(frozen=True)
@@ -67,7 +66,8 @@ def make_brickwork(
         raise BadGeometry(
             f"{length * height / bond.length / bond.height:.0f} units are too many, expected at most {MOST_UNITS}"
         )
-    holes = _holes(bond, length, height, openings)
+    small = min(bond.length, bond.height)
+    holes = openings_within(length, height, openings, small)
     beams = _lintels(bond, length, height, holes) if bond.lintels else {}
     taken = [*holes, *beams.values()]
     wall = _Wall()
@@ -79,26 +79,10 @@ def make_brickwork(
         wall.add(box, f"lintel {i + 1}", -1, i + 1)
     if not wall.boxes:
         raise BadGeometry("the openings leave nothing of the wall")
-    joints = _joints(wall, SAME * min(bond.length, bond.height))
-    if not joints:
+    joints = _joints(wall, small)
+    if all(b != GROUND for *_, b in joints):
         raise BadGeometry("the openings leave nothing that stands on the ground")
-    outlines = [np.array([[a, c], [b, c], [b, d], [a, d]]) for a, b, c, d in wall.boxes]
-    return stones_and_joints(outlines, wall.names, joints, density, depth)
-
-
-def _holes(bond: Bond, length: float, height: float, openings: Sequence[Box]) -> list[Box]:
-    """The openings within the wall; edges that all but coincide with each other or the wall's are made the same."""
-    xs, ys = [0.0, length], [0.0, height]
-
-    def same(value: float, known: list[float], unit: float) -> float:
-        value = min(max(value, known[0]), known[1])
-        for other in known:
-            if abs(value - other) < SAME * unit:
-                return other
-        known.append(value)
-        return value
-
-    return [(*(same(v, xs, bond.length) for v in o[:2]), *(same(v, ys, bond.height) for v in o[2:])) for o in openings]
+    return stones_and_joints([outline(box) for box in wall.boxes], wall.names, joints, density, depth)
 
 
 def _lintels(bond: Bond, length: float, height: float, holes: list[Box]) -> dict[int, Box]:
@@ -174,42 +158,20 @@ def _course(bond: Bond, length: float, course: int, low: float, high: float, hol
     return found
 
 
-def _joints(wall: _Wall, small: float) -> list[tuple[str, np.ndarray, np.ndarray, int, int]]:
+def _joints(wall: _Wall, size: float) -> list[tuple[str, np.ndarray, np.ndarray, int, int]]:
     """Joints of each stone with those to its left and below it, and with the ground."""
-    ends: dict[float, list[tuple[float, int]]] = {}
-    tops: dict[float, list[tuple[float, int]]] = {}
-    for i, (left, right, low, high) in enumerate(wall.boxes):
-        ends.setdefault(right, []).append((low, i))
-        tops.setdefault(high, []).append((left, i))
-    for line in (*ends.values(), *tops.values()):
-        line.sort()
-
-    def touching(line: list[tuple[float, int]], low: float, high: float, axis: int) -> list[tuple[int, float, float]]:
-        """Stones along a line that share more than a hair of low..high, and what they share."""
-        start = max(0, bisect_right(line, (low, len(wall.boxes))) - 1)
-        shared = [
-            (i, max(low, wall.boxes[i][axis]), min(high, wall.boxes[i][axis + 1]))
-            for _, i in line[start : bisect_left(line, (high, -1))]
-        ]
-        return [(i, one, two) for i, one, two in shared if two - one > small]
-
     joints = []
-    for i, (left, right, low, high) in enumerate(wall.boxes):
-        course, number = wall.place[i]
-        for k, one, two in touching(ends.get(left, []), low, high, 2):
-            follows = course >= 0 and wall.place[k] == (course, number - 1)
-            name = (
-                f"head joint {number - 1} of course {course + 1}"
-                if follows
-                else f"head joint of {wall.names[i]} and {wall.names[k]}"
-            )
-            joints.append((name, np.array([left, one]), np.array([left, two]), i, k))
-        if low == 0.0:
-            what = f"unit {number}" if course >= 0 else wall.names[i]
-            joints.append((f"base of {what}", np.array([left, low]), np.array([right, low]), i, GROUND))
-        for k, one, two in touching(tops.get(low, []), left, right, 0):
-            name = f"bed joint of {wall.names[i]} on {wall.names[k]}"
-            joints.append((name, np.array([one, low]), np.array([two, low]), i, k))
+    for i, k, p, q in contacts(wall.boxes, size):
+        (course, number), name = wall.place[i], wall.names[i]
+        if k == GROUND:
+            label = f"base of unit {number}" if course >= 0 else f"base of {name}"
+        elif p[1] == q[1]:
+            label = f"bed joint of {name} on {wall.names[k]}"
+        elif course >= 0 and wall.place[k] == (course, number - 1):
+            label = f"head joint {number - 1} of course {course + 1}"
+        else:
+            label = f"head joint of {name} and {wall.names[k]}"
+        joints.append((label, p, q, i, k))
     return joints
 
 
@@ -242,8 +204,8 @@ class Laid(Table):
         """The openings [m]."""
         return [(*o.x, *o.y) for o in self.openings]
 
-    def outside(self, length: float, height: float) -> None:
-        """ValueError names an opening that lies beside the wall."""
+    def check_openings(self, length: float, height: float) -> None:
+        """ValueError names an opening that lies beside the wall [m]."""
         for o in self.openings:
             if o.x[1] <= 0 or o.x[0] >= length or o.y[1] <= 0 or o.y[0] >= height:
                 raise ValueError(f"the opening x {o.x}, y {o.y} lies outside the wall")
@@ -263,10 +225,17 @@ class Brickwork(Laid, Structure):
     def _sensible(self) -> "Brickwork":
         if self.units * self.courses > MOST_UNITS:
             raise ValueError(f"{self.units * self.courses} units are too many, expected at most {MOST_UNITS}")
-        self.outside(self.units * self.unit_length, self.courses * self.unit_height)
+        self.check_openings(*self.size)
         return self
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Length and height of the wall [m]."""
+        return self.units * self.unit_length, self.courses * self.unit_height
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         bond = self.bond(self.unit_length, self.unit_height)
-        size = self.units * self.unit_length, self.courses * self.unit_height
-        return make_brickwork(bond, *size, self.holes, density, self.depth)
+        return make_brickwork(bond, *self.size, self.holes, density, self.depth)
+
+    def piers(self, density: float) -> Assembly:
+        return make_piers(*self.size, self.holes, density, self.depth)

@@ -13,6 +13,7 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.places import Placed
 from extrados.building.structure import Structure
 from extrados.building.templates.brickwork import Laid, make_brickwork
+from extrados.building.templates.piers import make_piers
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import Table, key
 
@@ -94,8 +95,22 @@ class Panel(Laid, Wall):
             raise ValueError("width and height are missing (or an outline)")
         if (self.unit_length is None) != (self.unit_height is None):
             raise ValueError("a unit has a length and a height: give unit_length and unit_height, or neither")
-        self.outside(self.width, self.height)
+        self.check_openings(*self.size)
         return self
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Length and height of the wall [m]."""
+        return self.width, self.height
+
+    def piers(self, density: float) -> Assembly:
+        if self.outline:
+            raise NoView("the piers of a panel are found between rectangular openings, not in an outline")
+        if any(region.material or region.thickness for region in self.regions):
+            raise NoView(
+                "the piers of a panel weigh the same everywhere; it has regions of another material or thickness"
+            )
+        return make_piers(*self.size, self.holes, density, self.thickness)
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.outline:
@@ -103,7 +118,7 @@ class Panel(Laid, Wall):
         if self.unit_length is None:
             raise NoView("the stones of the panel are not known: give unit_length and unit_height")
         bond = self.bond(self.unit_length, self.unit_height)
-        return make_brickwork(bond, self.width, self.height, self.holes, density, self.thickness)
+        return make_brickwork(bond, *self.size, self.holes, density, self.thickness)
 
     def weighed(self, made: Assembly, density: float, densities: Mapping[str, float]) -> Assembly:
         """The stones whose centres lie in a region weigh what its material does."""
