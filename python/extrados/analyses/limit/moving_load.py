@@ -7,6 +7,7 @@ from extrados.analyses.limit.common import answer_of, block_under, chain_of, geo
 from extrados.analyses.limit.tables import MovingLoad
 from extrados.analyses.limit.variation import signature, spoken
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.chains import is_stack
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
@@ -14,11 +15,10 @@ from extrados.results.model import Array, Result, TableData
 
 
 def _way(assembly: Assembly, chain: str | None) -> tuple[float, float]:
-    """From where to where a load crosses [m]: the extrados of a chain, or the whole top where there is none."""
-    if chain is not None:
+    """From where to where a load crosses [m]: the extrados of a chain, or the whole top where there is no arch."""
+    if chain is not None and not is_stack(assembly, assembly.chains[chain]):
         ends = assembly.q[[assembly.chains[chain][k] for k in (0, -1)], 0]
-        if ends.min() < ends.max():
-            return float(ends.min()), float(ends.max())
+        return float(ends.min()), float(ends.max())
     points = np.concatenate(assembly.outlines)[:, 0]
     return float(points.min()), float(points.max())
 

@@ -15,6 +15,7 @@ from extrados.analyses.limit.common import (
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer, CannotStand, assess, safety_factor
 from extrados.limit.graphic import thrust_of
 from extrados.limit.programme import NoEquilibrium, State
@@ -99,7 +100,7 @@ def _words(r: dict[str, Any], assembly: Assembly) -> str:
         )
     else:
         least, most, middle = (r[which]["horizontal_kN_per_m"] for which in ("least", "most", "central"))
-        where = "base" if np.ptp(assembly.middle[assembly.chains[r["chain"]], 0]) == 0.0 else "left springing"
+        where = "base" if is_stack(assembly, assembly.chains[r["chain"]]) else "left springing"
         text = (
             f"At {r['gamma_g']:g} g the thrust of the {r['chain']} lies between {least:.4g} and {most:.4g} kN per metre of "
             f"depth at its {where}; the most central line ({middle:.4g} kN/m) {needs}."

@@ -17,7 +17,7 @@ def with_chains(assembly: Assembly) -> Assembly:
     spans, stacks = [], []
     for joints in _rows(assembly):
         grounded = int(_on_ground(assembly, joints[0])) + int(_on_ground(assembly, joints[-1]))
-        if _is_free(assembly, joints):
+        if is_stack(assembly, joints):
             if grounded:
                 stacks.append(joints if _on_ground(assembly, joints[0]) else joints[::-1])
         elif len(joints) > 2:
@@ -35,8 +35,8 @@ def _on_ground(assembly: Assembly, joint: int) -> bool:
     return GROUND in (assembly.a[joint], assembly.b[joint])
 
 
-def _is_free(assembly: Assembly, joints: list[int]) -> bool:
-    """True where a row ends at a stone that no other joint holds."""
+def is_stack(assembly: Assembly, joints: list[int]) -> bool:
+    """True where the joints of a chain end at a stone that no other joint holds: no arch, but a stack."""
     return any(_end(assembly, joints, k) not in (GROUND, None) for k in (0, -1))
 
 
