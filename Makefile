@@ -4,7 +4,7 @@ PYTHON := .venv/bin/python
 # An import after a pull may build anew, and meson then looks for numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: run test verify bench lint format wheel setup table-5-3 docs clean
+.PHONY: run test verify bench oldest lint format wheel setup table-5-3 docs clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -17,8 +17,11 @@ verify: setup  ## long validation; writes docs/verification.md
 	@$(PYTHON) -m pytest -q -m ""
 	@$(PYTHON) tools/verification_book.py
 
-bench: setup
-	@$(PYTHON) -m tests.bench
+bench: setup  ## against peers, which it installs; BENCH="arch dem" names some
+	@$(PYTHON) tests/bench $(BENCH)
+
+oldest: setup  ## build and test with the oldest pip and libraries supported
+	@$(PYTHON) tools/oldest.py
 
 lint: setup
 	@.venv/bin/ruff check python tests tools

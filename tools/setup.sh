@@ -2,6 +2,7 @@
 # Install what is missing: compilers and libraries by apt (elsewhere the line to type is named), then .venv.
 set -eu
 
+packages="gcc libc6-dev gfortran pkg-config libgsl-dev libsuitesparse-dev libopenblas-dev python3 python3-dev python3-venv"
 lacking=""
 need() { command -v "$1" >/dev/null 2>&1 || lacking="$lacking $1"; }
 need gcc
@@ -30,16 +31,18 @@ if [ -n "$lacking" ]; then
   if command -v apt-get >/dev/null 2>&1; then
     become=""
     if [ "$(id -u)" != 0 ]; then
-      command -v sudo >/dev/null 2>&1 || {
-        echo "as root: apt-get install gcc gfortran pkg-config libgsl-dev libsuitesparse-dev libopenblas-dev python3-dev python3-venv" >&2
+      # Without a password to type or a terminal to type it at, sudo cannot help.
+      if command -v sudo >/dev/null 2>&1 && { sudo -n true 2>/dev/null || { [ -t 0 ] && sudo -v; }; }; then
+        become=sudo
+      else
+        echo "ask root for: apt-get install -y --no-install-recommends $packages" >&2
         exit 1
-      }
-      become=sudo
+      fi
     fi
     echo "installing with apt-get ..."
     $become apt-get update -qq
-    DEBIAN_FRONTEND=noninteractive $become apt-get install -y -qq --no-install-recommends \
-      gcc libc6-dev gfortran pkg-config libgsl-dev libsuitesparse-dev libopenblas-dev python3 python3-dev python3-venv >/dev/null
+    # shellcheck disable=SC2086
+    $become env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $packages >/dev/null
   else
     cat >&2 <<'HELP'
 install them and try again:
@@ -64,14 +67,17 @@ case "$(gfortran -dumpversion)" in
   *) strict=false ;;
 esac
 
-# The stamp holds what the environment was made from: a change of it makes the environment anew.
+# The stamp holds what the environment was made from: a change of it makes the environment anew. What is there
+# already is taken as it is, so that this works offline too. pip of Debian 12 (23.0.1) knows no -C.
 stamp=".venv/made-from"
 want="$("$python" -V) $(cat pyproject.toml meson.build meson.options tools/setup.sh | cksum)"
 if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$want" ]; then
   echo "making .venv and building (about two minutes) ..."
   .venv/bin/python -m pip --version >/dev/null 2>&1 || "$python" -m venv --clear .venv
-  .venv/bin/python -m pip install -q --disable-pip-version-check "meson-python>=0.18" "meson>=1.4" ninja "numpy>=2.0"
+  needed=$("$python" -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["build-system"]["requires"])')
+  # shellcheck disable=SC2086
+  .venv/bin/python -m pip install -q --disable-pip-version-check $needed
   PATH="$PWD/.venv/bin:$PATH" .venv/bin/python -m pip install -q --disable-pip-version-check \
-    --no-build-isolation -e ".[dev]" -Csetup-args=-Dwerror=$strict
+    --no-build-isolation --config-settings=setup-args=-Dwerror=$strict -e ".[dev]"
   echo "$want" > "$stamp"
 fi

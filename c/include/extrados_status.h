@@ -19,6 +19,7 @@
   ENTRY(10, snap_back, "the crack band is wider than the fracture energy allows: the law snaps back") \
   ENTRY(11, too_large, "the factor would not fit into the memory allowed") \
   ENTRY(12, beyond_strength, "the constant loads alone exceed the strength") \
+  ENTRY(20, energy_lost, "the tables of a mechanism do not keep the energy of its motion") \
   ENTRY(130, cancelled, "cancelled")
 
 #define EXTRADOS_ENUM_ENTRY(code, name, text) EXTRADOS_##name = code,

@@ -3,6 +3,7 @@
 module arch_impact
    use common_kinds, only : wp
    use arch_four_hinge, only : normal
+   use mechanism_impact, only : projected_restitution
    use common_small_solve, only : small_solve
    use common_status, only : status_ok, status_bad_geometry, status_out_of_memory
    use, intrinsic :: iso_c_binding, only : c_int
@@ -17,8 +18,7 @@ contains
    !> Thesis: external impulses at the points about which the next mechanism turns, momentum
    !> balance of the whole arch (B.3a-c), of the part left of joint B about the point opposite to
    !> hinge B (B.3d) and of the part right of joint C about the point opposite to hinge C (B.3e).
-   !> Projection: the velocity field u_b before impact is projected on the field u_a of the next
-   !> mechanism in the kinetic-energy product, c_v = -<u_b, u_a> / <u_a, u_a>, of size <= 1.
+   !> Projection: see mechanism_impact; of size <= 1, because both mechanisms have the same mass.
    !> Either is negative where the mirrored mechanism would have to close further: the hinges do not reflect then.
    subroutine impact_restitution(mass, centroid, inertia, joint, hinge, opposite, thesis, projection, status)
       real(wp), intent(in) :: mass(:)         !! (n) voussoirs, left to right, symmetric about x = 0 [kg]
@@ -48,7 +48,7 @@ contains
          after(:, i) = [-before(1, n + 1 - i), before(2, n + 1 - i), -before(3, n + 1 - i)]
       end do
       ! Before impact the links close, after it they open: both fields are those of opening.
-      projection = -energy_product(before, after) / energy_product(after, after)
+      projection = projected_restitution(mass, inertia, before, after)
 
       next_left = [-hinge(1, 4), hinge(2, 4)]
       next_right = [-hinge(1, 1), hinge(2, 1)]
@@ -69,18 +69,6 @@ contains
       if (status == status_ok) thesis = -b(5)
 
    contains
-
-      !> Kinetic-energy product of two velocity fields
-      pure function energy_product(u, w) result(sum)
-         real(wp), intent(in) :: u(:, :)
-         real(wp), intent(in) :: w(:, :)
-         real(wp) :: sum
-         integer :: k
-         sum = 0.0_wp
-         do k = 1, n
-            sum = sum + mass(k) * (u(1, k) * w(1, k) + u(2, k) * w(2, k)) + inertia(k) * u(3, k) * w(3, k)
-         end do
-      end function energy_product
 
       !> Linear momentum and moment of momentum about a point, of voussoirs first..last
       pure function momentum(u, first, last, about) result(total)

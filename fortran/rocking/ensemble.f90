@@ -8,13 +8,14 @@ module rocking_ensemble
    use rocking_block_rocker, only : block_rocker, block_rocker_new
    use rocking_response, only : respond, response, response_options
    use rocking_rocker, only : rocker
+   use rocking_table_rocker, only : table_rocker, table_rocker_new
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: motion_set, body_arch, body_block, make_body, make_motion, run_ensemble
+   public :: motion_set, body_arch, body_block, body_table, make_body, make_motion, run_ensemble
 
    !> Kinds of rocking structure, as the facades number them
-   integer(c_int), parameter :: body_arch = 1, body_block = 2
+   integer(c_int), parameter :: body_arch = 1, body_block = 2, body_table = 3
 
    !> Room for one structure of any kind
    type :: any_body
@@ -63,6 +64,7 @@ contains
       integer(c_int), intent(out) :: status
       type(arch_rocker), allocatable :: arch
       type(block_rocker), allocatable :: stone
+      type(table_rocker), allocatable :: tabulated
       integer :: stat
 
       select case (kind)
@@ -82,6 +84,14 @@ contains
          end if
          call block_rocker_new(parameters, stone, status)
          call move_alloc(stone, body)
+      case (body_table)
+         allocate (tabulated, stat=stat)
+         if (stat /= 0) then
+            status = status_out_of_memory
+            return
+         end if
+         call table_rocker_new(parameters, tabulated, status)
+         call move_alloc(tabulated, body)
       case default
          status = status_invalid_argument
       end select

@@ -1,11 +1,10 @@
 !> The response of any rocking structure to a ground motion: uplift, rocking, impacts, rest, collapse.
 !>
-!> One integrator serves blocks and arches. It stops at every break of the ground motion, so that
-!> the order of the method holds; finds impacts on the dense output and polishes them by repeating
-!> the step; rests explicitly and looks for re-uplift, because free rocking makes infinitely many
-!> impacts in finite time.
+!> One integrator serves blocks, arches and tabulated mechanisms. It stops at every break of the ground motion, so
+!> that the order of the method holds; finds impacts on the dense output and polishes them by repeating the step;
+!> rests explicitly and looks for re-uplift, because free rocking makes infinitely many impacts in finite time.
 module rocking_response
-   use common_kinds, only : wp, gravity
+   use common_kinds, only : wp
    use common_cancel, only : cancel_requested
    use common_dense_step, only : dense_step
    use common_dopri5, only : dopri5_factor, step_memory
@@ -13,6 +12,8 @@ module rocking_response
    use common_status, only : status_ok, status_cancelled, status_too_many_steps, status_step_too_small
    use rocking_crossings, only : impact_fraction, turning_fraction, crossing_fraction
    use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
+   use rocking_record, only : barrier_of, energy_of, event_collapse, event_impact, event_peak, event_rest, &
+      event_uplift, response_history
    use rocking_rocker, only : rocker, side_index
    use rocking_uplift, only : find_uplift
    use, intrinsic :: iso_c_binding, only : c_int
@@ -23,7 +24,6 @@ module rocking_response
    public :: event_uplift, event_impact, event_peak, event_rest, event_collapse
 
    integer(c_int), parameter :: outcome_no_hinging = 0, outcome_recovery = 1, outcome_collapse = 2
-   integer(c_int), parameter :: event_uplift = 1, event_impact = 2, event_peak = 3, event_rest = 4, event_collapse = 5
 
    type :: response_options
       real(wp) :: end_time = 0.0_wp      !! [s]
@@ -50,21 +50,43 @@ module rocking_response
       logical :: settled = .true.
    end type response
 
-   !> What is recorded besides the outcome, in the caller's arrays
-   type :: response_history
-      integer :: points = 0                        !! output times filled so far
-      real(wp), pointer, contiguous :: time(:) => null()      !! asked for, ascending [s]
-      !> (8, points): rotation, rate, acceleration, ground horizontal and vertical,
-      !> kinetic and potential energy, energy put in minus energy lost at impacts
-      real(wp), pointer, contiguous :: state(:, :) => null()
-      integer :: events = 0                        !! found, also past the room for them
-      integer(c_int), pointer, contiguous :: event_kind(:) => null()
-      !> (2, room): time [s]; rotation at a peak or collapse [rad], rate before an impact [rad/s],
-      !> both positive to +x; side at an uplift
-      real(wp), pointer, contiguous :: event(:, :) => null()
-      real(wp) :: work = 0.0_wp                    !! energy put in by the ground [J]
-      real(wp) :: loss = 0.0_wp                    !! energy lost at impacts [J]
-   end type response_history
+   !> Where a run stands: the state of the structure and of the integrator, and the answer so far
+   type :: run_state
+      type(equation_of_motion) :: problem  !! with the structure, its side, and the segment of the ground motion
+      type(response_options) :: options
+      type(response) :: answer
+      type(response_history), pointer :: history => null()  !! null: only the answer is wanted
+      type(dense_step) :: step             !! the last one
+      type(step_memory) :: memory
+      real(wp) :: t = 0.0_wp               !! [s]
+      real(wp) :: q = 0.0_wp               !! rotation, >= 0 [rad]
+      real(wp) :: v = 0.0_wp               !! its rate [rad/s]
+      real(wp) :: a = 0.0_wp               !! its acceleration [rad/s^2]
+      real(wp) :: h_next = 0.0_wp          !! length of the next step [s]
+      real(wp) :: atol_q = 0.0_wp
+      real(wp) :: atol_v = 0.0_wp
+      integer :: attempts = 0
+      integer(c_int) :: status = status_ok
+      logical :: resting = .false.
+      logical :: from_rest = .false.       !! no step was accepted since the uplift
+      logical :: renew = .true.            !! the acceleration is not that of this state
+      logical :: over = .false.            !! nothing more is to be done
+   contains
+      procedure :: start
+      procedure :: segment_end
+      procedure :: wait
+      procedure :: take_step
+      procedure :: touch
+      procedure :: impact
+      procedure :: fall
+      procedure :: move_on
+      procedure :: conclude
+      procedure :: count_attempt
+      procedure :: quiet
+      procedure :: advance_segment
+      procedure :: note_peak
+      procedure :: note_turning
+   end type run_state
 
    integer, parameter :: poll_every = 2000
 
@@ -77,341 +99,313 @@ contains
       type(response_options), intent(in) :: options
       type(response), intent(out) :: answer
       integer(c_int), intent(out) :: status
-      type(response_history), intent(inout), optional :: history
-      type(equation_of_motion) :: problem
-      type(dense_step) :: step
-      type(step_memory) :: memory
-      real(wp) :: t, t_next, window, q, v, a, h, h_next, remaining, factor, s, v_before, energy
-      real(wp) :: atol_q, atol_v, m, half_dm
-      integer :: attempts, found_side, i
-      logical :: resting, from_rest, quiet, renew, closed
+      type(response_history), intent(inout), optional, target :: history
+      type(run_state) :: run
+      real(wp) :: t_next, s
+      logical :: accepted
 
-      problem%body => body
-      problem%ground = ground
-      problem%side = options%start_side
-      problem%series = body%has_series .and. .not. ground%has_harmonics()
-      do i = 1, 2
-         call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, problem%rest_dv(i), problem%rest_dh(i), closed)
-      end do
-      i = side_index(problem%side)
-      atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
-      atol_v = 0.01_wp * options%tolerance * 1.0e3_wp * maxval(body%rest_rate)
-      t = 0.0_wp
-      q = options%start_q
-      v = options%start_v
-      resting = q <= 0.0_wp .and. v <= 0.0_wp
-      from_rest = .false.
-      if (.not. resting) call begin_half_cycle()
-      h_next = 1.0e-3_wp * sqrt(body%critical(i)) / max(body%rest_rate(i) * 1.0e3_wp, tiny(1.0_wp))
-      problem%segment = 0
-      do while (problem%segment <= ground%segments)
-         if (ground%break_time(problem%segment + 1) > t) exit
-         problem%segment = problem%segment + 1
-      end do
-      status = status_ok
-      attempts = 0
-      renew = .true.
-      a = 0.0_wp
-      call note_peak(q)
-
-      do while (t < options%end_time)
-         quiet = problem%segment > ground%segments
-         t_next = options%end_time
-         if (.not. quiet) t_next = min(t_next, ground%break_time(problem%segment + 1))
-
-         if (resting) then
-            call count_attempt()
-            if (status /= status_ok) exit
-            if (quiet) then
-               t = options%end_time
-               call record_rest(t)
-               exit
-            end if
-            ! Long sines are searched in pieces, so that the loop answers a request to stop.
-            window = min(t_next, t + 64.0_wp * ground%shortest_period(problem%segment))
-            call find_uplift(problem, t, window, s, found_side)
-            if (found_side == 0) then
-               t = window
-               call record_rest(t)
-               if (t >= t_next .and. t < options%end_time) problem%segment = problem%segment + 1
-               cycle
-            end if
-            call record_rest(s)
-            t = s
-            resting = .false.
-            from_rest = .true.
-            problem%side = found_side
-            i = side_index(found_side)
-            q = 0.0_wp
-            v = 0.0_wp
-            renew = .true.
-            call begin_half_cycle()
-            call note_event(event_uplift, t, real(found_side, wp))
+      if (present(history)) run%history => history
+      call run%start(body, ground, options)
+      do while (run%t < options%end_time .and. .not. run%over)
+         t_next = run%segment_end()
+         if (run%resting) then
+            call run%wait(t_next)
+            if (run%resting .or. run%over) cycle
          end if
-
-         if (renew .and. .not. problem%series) a = problem%acceleration(t, q, v)
-         renew = .false.
-         remaining = t_next - t
-         ! An error estimate can be blind to a whole cycle of the ground inside one step.
-         h = min(h_next, 0.125_wp * ground%shortest_period(problem%segment))
-         if (h >= remaining) then
-            h = remaining
-         else if (h > 0.5_wp * remaining) then
-            h = 0.5_wp * remaining
-         end if
-         call count_attempt()
-         if (status /= status_ok) exit
-         call attempt(problem, t, h, q, v, a, atol_q, atol_v, options%tolerance, step)
-         if (problem%series) then
-            factor = series_factor(step)
-         else
-            call dopri5_factor(step%error, memory, factor)
-         end if
-         if (.not. step%error <= 1.0_wp) then
-            answer%rejected = answer%rejected + 1
-            h_next = h * factor
-            if (h_next <= 8.0_wp * spacing(max(t, 1.0e-3_wp))) then
-               status = status_step_too_small
-               exit
-            end if
-            cycle
-         end if
-         answer%steps = answer%steps + 1
-         h_next = max(h * factor, merge(h_next, 0.0_wp, h >= remaining .and. factor >= 1.0_wp))
-
-         s = impact_fraction(step, q, v)
+         call run%take_step(t_next, accepted)
+         if (.not. accepted) cycle
+         s = impact_fraction(run%step, run%q, run%v)
          if (s > 0.0_wp) then
-            if (from_rest .and. q <= 0.0_wp .and. v <= 0.0_wp .and. step%q <= 0.0_wp .and. s >= 1.0_wp) then
-               ! The ground only touched the limit: nothing rose.
-               answer%half_cycles = answer%half_cycles - 1
-               if (present(history)) history%events = history%events - 1
-               resting = .true.
-               from_rest = .false.
-               t = t + step%h
-               call record_rest(t)
-               call advance_segment()
-               cycle
-            end if
-            call polish_impact(problem, q, v, a, atol_q, atol_v, options%tolerance, s, step)
-            call note_turning(step, v)
-            call record_moving(step, 1.0_wp)
-            from_rest = .false.
-            t = step%t + step%h
-            v_before = min(step%v, 0.0_wp)
-            call note_event(event_impact, t, real(problem%side, wp) * v_before)
-            answer%impacts = answer%impacts + 1
-            q = 0.0_wp
-            v = -v_before
-            call lose(v)
-            problem%side = -problem%side
-            i = side_index(problem%side)
-            v = body%restitution(i) * v
-            call gain(v)
-            if (v <= body%rest_rate(i)) then
-               call lose(v)
-               v = 0.0_wp
-               resting = .true.
-               call note_event(event_rest, t, 0.0_wp)
-               if (options%stop_when_safe .and. quiet) exit
+            if (run%from_rest .and. run%q <= 0.0_wp .and. run%v <= 0.0_wp .and. run%step%q <= 0.0_wp &
+               .and. s >= 1.0_wp) then
+               call run%touch()
             else
-               call begin_half_cycle()
+               call run%impact(s)
             end if
-            renew = .true.
-            call advance_segment()
-            cycle
-         end if
-
-         if (step%q >= body%limit(i)) then
-            s = crossing_fraction(step, body%limit(i))
-            call record_moving(step, s)
-            t = step%t + s * step%h
-            answer%outcome = outcome_collapse
-            answer%stop_time = t
-            call note_peak(body%limit(i))
-            call note_event(event_collapse, t, real(problem%side, wp) * body%limit(i))
-            exit
-         end if
-
-         call note_turning(step, v)
-         call record_moving(step, 1.0_wp)
-         from_rest = .false.
-         t = step%t + step%h
-         if (h >= remaining) t = t_next
-         q = step%q
-         v = step%v
-         a = step%a
-         call note_peak(q)
-         call advance_segment()
-         if (options%stop_when_safe .and. quiet .and. v <= 0.0_wp) then
-            if (q < body%critical(i)) then
-               call body_energy(q, v, energy)
-               if (energy < minval_barrier()) exit
-            end if
+         else if (run%step%q >= body%limit(side_index(run%problem%side))) then
+            call run%fall()
+         else
+            call run%move_on(t_next)
          end if
       end do
-
-      if (answer%outcome /= outcome_collapse) then
-         answer%stop_time = t
-         if (answer%half_cycles > 0) answer%outcome = outcome_recovery
-         if (.not. resting) then
-            call body_energy(q, v, energy)
-            answer%settled = problem%segment > ground%segments .and. q < body%critical(i) &
-               .and. energy < minval_barrier()
-         else
-            answer%settled = status == status_ok
-         end if
-      end if
-
-   contains
-
-      !> Every pass of the loop: the limit of attempts, and now and then the request to stop
-      subroutine count_attempt()
-         attempts = attempts + 1
-         if (attempts > options%max_steps) then
-            status = status_too_many_steps
-         else if (mod(attempts, poll_every) == 0) then
-            if (cancel_requested()) status = status_cancelled
-         end if
-      end subroutine count_attempt
-
-      subroutine begin_half_cycle()
-         answer%half_cycles = answer%half_cycles + 1
-      end subroutine begin_half_cycle
-
-      !> Go to the next segment when its break is reached; the acceleration is renewed at a jump
-      subroutine advance_segment()
-         if (problem%segment > ground%segments) return
-         if (t < ground%break_time(problem%segment + 1)) return
-         if (.not. ground%smooth_to_next(problem%segment)) renew = .true.
-         problem%segment = problem%segment + 1
-      end subroutine advance_segment
-
-      subroutine note_peak(rotation)
-         real(wp), intent(in) :: rotation
-         if (rotation / body%critical(i) > answer%peak_ratio) then
-            answer%peak_ratio = rotation / body%critical(i)
-            answer%peak = real(problem%side, wp) * rotation
-         end if
-      end subroutine note_peak
-
-      !> A turning point inside the step is a peak of the rotation
-      subroutine note_turning(done, rate_before)
-         type(dense_step), intent(in) :: done
-         real(wp), intent(in) :: rate_before
-         real(wp) :: where_turned
-         if (.not. (rate_before > 0.0_wp .and. done%v <= 0.0_wp)) return
-         where_turned = turning_fraction(done)
-         call note_peak(done%coordinate(where_turned))
-         call note_event(event_peak, done%t + where_turned * done%h, &
-            real(problem%side, wp) * done%coordinate(where_turned))
-      end subroutine note_turning
-
-      subroutine note_event(kind, when, value)
-         integer(c_int), intent(in) :: kind
-         real(wp), intent(in) :: when
-         real(wp), intent(in) :: value
-         if (.not. present(history)) return
-         history%events = history%events + 1
-         if (history%events > size(history%event_kind)) return
-         history%event_kind(history%events) = kind
-         history%event(:, history%events) = [when, value]
-      end subroutine note_event
-
-      !> Kinetic plus potential energy
-      subroutine body_energy(rotation, rate, energy)
-         real(wp), intent(in) :: rotation
-         real(wp), intent(in) :: rate
-         real(wp), intent(out) :: energy
-         real(wp) :: m, half_dm, dv, dh
-         logical :: closed
-         call body%coefficients(problem%side, rotation, m, half_dm, dv, dh, closed)
-         energy = 0.5_wp * m * rate**2 + body%potential(problem%side, rotation)
-      end subroutine body_energy
-
-      function minval_barrier() result(energy)
-         real(wp) :: energy
-         energy = min(body%potential(1, body%critical(1)), body%potential(-1, body%critical(2)))
-      end function minval_barrier
-
-      subroutine lose(rate)
-         real(wp), intent(in) :: rate
-         real(wp) :: energy
-         if (.not. present(history)) return
-         call body_energy(0.0_wp, rate, energy)
-         history%loss = history%loss + energy
-      end subroutine lose
-
-      subroutine gain(rate)
-         real(wp), intent(in) :: rate
-         real(wp) :: energy
-         if (.not. present(history)) return
-         call body_energy(0.0_wp, rate, energy)
-         history%loss = history%loss - energy
-      end subroutine gain
-
-      !> Work of the ground over the first part of a step, by three Gauss points on the dense output
-      !> (thesis Eq. 6.4)
-      function work_of(done, fraction) result(work)
-         type(dense_step), intent(in) :: done
-         real(wp), intent(in) :: fraction
-         real(wp) :: work
-         real(wp), parameter :: node(3) = [0.1127016653792583_wp, 0.5_wp, 0.8872983346207417_wp]
-         real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp] / 18.0_wp
-         real(wp) :: m, half_dm, dv, dh, horizontal, vertical, x
-         logical :: closed
-         integer :: j
-         work = 0.0_wp
-         do j = 1, 3
-            x = fraction * node(j)
-            call body%coefficients(problem%side, done%coordinate(x), m, half_dm, dv, dh, closed)
-            call ground%value_at(problem%segment, done%t + x * done%h, horizontal, vertical)
-            work = work - weight(j) * fraction * done%h * done%rate(x) &
-               * (real(problem%side, wp) * horizontal * dh + dv * vertical / gravity)
-         end do
-      end function work_of
-
-      !> Fill the output times that the first part of a step covers, and book the work done over it
-      subroutine record_moving(done, covered)
-         type(dense_step), intent(in) :: done
-         real(wp), intent(in) :: covered  !! fraction of the step
-         real(wp) :: x, end_time, rotation, rate, horizontal, vertical, energy, potential, sigma
-         if (.not. present(history)) return
-         sigma = real(problem%side, wp)
-         end_time = done%t + covered * done%h
-         do while (history%points < size(history%time))
-            if (history%time(history%points + 1) > end_time) exit
-            history%points = history%points + 1
-            x = max(0.0_wp, (history%time(history%points) - done%t) / done%h)
-            rotation = max(done%coordinate(x), 0.0_wp)
-            rate = done%rate(x)
-            call ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
-            call body_energy(rotation, rate, energy)
-            potential = body%potential(problem%side, rotation)
-            history%state(:, history%points) = [sigma * rotation, sigma * rate, &
-               sigma * problem%acceleration(history%time(history%points), rotation, rate), horizontal, vertical, &
-               energy - potential, potential, history%work + work_of(done, x) - history%loss]
-         end do
-         history%work = history%work + work_of(done, covered)
-      end subroutine record_moving
-
-      subroutine record_rest(until)
-         real(wp), intent(in) :: until
-         real(wp) :: horizontal, vertical
-         if (.not. present(history)) return
-         do while (history%points < size(history%time))
-            if (history%time(history%points + 1) > until) exit
-            history%points = history%points + 1
-            call ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
-            history%state(:, history%points) = 0.0_wp
-            history%state(4:5, history%points) = [horizontal, vertical]
-            history%state(8, history%points) = history%work - history%loss
-         end do
-      end subroutine record_rest
-
+      call run%conclude()
+      answer = run%answer
+      status = run%status
    end subroutine respond
 
-   !> Where the coordinate, or the rate, passes a level between two fractions on either side of it.
-   !>
-   !> Regula falsi that halves the value of an end that stays (the Illinois rule): never leaves the
+   !> The state at time zero
+   subroutine start(self, body, ground, options)
+      class(run_state), intent(inout) :: self
+      class(rocker), intent(in), target :: body
+      type(signal), intent(in) :: ground
+      type(response_options), intent(in) :: options
+      real(wp) :: m, half_dm
+      integer :: i
+      logical :: closed
+
+      self%options = options
+      self%problem%body => body
+      self%problem%ground = ground
+      self%problem%side = options%start_side
+      self%problem%series = body%has_series .and. .not. ground%has_harmonics()
+      do i = 1, 2
+         call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, self%problem%rest_dv(i), self%problem%rest_dh(i), closed)
+      end do
+      i = side_index(options%start_side)
+      self%atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
+      self%atol_v = 0.01_wp * options%tolerance * 1.0e3_wp * maxval(body%rest_rate)
+      self%q = options%start_q
+      self%v = options%start_v
+      self%resting = self%q <= 0.0_wp .and. self%v <= 0.0_wp
+      if (.not. self%resting) self%answer%half_cycles = 1
+      self%h_next = 1.0e-3_wp * sqrt(body%critical(i)) / max(body%rest_rate(i) * 1.0e3_wp, tiny(1.0_wp))
+      self%problem%segment = 0
+      do while (self%problem%segment <= ground%segments)
+         if (ground%break_time(self%problem%segment + 1) > self%t) exit
+         self%problem%segment = self%problem%segment + 1
+      end do
+      call self%note_peak(self%q)
+   end subroutine start
+
+   !> Is the ground motion over?
+   pure function quiet(self) result(answer)
+      class(run_state), intent(in) :: self
+      logical :: answer
+      answer = self%problem%segment > self%problem%ground%segments
+   end function quiet
+
+   !> End of the segment of the ground motion, or of the run [s]
+   pure function segment_end(self) result(t_next)
+      class(run_state), intent(in) :: self
+      real(wp) :: t_next
+      t_next = self%options%end_time
+      if (.not. self%quiet()) t_next = min(t_next, self%problem%ground%break_time(self%problem%segment + 1))
+   end function segment_end
+
+   !> At rest until the ground lifts the structure, or for a while
+   subroutine wait(self, t_next)
+      class(run_state), intent(inout) :: self
+      real(wp), intent(in) :: t_next
+      real(wp) :: window, lifts
+      integer :: found_side
+
+      call self%count_attempt()
+      if (self%over) return
+      if (self%quiet()) then
+         self%t = self%options%end_time
+         if (associated(self%history)) call self%history%rest(self%problem, self%t)
+         self%over = .true.
+         return
+      end if
+      ! Long sines are searched in pieces, so that the loop answers a request to stop.
+      window = min(t_next, self%t + 64.0_wp * self%problem%ground%shortest_period(self%problem%segment))
+      call find_uplift(self%problem, self%t, window, lifts, found_side)
+      if (found_side == 0) then
+         self%t = window
+         if (associated(self%history)) call self%history%rest(self%problem, self%t)
+         if (self%t >= t_next .and. self%t < self%options%end_time) self%problem%segment = self%problem%segment + 1
+         return
+      end if
+      if (associated(self%history)) call self%history%rest(self%problem, lifts)
+      self%t = lifts
+      self%resting = .false.
+      self%from_rest = .true.
+      self%problem%side = found_side
+      self%q = 0.0_wp
+      self%v = 0.0_wp
+      self%renew = .true.
+      self%answer%half_cycles = self%answer%half_cycles + 1
+      if (associated(self%history)) call self%history%note(event_uplift, self%t, real(found_side, wp))
+   end subroutine wait
+
+   !> Try one step of at most the way to t_next; where it is refused the next try is shorter
+   subroutine take_step(self, t_next, accepted)
+      class(run_state), intent(inout) :: self
+      real(wp), intent(in) :: t_next
+      logical, intent(out) :: accepted
+      real(wp) :: h, remaining, factor
+
+      accepted = .false.
+      if (self%renew .and. .not. self%problem%series) self%a = self%problem%acceleration(self%t, self%q, self%v)
+      self%renew = .false.
+      remaining = t_next - self%t
+      ! An error estimate can be blind to a whole cycle of the ground inside one step.
+      h = min(self%h_next, 0.125_wp * self%problem%ground%shortest_period(self%problem%segment))
+      if (h >= remaining) then
+         h = remaining
+      else if (h > 0.5_wp * remaining) then
+         h = 0.5_wp * remaining
+      end if
+      call self%count_attempt()
+      if (self%over) return
+      call attempt(self%problem, self%t, h, self%q, self%v, self%a, self%atol_q, self%atol_v, &
+         self%options%tolerance, self%step)
+      if (self%problem%series) then
+         factor = series_factor(self%step)
+      else
+         call dopri5_factor(self%step%error, self%memory, factor)
+      end if
+      accepted = self%step%error <= 1.0_wp
+      if (accepted) then
+         self%answer%steps = self%answer%steps + 1
+         self%h_next = max(h * factor, merge(self%h_next, 0.0_wp, h >= remaining .and. factor >= 1.0_wp))
+      else
+         self%answer%rejected = self%answer%rejected + 1
+         self%h_next = h * factor
+         if (self%h_next <= 8.0_wp * spacing(max(self%t, 1.0e-3_wp))) then
+            self%status = status_step_too_small
+            self%over = .true.
+         end if
+      end if
+   end subroutine take_step
+
+   !> The ground only touched the limit: nothing rose
+   subroutine touch(self)
+      class(run_state), intent(inout) :: self
+      self%answer%half_cycles = self%answer%half_cycles - 1
+      self%resting = .true.
+      self%from_rest = .false.
+      self%t = self%t + self%step%h
+      if (associated(self%history)) then
+         self%history%events = self%history%events - 1
+         call self%history%rest(self%problem, self%t)
+      end if
+      call self%advance_segment()
+   end subroutine touch
+
+   !> The hinges close within the step: the other side opens, or the structure rests
+   subroutine impact(self, fraction)
+      class(run_state), intent(inout) :: self
+      real(wp), intent(in) :: fraction  !! of the step, to first accuracy
+      real(wp) :: v_before
+      integer :: i
+
+      call polish_impact(self%problem, self%q, self%v, self%a, self%atol_q, self%atol_v, self%options%tolerance, &
+         fraction, self%step)
+      call self%note_turning()
+      if (associated(self%history)) call self%history%cover(self%problem, self%step, 1.0_wp)
+      self%from_rest = .false.
+      self%t = self%step%t + self%step%h
+      v_before = min(self%step%v, 0.0_wp)
+      if (associated(self%history)) then
+         call self%history%note(event_impact, self%t, real(self%problem%side, wp) * v_before)
+         call self%history%lose(self%problem, -v_before, 1.0_wp)
+      end if
+      self%answer%impacts = self%answer%impacts + 1
+      self%problem%side = -self%problem%side
+      i = side_index(self%problem%side)
+      self%q = 0.0_wp
+      self%v = self%problem%body%restitution(i) * (-v_before)
+      if (associated(self%history)) call self%history%lose(self%problem, self%v, -1.0_wp)
+      if (self%v <= self%problem%body%rest_rate(i)) then
+         if (associated(self%history)) call self%history%lose(self%problem, self%v, 1.0_wp)
+         self%v = 0.0_wp
+         self%resting = .true.
+         if (associated(self%history)) call self%history%note(event_rest, self%t, 0.0_wp)
+         self%over = self%options%stop_when_safe .and. self%quiet()
+         if (self%over) return
+      else
+         self%answer%half_cycles = self%answer%half_cycles + 1
+      end if
+      self%renew = .true.
+      call self%advance_segment()
+   end subroutine impact
+
+   !> The rotation passes the limit within the step
+   subroutine fall(self)
+      class(run_state), intent(inout) :: self
+      real(wp) :: s, limit
+      limit = self%problem%body%limit(side_index(self%problem%side))
+      s = crossing_fraction(self%step, limit)
+      if (associated(self%history)) call self%history%cover(self%problem, self%step, s)
+      self%t = self%step%t + s * self%step%h
+      self%answer%outcome = outcome_collapse
+      self%answer%stop_time = self%t
+      call self%note_peak(limit)
+      if (associated(self%history)) then
+         call self%history%note(event_collapse, self%t, real(self%problem%side, wp) * limit)
+      end if
+      self%over = .true.
+   end subroutine fall
+
+   !> An ordinary step: on to its end
+   subroutine move_on(self, t_next)
+      class(run_state), intent(inout) :: self
+      real(wp), intent(in) :: t_next
+      logical :: was_quiet, whole
+      call self%note_turning()
+      if (associated(self%history)) call self%history%cover(self%problem, self%step, 1.0_wp)
+      self%from_rest = .false.
+      whole = self%step%h >= t_next - self%t
+      self%t = self%step%t + self%step%h
+      if (whole) self%t = t_next
+      self%q = self%step%q
+      self%v = self%step%v
+      self%a = self%step%a
+      call self%note_peak(self%q)
+      was_quiet = self%quiet()
+      call self%advance_segment()
+      if (.not. (self%options%stop_when_safe .and. was_quiet .and. self%v <= 0.0_wp)) return
+      if (self%q >= self%problem%body%critical(side_index(self%problem%side))) return
+      self%over = energy_of(self%problem, self%q, self%v) < barrier_of(self%problem)
+   end subroutine move_on
+
+   !> Outcome and whether it is final
+   subroutine conclude(self)
+      class(run_state), intent(inout) :: self
+      if (self%answer%outcome == outcome_collapse) return
+      self%answer%stop_time = self%t
+      if (self%answer%half_cycles > 0) self%answer%outcome = outcome_recovery
+      if (self%resting) then
+         self%answer%settled = self%status == status_ok
+      else
+         self%answer%settled = self%quiet() .and. self%q < self%problem%body%critical(side_index(self%problem%side)) &
+            .and. energy_of(self%problem, self%q, self%v) < barrier_of(self%problem)
+      end if
+   end subroutine conclude
+
+   !> Every pass of the loop: the limit of attempts, and now and then the request to stop
+   subroutine count_attempt(self)
+      class(run_state), intent(inout) :: self
+      self%attempts = self%attempts + 1
+      if (self%attempts > self%options%max_steps) then
+         self%status = status_too_many_steps
+      else if (mod(self%attempts, poll_every) == 0) then
+         if (cancel_requested()) self%status = status_cancelled
+      end if
+      self%over = self%status /= status_ok
+   end subroutine count_attempt
+
+   !> Go to the next segment when its break is reached; the acceleration is renewed at a jump
+   subroutine advance_segment(self)
+      class(run_state), intent(inout) :: self
+      if (self%quiet()) return
+      if (self%t < self%problem%ground%break_time(self%problem%segment + 1)) return
+      if (.not. self%problem%ground%smooth_to_next(self%problem%segment)) self%renew = .true.
+      self%problem%segment = self%problem%segment + 1
+   end subroutine advance_segment
+
+   !> Keep the rotation of greatest size
+   subroutine note_peak(self, rotation)
+      class(run_state), intent(inout) :: self
+      real(wp), intent(in) :: rotation
+      real(wp) :: ratio
+      ratio = rotation / self%problem%body%critical(side_index(self%problem%side))
+      if (ratio > self%answer%peak_ratio) then
+         self%answer%peak_ratio = ratio
+         self%answer%peak = real(self%problem%side, wp) * rotation
+      end if
+   end subroutine note_peak
+
+   !> A turning point inside the step is a peak of the rotation
+   subroutine note_turning(self)
+      class(run_state), intent(inout) :: self
+      real(wp) :: turned
+      if (.not. (self%v > 0.0_wp .and. self%step%v <= 0.0_wp)) return
+      turned = turning_fraction(self%step)
+      call self%note_peak(self%step%coordinate(turned))
+      if (associated(self%history)) call self%history%note(event_peak, self%step%t + turned * self%step%h, &
+         real(self%problem%side, wp) * self%step%coordinate(turned))
+   end subroutine note_turning
 
 end module rocking_response

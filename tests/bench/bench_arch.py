@@ -4,15 +4,15 @@ import math
 import time
 
 import numpy as np
-from tests.bench.timing import seconds
+from timing import seconds
 
 from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import make_arch
 from extrados.core import rocking
 from extrados.limit.programme import LimitAnalysis
-from extrados.motions.motion import GRAVITY
 from extrados.motions.records import locate, read_record, record_motion
+from extrados.schema.constants import GRAVITY
 
 
 def four_bar(model: ArchModel):

@@ -6,14 +6,14 @@ import time
 import numpy as np
 from scipy import sparse
 from scipy.optimize import linprog
-from tests.bench.timing import seconds
+from timing import seconds
 
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.templates.aisled_vault import Aisle, make_church
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Polygon, make_blocks
-from extrados.building.templates.vault import Aisle, make_church
 from extrados.decks.reader import make_deck
 from extrados.limit.answer import assess
 from extrados.limit.loads import tilt_loads

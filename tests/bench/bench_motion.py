@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 from scipy import signal
-from tests.bench.timing import seconds
+from timing import seconds
 
 from extrados.core import motion as core
 from extrados.motions.generated import generated
@@ -118,3 +118,7 @@ def main() -> None:
     """Print the rates."""
     _spectra()
     _generated()
+
+
+if __name__ == "__main__":
+    main()

@@ -6,19 +6,23 @@
 
 import os
 import resource
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 
-import numba
 import numpy as np
+from peers import has
 from scipy.integrate import solve_ivp
-from tests.bench.rocking_peers import GRAVITY, rk4_many
-from tests.verification.rocking_oracle import reference
 
 from extrados.building.rockers.block import BlockModel
 from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.core.rocking import Ground
+from extrados.schema.constants import GRAVITY
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "verification"))
+from rocking_oracle import reference
 
 STEP, END, THREADS = 0.005, 10.0, 2
 
@@ -105,8 +109,13 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
         return f"median {np.median(e[up]):.0e}, greatest {e[up].max():.0e} of {up.sum()} that stay up; {(~agree).sum()} of {checked} other outcome"
 
     print(f"block {width} x {height} m, {count} motions of {END:g} s, peak {peak:g} g, {THREADS} threads")
-    numba.set_num_threads(THREADS)
-    peers = {"numba RK4 at 1 ms": 5, "numba RK4 at 0.25 ms": 20}
+    peers = {}
+    if has("numba"):
+        import numba
+        from rocking_peers import rk4_many
+
+        numba.set_num_threads(THREADS)
+        peers = {"numba RK4 at 1 ms": 5, "numba RK4 at 0.25 ms": 20}
     for parts in peers.values():
         rk4_many(p, alpha, c_v, samples[:2], STEP, start, END, parts)  # compiles
     calls = {"extrados": lambda: ours(1e-8)}
@@ -121,6 +130,8 @@ def case(width: float, height: float, peak: float, count: int = 2000, checked: i
     )
     slow = scipy_rate(p, alpha, c_v, samples, start, 4)
     print(f"  SciPy RK45, rtol 1e-8     {slow:9.2f} runs/s   extrados is {rate / slow:.0f} times as fast")
+    if not peers:
+        print(f"  {'numba RK4':25s} not installed")
     for name, parts in peers.items():
         wall, cpu = (b / a for a, b in zip(times["extrados"], times[name], strict=True))
         peaks, _ = rk4_many(p, alpha, c_v, samples, STEP, start, END, parts)
@@ -155,3 +166,7 @@ def main() -> None:
     for width, height, peak in ((0.1, 0.4, 0.35), (1.0, 4.0, 0.5)):
         case(width, height, peak)
     many()
+
+
+if __name__ == "__main__":
+    main()

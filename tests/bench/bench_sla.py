@@ -6,14 +6,14 @@ of one thread each: a busy machine then disturbs neither.
 """
 
 import os
-import subprocess
 import sys
 import time
 
 import numpy as np
-from extrados.building.templates.wall_tables import Panel
 
-from extrados.building.mesh.panel import make_panel
+from extrados.building.building import Building
+from extrados.building.mesh.options import MeshOptions
+from extrados.building.templates.walls import Panel
 from extrados.core.sla import Freedoms, Model, Monitor, Plane, Softening, body_force
 
 #: elements a side -> events by update, by refactorisation
@@ -25,16 +25,11 @@ class Wall:
 
     def __init__(self, n: int):
         size = 3.0 / n
-        mesh = make_panel(
-            Panel.model_validate(
-                {
-                    "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "size": size,
-                    "material": {"young": 6.9e9, "poisson": 0.25},
-                    "openings": [{"x": [1.0, 2.0], "y": [1.0, 2.0]}], "supports": [{"edge": "bottom"}],
-                }
-            )
-        )  # fmt: skip
-        block = mesh.blocks[0]
+        building = Building(
+            Panel(kind="panel", width=3.0, height=3.0, thickness=0.2, openings=[{"x": [1.0, 2.0], "y": [1.0, 2.0]}])
+        )
+        mesh = building.mesh(MeshOptions(size=size))
+        block = mesh.groups[0]
         high = mesh.xy[block.connect].mean(axis=1)[:, 1] > 3.0 - (n // 30 + 1) * size
         law = Softening(0.2e6, 50.0, ripple=0.2, exact=False)
         self.xy = mesh.xy
@@ -105,12 +100,12 @@ def long_run() -> None:
 
 
 def main() -> None:
-    """In a process of its own: BLAS reads its number of threads when it is loaded."""
-    subprocess.run(
-        [sys.executable, "-m", "tests.bench.bench_sla"], check=True, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"}
-    )
+    against_refactorisation()
+    long_run()
 
 
 if __name__ == "__main__":
-    against_refactorisation()
-    long_run()
+    if os.environ.get("OPENBLAS_NUM_THREADS") != "1":  # BLAS reads it when it is loaded
+        os.environ["OPENBLAS_NUM_THREADS"] = "1"
+        os.execv(sys.executable, [sys.executable, "-u", *sys.argv])
+    main()

@@ -8,6 +8,7 @@ import numpy as np
 
 from extrados.core import dem
 from extrados.core.ground import Ground
+from extrados.schema.constants import GRAVITY
 
 FRICTION, DENSITY = 2.0, 2000.0
 
@@ -66,7 +67,7 @@ def mujoco(bodies: dem.Bodies, ground: Ground, end: float, dt: float, follow: in
         f'solimp="0.99 0.999 0.0001"/></default><asset>{"".join(assets)}</asset><worldbody>{"".join(world)}</worldbody></mujoco>'
     )
     data = mj.MjData(model)
-    model.opt.gravity[:] = (0.0, 0.0, -dem.GRAVITY)
+    model.opt.gravity[:] = (0.0, 0.0, -GRAVITY)
     for _ in range(round(0.2 / dt)):
         mj.mj_step(model, data)
     data.qvel[:] = 0.0
@@ -123,7 +124,7 @@ def lmgc90(bodies: dem.Bodies, ground: Ground, end: float, dt: float, follow: in
 
 
 if __name__ == "__main__":  # LMGC90 keeps one simulation in a process, and may end it
-    from tests.bench.bench_dem import CASES
+    from bench_dem import CASES
 
     name, end, dt = sys.argv[1], float(sys.argv[2]), float(sys.argv[3])
     case = CASES[name]

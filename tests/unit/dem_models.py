@@ -5,8 +5,9 @@ from scipy.integrate import solve_ivp
 
 from extrados.core import dem
 from extrados.core.ground import Ground
+from extrados.schema.constants import GRAVITY
 
-G = dem.GRAVITY
+G = GRAVITY
 
 
 def rectangle(left: float, right: float, bottom: float, top: float) -> np.ndarray:

@@ -46,8 +46,9 @@ WITHIN = (
 #: Fortran room -> rooms it may use
 MAY_USE = {
     "common": set(),
-    "arch": {"common"},
-    "rocking": {"common", "arch"},
+    "mechanism": {"common"},
+    "arch": {"common", "mechanism"},
+    "rocking": {"common", "arch", "mechanism"},
     "sla": {"common"},
     "dem": {"common"},
     "motion": {"common"},

@@ -61,8 +61,8 @@ def test_good_deck() -> None:
         ("voussoirs = 7", "voussoirs = 7.5", 7, ["voussoirs"]),
         ("embrace = 157.5", "embrace-x = 157.5", 6, ["unknown key", "did you mean 'embrace'"]),
         ("embrace = 157.5", "embrace = 157.5\nfloat = 1", 7, ["unknown key"]),
-        ("voussoirs = 7", 'voussoirs = 7\nrestitution = "thess"', 8, ["'thesis' or 'energy-safe', or", "number"]),
-        ("voussoirs = 7", "voussoirs = 7\nrestitution = 1.2", 8, ["less than or equal to 1"]),
+        ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'thesis' or 'energy-safe', or", "number"]),
+        ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
         ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
         ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),
@@ -177,14 +177,14 @@ def test_lines_of_nested_keys() -> None:
 def test_explain_schema_and_starters() -> None:
     import tomllib
 
-    from extrados.decks.kinds import SECTIONS
+    from extrados import kinds
 
     schema = explain.json_schema()
     assert "arch" in str(schema["$defs"]["structure-arch"]["properties"]["kind"])
     assert "R_A" in explain.explain("radius") and "thesis" in explain.explain("restitution")
     with pytest.raises(KeyError, match="radius"):
         explain.explain("raduis")
-    for kind in SECTIONS["analysis"]:
+    for kind in kinds.ANALYSES:
         assert tomllib.loads(explain.starter(kind))["analysis"][0]["kind"] == kind
     assert "`radius`" in explain.manual()
 

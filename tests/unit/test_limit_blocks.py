@@ -11,7 +11,7 @@ from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.builder import BadGeometry
 from extrados.building.geometry.contacts import Overlap, find_contacts
 from extrados.building.geometry.drawing import read_dxf
-from extrados.building.geometry.polygons import below, crosses_itself, crossings, cut, inside, properties, signed_area
+from extrados.building.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, signed_area
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Polygon, make_blocks, read_json
 from extrados.limit.interior import collapse_load
@@ -59,7 +59,7 @@ def test_polygon_properties() -> None:
         assert area == pytest.approx(expected[0]) and (first_x, first_y) == pytest.approx(tuple(area * expected[1]))
     assert crossings(SQUARE, 0.5) == pytest.approx([0.0, 1.0])
     assert inside(SQUARE, np.array([[0.5, 0.5], [1.5, 0.5]])).tolist() == [True, False]
-    assert crosses_itself(SQUARE[[0, 2, 1, 3]]) and not crosses_itself(SQUARE)
+    assert crossing_edges(SQUARE[[0, 2, 1, 3]]) is not None and crossing_edges(SQUARE) is None
 
 
 def test_straight_sided_voussoirs() -> None:

@@ -1,9 +1,8 @@
 """Response spectra, measures and transforms of the core against closed forms and SciPy."""
 
-import threading
-
 import numpy as np
 import pytest
+from interrupting import interrupted
 from scipy import signal
 
 from extrados import _core
@@ -142,12 +141,10 @@ def test_refusals(el_centro) -> None:
         core.generate([1.0], [1.0], np.ones(1000), 0.01, 1, 0, 10**7)
 
 
-def test_a_long_call_can_be_stopped() -> None:
-    timer = threading.Timer(0.3, lambda: _core.api_support.set_cancel(1))
-    timer.start()
+def test_a_long_call_can_be_stopped(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(core, "long_call", interrupted(core.long_call, 0.3, lambda: _core.api_support.set_cancel(1)))
     with pytest.raises(Cancelled):
         core.response_spectra(np.ones((20, 200_000)), 0.001, np.geomspace(0.02, 10, 1000), [0.05])
-    timer.join()
     _core.api_support.set_cancel(0)
 
 

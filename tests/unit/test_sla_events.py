@@ -22,16 +22,16 @@ def wall(size: float = 0.15, **analysis) -> dict:
     """A wall with an opening under its weight, a pressure and a push at the top."""
     return {
         "structure": {
-            "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "size": size,
+            "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2,
             "openings": [{"x": [1.05, 1.95], "y": [0.9, 2.1]}],
-            "material": {
-                "young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 0.2e6, "fracture_energy": 50.0,
-            },
             "regions": [{"y": [2.85, 3.0], "linear": True}],
-            "supports": [{"edge": "bottom"}],
         },
+        "material": {
+            "young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 0.2e6, "fracture_energy": 50.0,
+        },
+        "supports": {"held": [{"edge": "bottom"}]},
         "analysis": [{
-            "kind": "sla", "ripple": 0.2, "events": 300,
+            "kind": "sla", "mesh": {"size": size}, "ripple": 0.2, "events": 300,
             "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
             "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}],
             **analysis,
@@ -42,7 +42,7 @@ def wall(size: float = 0.15, **analysis) -> dict:
 def curves(data: dict, threads: int = 1):
     deck = make_deck(data)
     context = Context(deck)
-    model = build(context.building.blocks(), deck.analyses[0])
+    model = build(context.building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     return model, run_curves(model, deck.analyses[0], threads, lambda *_: None)
 
 
@@ -98,10 +98,10 @@ def test_updated_factor_and_refactorisation_agree() -> None:
 
 def test_threads_do_not_change_a_bit() -> None:
     deck = make_deck(wall(0.05))
-    model = build(Context(deck).structure, deck.analyses[0])
+    model = build(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     found = []
     for threads in (1, 2, 3):
-        with Model(model.wall.xy, model.freedoms, model.groups, threads=threads) as core:
+        with Model(model.mesh.xy, model.freedoms, model.groups, threads=threads) as core:
             core.loads(model.constant, model.reference)
             found.append(core.run(120, [model.control]))
     for other in found[1:]:
@@ -112,11 +112,11 @@ def test_threads_do_not_change_a_bit() -> None:
 def test_a_turned_wall_cracks_alike() -> None:
     """The whole problem turned by 31 degrees: the same events at the same loads."""
     deck = make_deck(wall())
-    model = build(Context(deck).structure, deck.analyses[0])
+    model = build(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     found = []
     for angle in (0.0, np.radians(31.0)):
         turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-        with Model(model.wall.xy @ turn, model.freedoms, model.groups) as core:
+        with Model(model.mesh.xy @ turn, model.freedoms, model.groups) as core:
             core.loads(model.constant @ turn, model.reference @ turn)
             found.append(core.run(200, [model.control]))
     np.testing.assert_allclose(found[1].load, found[0].load, rtol=1e-9)
@@ -167,10 +167,10 @@ def test_a_point_that_no_multiplier_relieves_goes_first() -> None:
 
 def test_batches_do_not_matter() -> None:
     deck = make_deck(wall())
-    model = build(Context(deck).structure, deck.analyses[0])
+    model = build(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     loads = []
     for room in (7, 210):
-        with Model(model.wall.xy, model.freedoms, model.groups) as core:
+        with Model(model.mesh.xy, model.freedoms, model.groups) as core:
             core.loads(model.constant, model.reference)
             loads.append(np.concatenate([core.run(room, [model.control]).load for _ in range(210 // room)]))
     assert loads[0].tobytes() == loads[1].tobytes()
@@ -198,7 +198,7 @@ def test_going_on_from_a_stored_event() -> None:
         whole.damage_start, whole.damage_end, whole.events.point[: event - 1], whole.events.code[: event - 1]
     )
     deck = make_deck(wall(events=120))
-    model = build(Context(deck).structure, deck.analyses[0])
+    model = build(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     (rest,) = run_curves(model, deck.analyses[0], 1, lambda *_: None, damage)
     np.testing.assert_allclose(rest.events.load, whole.events.load[event - 1 : event + 119], rtol=1e-9)
 
@@ -221,7 +221,7 @@ def test_the_order_of_the_senses_does_not_matter() -> None:
 def test_constant_loads_with_damage() -> None:
     """A lintel too heavy for the strength: A cracks it on the way from 0 to 1, B starts from there."""
     data = wall(events=900)
-    data["structure"]["material"]["density"] = 26000.0
+    data["material"]["density"] = 26000.0
     _, (curve,) = curves(data)
     stage = curve.stage_a
     assert stage.reason == "target load"
@@ -290,16 +290,16 @@ def test_loads_between_mesh_lines(element) -> None:
 
     place = {"edge": "top", "x": [0.37, 1.21]}
     data = wall(0.3, constant=[{"kind": "pressure", "value": 5e4, **place}, {"kind": "line", "px": 700.0, **place}])
-    data["structure"]["element"] = element
+    data["analysis"][0]["mesh"]["element"] = element
     deck = make_deck(data)
-    mesh = Context(deck).structure
+    mesh = Context(deck).building.mesh(deck.analyses[0].mesh)
     force = nodal_forces(mesh, deck.analyses[0].constant, "constant")
     down, along = -5e4 * 0.2 * 0.84, 700.0 * 0.84
     np.testing.assert_allclose(force.sum(axis=0), [along, down], rtol=1e-12)
     moment = (mesh.xy[:, 0] * force[:, 1]).sum()
     assert moment == pytest.approx(down * 0.79, rel=1e-12)
     deck = make_deck(wall(0.3, constant=[{"kind": "spread", "fx": 1e3, **place}]))
-    spread = nodal_forces(Context(deck).structure, deck.analyses[0].constant, "constant")
+    spread = nodal_forces(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0].constant, "constant")
     assert spread[:, 0].sum() == pytest.approx(1e3, rel=1e-12)
 
 
@@ -328,14 +328,15 @@ def bad(path: str, value) -> dict:
 
 
 @pytest.mark.parametrize(("path", "value", "says"), [
-    ("structure.supports", [{"x": 0.0, "y": 0.0}], "is a mechanism: node"),
-    ("structure.material.fracture_energy", 0.004, "snaps back, the largest is"),
+    ("supports.held", [{"x": 0.0, "y": 0.0}], "is a mechanism: node"),
+    ("material.fracture_energy", 0.004, "snaps back, the largest is"),
     ("analysis.0.reference", [{"kind": "line", "x": [0.07, 0.08], "y": [0.01, 0.02], "px": 1.0}], "a mesh line is missing"),
     ("structure.openings", [{"x": [-1, 4], "y": [-1, 4]}], "leaves|no elements|nothing"),
     ("structure.ties", [{"edge": "bottom", "direction": "x"}], "is held and tied in x"),
     ("analysis.0.reference", [{"kind": "point", "edge": "bottom", "fx": "1 kN"}], "acts on held nodes only"),
     ("analysis.0.reference", [{"kind": "point", "edge": "top", "fx": 0.0}], "reference load is zero"),
-    ("structure.material.density", 0.0, "give the material a density"),
+    ("analysis.0.mesh.size", "0.5 mm", "use larger elements"),
+    ("material.density", 0.0, "give the material a density"),
     ("analysis.0.constant", [{"kind": "pressure", "edge": "top", "x": [2, 4], "value": 1e5}], "reaches out of the wall"),
     ("analysis.0.section_x", [3.2], r"section_x\[0\] is 3.2 m, the wall reaches from 0 to 3 m"),
 ])  # fmt: skip
@@ -348,19 +349,18 @@ def test_refusals(path, value, says) -> None:
 
 
 @pytest.mark.parametrize(("path", "value", "says"), [
-    ("structure.size", "0.5 mm", "use larger elements"),
     ("structure.regions", [{"x": [0, 1], "material": "steel"}], "unknown material 'steel'"),
-    ("structure.mesh", "random", 'expected "T3" or "T6"'),
+    ("analysis.0.mesh.pattern", "random", 'expected "T3" or "T6"'),
     ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "lies outside the panel"),
     ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "needs a width and a height"),
     ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
     ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
     ("analysis.0.reference", [], "at least 1 item"),
-    ("structure.material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
-    ("structure.material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
-    ("structure.supports", [{"fix": "x"}], "the place is missing"),
-    ("structure.supports", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
-    ("structure.supports", [{"x": [2, 1], "y": 0}], "the range runs backward"),
+    ("material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
+    ("material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
+    ("supports.held", [{"fix": "x"}], "the place is missing"),
+    ("supports.held", [{"x": "1,5 m", "y": 0}], "the decimal sign is a point"),
+    ("supports.held", [{"x": [2, 1], "y": 0}], "the range runs backward"),
     ("analysis.0.directions", ["+", "+"], "each sense may stand once"),
     ("analysis.0.control", [{"edge": "top", "weight": 0}], "a weight of 0 follows nothing"),
     ("analysis.0.seeds", [3, 3], "a seed stands twice"),

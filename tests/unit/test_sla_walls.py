@@ -3,7 +3,6 @@
 import os
 import signal
 import threading
-import time
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -31,8 +30,7 @@ def write_mesh(path, clockwise: bool = False, extra=()):
 def from_file(file: str, folder, **structure):
     data = wall(events=30, constant=[])
     data["structure"] = {
-        "kind": "mesh", "file": file, "scale": 0.001, "thickness": 0.2, "material": data["structure"]["material"],
-        "supports": [{"edge": "bottom"}], **structure,
+        "kind": "mesh", "file": file, "scale": 0.001, "thickness": 0.2, **structure,
     }  # fmt: skip
     return run_analyses(Context(make_deck(data, folder)))[0]
 
@@ -47,9 +45,8 @@ def test_mesh_files_agree_with_the_built_in_mesh(tmp_path, name, clockwise) -> N
         "height": 0.9,
         "openings": [],
         "regions": [],
-        "lines_y": [0.225, 0.45, 0.675],
-        "size": 0.2,
     }
+    data["analysis"][0]["mesh"] = {"lines_y": [0.225, 0.45, 0.675], "size": 0.2}
     built = run_deck(data)
     assert found.results["elements"] == built.results["elements"] == 24
     assert found.results["peak_load_N"] == pytest.approx(built.results["peak_load_N"], rel=1e-6)
@@ -79,10 +76,10 @@ def test_outline_from_a_drawing(tmp_path) -> None:
     drawing.saveas(tmp_path / "gable.dxf")
     data = wall(events=40)
     data["structure"] = {
-        "kind": "panel", "outline": "gable.dxf", "thickness": 0.2, "size": 0.15, "element": "T3", "mesh": "random",
-        "material": data["structure"]["material"], "supports": [{"edge": "bottom"}],
+        "kind": "panel", "outline": "gable.dxf", "thickness": 0.2,
     }  # fmt: skip
     data["analysis"][0] |= {
+        "mesh": {"size": 0.15, "element": "T3", "pattern": "random"},
         "constant": [{"kind": "gravity"}],
         "reference": [{"kind": "gravity", "ax": "1 m/s^2", "ay": "0 m/s^2"}],
     }
@@ -101,7 +98,7 @@ def test_outline_from_a_drawing(tmp_path) -> None:
 def test_repetitions_give_a_band() -> None:
     """Random meshes and strengths: another seed is another wall, the same seed the same."""
     data = wall(events=60, seeds=[4, 9], strength_variation=0.2, strength_length=0.5)
-    data["structure"] |= {"element": "T3", "mesh": "random"}
+    data["analysis"][0]["mesh"] |= {"element": "T3", "pattern": "random"}
     scatter = run_deck(data)
     peaks = scatter.results["scatter"]["peak_loads_N"]
     assert peaks[0] != peaks[1]
@@ -115,7 +112,7 @@ def test_strength_field_has_its_mean_and_scatter() -> None:
     from extrados.analyses.sla.model import strength_factors
 
     deck = make_deck(wall(0.05, strength_variation=0.3))
-    factors = strength_factors(Context(deck).structure, deck.analyses[0], 11)
+    factors = strength_factors(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0], 11)
     assert factors.mean() == pytest.approx(1.0, abs=0.02)
     assert factors.std() == pytest.approx(0.3, abs=0.02)
 
@@ -169,7 +166,7 @@ def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
 
 def test_a_wall_that_cannot_crack(tmp_path) -> None:
     data = wall(section_x=[0.5])
-    del data["structure"]["material"]["tensile_strength"], data["structure"]["material"]["fracture_energy"]
+    del data["material"]["tensile_strength"], data["material"]["fracture_energy"]
     _, (result,) = run_to_folder(Context(make_deck(data)), tmp_path / "run")
     assert result.status == "ok", result.reason
     assert result.answer.startswith("The load is not limited")
@@ -185,14 +182,12 @@ def test_interrupt_keeps_the_events_so_far() -> None:
             timers.append(threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)))
             timers[0].start()
 
-    begin = time.monotonic()
     data = wall(0.03, events=1_000_000, mechanism_ratio=1e12)
     result = run_analyses(Context(make_deck(data), progress=progress))[0]
     timers[0].join()
     assert result.status == "interrupted"
     assert 0 < result.results["events"] < 1_000_000
     assert len(result["event_load"]) == result.results["events"]
-    assert time.monotonic() - begin < 60.0
     assert signal.getsignal(signal.SIGINT) is before
 
 
@@ -215,7 +210,7 @@ def test_the_starter_deck_runs(tmp_path) -> None:
     from extrados.decks.explain import starter
     from extrados.decks.reader import read_text
 
-    result = run_analyses(Context(read_text(starter("sla").encode())))[0]
+    result = run_analyses(Context(read_text(starter("panel").encode())))[0]
     assert result.status == "ok", result.reason
     assert result.results["stop"] == "target displacement"
     assert read_text(starter("mesh").encode()).structure.file == "wall.msh"

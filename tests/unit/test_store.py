@@ -110,7 +110,7 @@ def test_full_disk(tmp_path, limit) -> None:
         '[structure]\nkind = "arch"\nradius = 1.0\nthickness = 0.2\nembrace = 150.0\nvoussoirs = 9\n[analysis]\nkind = "tilt"\n'
     )
     code = (
-        "import resource, signal, sys; import extrados._core, matplotlib.pyplot; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+        "import resource, signal, sys; import extrados._core, matplotlib.pyplot, scipy.stats; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
         f"resource.setrlimit(resource.RLIMIT_FSIZE, ({limit}, {limit})); sys.argv = ['extrados', 'run', '{deck}', '--out',"
         f" '{tmp_path / 'out'}']; from extrados.cli import main; main()"
     )

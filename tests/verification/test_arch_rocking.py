@@ -9,8 +9,8 @@ from extrados.building.rockers.arch import ArchModel, minimum_thickness
 from extrados.building.templates.arch import make_arch
 from extrados.core import rocking
 from extrados.motions import pulses
-from extrados.motions.motion import GRAVITY
 from extrados.motions.records import locate, read_record, record_motion
+from extrados.schema.constants import GRAVITY
 
 
 @pytest.fixture(scope="module")

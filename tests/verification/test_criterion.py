@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from extrados.analyses.rocking.rocking import criterion
+from extrados.analyses.rocking import criterion
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import make_arch
 from extrados.motions.impulse import primary_impulses

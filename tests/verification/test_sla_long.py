@@ -1,13 +1,8 @@
 """Long runs of sequentially linear analysis: what updates alone leave of the equations, and known curves."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from tests.bench.bench_sla import Wall
+from bench_sla import Wall
 
 #: event -> load [kN], displacement of the top corner [mm], damaged points (independent program, same tie-breaking)
 EXPECTED = {

@@ -83,10 +83,11 @@ class Joints(Table):
     beta: Annotated[float, Field(ge=0, le=10)] | None = key(
         None, "stiffness-proportional damping in s, instead of the rule"
     )
-    restitution: Literal["thesis", "energy-safe"] | Annotated[float, Field(ge=0, le=1)] = key(
+    restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
         "thesis",
-        "impact of rocking: the thesis' momentum balance (of a block: Housner's), the energy-safe projection, or the "
-        "ratio c_v of the rates after and before an impact (0 to 1)",
+        "impact of rocking: the thesis' momentum balance of arches (of blocks Housner's; of other sections the energy-safe "
+        "projection); the energy-safe projection; all energy that an inelastic blow leaves; or the ratio c_v of the rates "
+        "after and before an impact (0 to 1)",
         source="thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(

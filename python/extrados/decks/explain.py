@@ -172,8 +172,8 @@ def starter(kind: str) -> str:
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
     structure = kind if section == "structure" else "arch"
     asked = kind if section == "analysis" else "motion" if section == "motion" else "tilt"
-    if section == "structure" and "blocks" in kinds.table("structure", kind).lacks:
-        asked = "sla"
+    if kind == "panel" or (section == "structure" and "blocks" in kinds.table("structure", kind).lacks):
+        asked = "sla"  # a wall that is given whole is cut into elements
     analysis = kinds.table("analysis", asked)
     structure = analysis.structures[0] if section == "analysis" and analysis.structures else structure
     lines = [f'title = "A first {kind} deck"', ""]

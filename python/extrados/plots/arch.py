@@ -72,17 +72,19 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     times = run.arrays[name].get("snapshot_time")
     if times is not None and len(times.data):
         blocks, centroid = outlines(run, name), run.array(name, "centroid")
-        poses, thrust = run.array(name, "snapshot_pose"), run.array(name, "snapshot_thrust")
+        poses = run.array(name, "snapshot_pose")
+        lines = run.arrays[name].get("snapshot_thrust")
         count = len(times.data)
         columns = min(3, count)
         rows = -(-count // columns)
         with style.figure(3.2 * columns, 2.5 * rows, rows=rows, columns=columns) as (fig, axes):
             for ax in axes[count:]:
                 ax.set_axis_off()
-            for ax, when, pose, line in zip(axes, times.data, poses, thrust, strict=False):
+            for k, (ax, when, pose) in enumerate(zip(axes, times.data, poses, strict=False)):
                 style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, pose, strict=True)])
                 low, high = ax.get_xlim(), ax.get_ylim()
-                ax.plot(*line.T, color=style.THRUST, marker=".", markersize=3)
+                if lines is not None:
+                    ax.plot(*lines.data[k].T, color=style.THRUST, marker=".", markersize=3)
                 span = high[1] - high[0]
                 ax.set_xlim(low[0] - 0.05 * span, low[1] + 0.05 * span)
                 ax.set_ylim(high[0] - 0.05 * span, high[1] + 0.15 * span)
@@ -92,7 +94,8 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),
-                    "The structure (true scale) and its dynamic thrust line at the greatest rotations.",
+                    "The structure (true scale) at the greatest rotations"
+                    + ("." if lines is None else ", with its dynamic thrust line."),
                 )
             )
     return found

@@ -7,14 +7,15 @@ from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 
 
-def run(context: Context, options: Rocking) -> Result:
+def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     """History, impacts, energies, and the friction that keeps the toe from sliding."""
-    structure, rocker = context.deck.structure, context.building.rocker(options.form == "linear")
+    structure = context.deck.structure
     model = rocker.model
     context.warnings += model.warnings + context.motion.notes
     if structure.kind == "column":

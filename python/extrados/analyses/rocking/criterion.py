@@ -101,7 +101,7 @@ def regenerate(rule: str = "thesis", threads: int = 1, say: Callable[[str], None
 @cache
 def table() -> dict[tuple[float, float], Fit]:
     """The regenerated Table 5.3 by (t/R, embrace in degrees)."""
-    text = files("extrados.analyses").joinpath(TABLE).read_text(encoding="utf-8")
+    text = files("extrados.analyses.rocking").joinpath(TABLE).read_text(encoding="utf-8")
     rows = csv.DictReader(text.splitlines())
     return {
         (float(r["thickness_ratio"]), float(r["embrace_deg"])): Fit(
@@ -134,7 +134,7 @@ def main() -> None:
     from extrados.analyses.context import default_threads
 
     rows = regenerate(threads=default_threads())
-    with open(str(files("extrados.analyses").joinpath(TABLE)), "w", encoding="utf-8", newline="") as file:
+    with open(str(files("extrados.analyses.rocking").joinpath(TABLE)), "w", encoding="utf-8", newline="") as file:
         writer = csv.DictWriter(file, fieldnames=list(rows[0]), lineterminator="\n")
         writer.writeheader()
         for row in rows:

@@ -5,10 +5,13 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
+from extrados.analyses.rocking import mechanism as mechanism_rocking
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.rockers.rocker import Rocker
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core import arch as core_arch
 from extrados.core import rocking as core_rocking
@@ -20,10 +23,20 @@ OUTSIDE = 0.01
 
 
 def run(context: Context, options: Rocking) -> Result:
-    """History, impacts, energies, dynamic thrust line and friction needed."""
+    """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
     rocker = context.building.rocker(options.form == "linear")
-    if isinstance(rocker.model, BlockModel):
-        return block_rocking.run(context, options)
+    kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
+    result = kinds[type(rocker.model)](context, options, rocker)
+    needed, given = result.results["required_friction"], context.building.joints.coefficient
+    if given is not None and needed is not None and needed > given:
+        result.warnings.append(
+            f"a coefficient of friction of {needed:.2f} is needed, the joints have {given:g}: it slides, which rocking "
+            "leaves out; see the analysis `dem`"
+        )
+    return result
+
+
+def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
     model = rocker.model
     context.warnings += model.warnings + context.motion.notes
     gamma = model.collapse[0].gamma
@@ -31,7 +44,7 @@ def run(context: Context, options: Rocking) -> Result:
     period = 2.0 * np.pi * np.sqrt(model.limits.mass * model.limits.critical / model.limits.gravity_moment)
     end_time = options.end_time or context.motion.end + 10.0 * period
     joints = model.arch.voussoirs + 1
-    response = run_history(context, options, model.body, end_time, 8 + 6 * joints)
+    response = run_history(context, options, model.body, end_time, 8 + 6 * joints, rocker.start_rotation)
 
     thrust = _thrust(model, response)
     needed = max(float(thrust.friction.max(initial=0.0)), _onset_friction(model, context, response))

@@ -50,26 +50,6 @@ def hull(points: np.ndarray) -> np.ndarray:
     return np.array(chain(order) + chain(order[::-1]))
 
 
-def crossing_edges(polygon: np.ndarray) -> tuple[int, int] | None:
-    """Two edges of a polygon that cross each other, by their first vertices; None where it is simple."""
-    n = len(polygon)
-    start, end = polygon, np.roll(polygon, -1, axis=0)
-
-    def side(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-        return np.sign(
-            (b[..., 0] - a[..., 0]) * (c[..., 1] - a[..., 1]) - (b[..., 1] - a[..., 1]) * (c[..., 0] - a[..., 0])
-        )
-
-    for i in range(n):
-        j = np.arange(i + 2, n if i else n - 1)
-        hit = (side(start[i], end[i], start[j]) * side(start[i], end[i], end[j]) < 0) & (
-            side(start[j], end[j], start[i]) * side(start[j], end[j], end[i]) < 0
-        )
-        if hit.any():
-            return i, int(j[hit.argmax()])
-    return None
-
-
 def _ears(polygon: np.ndarray) -> list[list[int]]:
     """Triangles of a simple polygon by cutting ears, as indices."""
     left = list(range(len(polygon)))

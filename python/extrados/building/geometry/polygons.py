@@ -81,8 +81,8 @@ def inside(outline: np.ndarray, points: np.ndarray) -> np.ndarray:
     return ((spans & (x < reach)).sum(axis=1) % 2).astype(bool)
 
 
-def crosses_itself(outline: np.ndarray) -> bool:
-    """True where two edges that are not neighbours cross."""
+def crossing_edges(outline: np.ndarray) -> tuple[int, int] | None:
+    """Two edges of an outline that cross each other, by their first vertices; None where it is simple."""
     n = len(outline)
     a, b = outline, following(outline)
 
@@ -94,4 +94,5 @@ def crosses_itself(outline: np.ndarray) -> bool:
     i, j = i[apart], j[apart]
     one = turn(a[i], b[i], a[j]) * turn(a[i], b[i], b[j])
     two = turn(a[j], b[j], a[i]) * turn(a[j], b[j], b[i])
-    return bool(((one < 0.0) & (two < 0.0)).any())
+    crossed = np.flatnonzero((one < 0.0) & (two < 0.0))
+    return (int(i[crossed[0]]), int(j[crossed[0]])) if len(crossed) else None

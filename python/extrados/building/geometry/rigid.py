@@ -10,12 +10,13 @@ from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.convex import (
     clean,
     convex_parts,
-    crossing_edges,
     hull,
     is_convex,
     overlap_depth,
     rounded,
 )
+from extrados.building.geometry.mass import together
+from extrados.building.geometry.polygons import crossing_edges
 from extrados.building.geometry.polygons import signed_area as area
 
 #: An outline is taken for its hull where that is bigger by no more than this, and no joint lies inside the hull:
@@ -108,16 +109,13 @@ def _lumped(assembly: Assembly, body: np.ndarray, count: int) -> tuple[np.ndarra
     """Mass, centroid and inertia of the bodies, with the fill that rests on the blocks."""
     mass, centroid, inertia = assembly.mass, assembly.centroid, assembly.inertia
     owner = body
-    fill = getattr(assembly, "fill", None)
+    fill = assembly.fill
     if fill is not None:
         mass = np.concatenate([mass, fill[:, 0]])
         centroid = np.concatenate([centroid, fill[:, 1:]])
         inertia = np.concatenate([inertia, np.zeros(len(fill))])
         owner = np.concatenate([body, body])
-    total = np.bincount(owner, mass, count)
-    middle = np.stack([np.bincount(owner, mass * x, count) for x in centroid.T], axis=1) / total[:, None]
-    arm = ((centroid - middle[owner]) ** 2).sum(axis=1)
-    return total, middle, np.bincount(owner, inertia + mass * arm, count)
+    return together(mass, centroid, inertia, owner, count)
 
 
 def _block_parts(assembly: Assembly, i: int) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -1,12 +1,12 @@
 """The arch of a deck as limit analysis and rocking see it."""
 
-import itertools
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from extrados.building.errors import NoView
+from extrados.building.geometry.mass import together
 from extrados.building.templates.arch import ArchAssembly, make_arch
 from extrados.core import arch as core_arch
 from extrados.core.rocking import Body, arch_body
@@ -49,16 +49,10 @@ def four_hinge(arch: ArchAssembly, mechanism: Mechanism) -> core_arch.FourHinge:
         raise ValueError(f"the mechanism has {len(hinges)} hinges and {len(mechanism.sliding)} sliding joints")
     joint = np.array([j for j, _ in hinges])
     points = np.array([(arch.intrados if face == "intrados" else arch.extrados)[j] for j, face in hinges])
-    mass, centroid, inertia = [], [], []
-    for first, last in itertools.pairwise(joint):
-        part = slice(first, last)
-        m = arch.mass[part]
-        c = m @ arch.centroid[part] / m.sum()
-        arm = arch.centroid[part] - c
-        mass.append(m.sum())
-        centroid.append(c)
-        inertia.append(arch.inertia[part].sum() + m @ (arm**2).sum(axis=1))
-    return core_arch.FourHinge(points, joint, np.array(mass), np.array(centroid), np.array(inertia))
+    part = slice(joint[0], joint[-1])
+    link = np.repeat(np.arange(3), np.diff(joint))
+    mass, centroid, inertia = together(arch.mass[part], arch.centroid[part], arch.inertia[part], link, 3)
+    return core_arch.FourHinge(points, joint, mass, centroid, inertia)
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,14 @@ import numpy as np
 from extrados.building.errors import NoView
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import WALLS, BlockModel, block_model
+from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core.rocking import Body
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
 
-MONOLITHS = ("block", "column", *WALLS)
+MONOLITHS = ("block", "column")
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Rocker:
     """
 
     what: str
-    model: BlockModel | ArchModel
+    model: BlockModel | ArchModel | MechanismModel
     body: Body
     uplift: float
     critical: tuple[float, float]
@@ -41,7 +42,9 @@ class Rocker:
 def make_rocker(building: "Building", linear: bool = False) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none."""
     structure, ratio = building.structure, building.initial.rotation_ratio
-    if structure is not None and structure.kind in MONOLITHS:
+    wall = structure is not None and structure.kind in WALLS
+    piers = building.pier_blocks() if wall else None
+    if structure is not None and (structure.kind in MONOLITHS or (piers is not None and len(piers.mass) == 1)):
         block = block_model(building, linear)
         alpha = block.alpha
         return Rocker(
@@ -49,10 +52,10 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
             float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
             ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
         )  # fmt: skip
-    made = building.blocks()
+    made = building.blocks() if piers is None else piers
     if linear:
         raise NoView('form = "linear" is known of blocks and columns only')
-    if isinstance(made, ArchAssembly):
+    if isinstance(made, ArchAssembly) and building.joints.restitution != "inelastic":
         arch = ArchModel(made, building.joints.restitution)
         limits = arch.limits
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
@@ -61,4 +64,10 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
             "arch", arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
             made.radius, ratio * limits.critical, tuple(arch.warnings),
         )  # fmt: skip
-    raise NoView(f"a structure of kind '{structure.kind}' has no rocking mechanism yet")
+    rule = building.joints.restitution
+    model = MechanismModel(made, "energy-safe" if rule == "thesis" else rule)
+    critical = model.critical
+    return Rocker(
+        structure.kind, model, model.body, min(model.uplift), critical, model.restitution[1], model.time_unit, model.length,
+        ratio * critical[0 if ratio >= 0.0 else 1], tuple(model.warnings),
+    )  # fmt: skip

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import model_validator
 
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.mass import together
 from extrados.building.structure import Structure
 from extrados.schema.quantities import Inertia, Length, Mass
 from extrados.schema.table import key
@@ -50,10 +51,8 @@ class BlockAssembly(Assembly):
 
 def monolith(assembly: Assembly) -> BlockAssembly:
     """A stack of blocks taken as one rigid body that rocks on the ends of its base."""
-    mass = float(assembly.mass.sum())
-    centre = assembly.mass @ assembly.centroid / mass
-    arm = assembly.centroid - centre
-    inertia = float(assembly.inertia.sum() + assembly.mass @ (arm**2).sum(axis=1))
+    one = np.zeros(len(assembly.mass), dtype=int)
+    (mass,), (centre,), (inertia,) = together(assembly.mass, assembly.centroid, assembly.inertia, one, 1)
     vertices = np.concatenate(assembly.outlines)
     ground, top = vertices[:, 1].min(), vertices[:, 1].max()
     base, head = (
@@ -61,7 +60,7 @@ def monolith(assembly: Assembly) -> BlockAssembly:
     )
     height = float(top - ground)
     made = make_block(
-        depth=assembly.depth, mass=mass, inertia=inertia, centre_height=float(centre[1] - ground),
+        depth=assembly.depth, mass=float(mass), inertia=float(inertia), centre_height=float(centre[1] - ground),
         toe_right=float(base.max()), toe_left=float(-base.min()),
     )  # fmt: skip
     outline = np.array([[base.min(), 0.0], [base.max(), 0.0], [head.max(), height], [head.min(), height]])

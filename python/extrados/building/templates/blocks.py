@@ -11,7 +11,7 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import with_chains
 from extrados.building.geometry.contacts import find_contacts
 from extrados.building.geometry.drawing import MOST_POINTS, Polygon, read_dxf, read_json
-from extrados.building.geometry.polygons import crosses_itself, following, properties, signed_area
+from extrados.building.geometry.polygons import crossing_edges, following, properties, signed_area
 from extrados.building.structure import Structure
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
@@ -74,7 +74,7 @@ def _outline(polygon: Polygon, tolerance: float) -> np.ndarray:
     points = points[apart]
     if not 3 <= len(points) <= MOST_POINTS:
         raise BadGeometry(f"block '{polygon.name}': {len(points)} distinct vertices, expected 3 to {MOST_POINTS}")
-    if crosses_itself(points):
+    if crossing_edges(points) is not None:
         raise BadGeometry(f"block '{polygon.name}': its outline crosses itself")
     area = signed_area(points)
     if abs(area) < tolerance * float(np.ptp(points, axis=0).max()):

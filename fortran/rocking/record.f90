@@ -1,0 +1,143 @@
+!> What is recorded of a response besides its outcome: states at output times, events, work and loss.
+module rocking_record
+   use common_dense_step, only : dense_step
+   use common_kinds, only : wp, gravity
+   use rocking_equation, only : equation_of_motion
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: response_history, energy_of, barrier_of
+   public :: event_uplift, event_impact, event_peak, event_rest, event_collapse
+
+   integer(c_int), parameter :: event_uplift = 1, event_impact = 2, event_peak = 3, event_rest = 4, event_collapse = 5
+
+   !> In the caller's arrays
+   type :: response_history
+      integer :: points = 0                        !! output times filled so far
+      real(wp), pointer, contiguous :: time(:) => null()      !! asked for, ascending [s]
+      !> (8, points): rotation, rate, acceleration, ground horizontal and vertical,
+      !> kinetic and potential energy, energy put in minus energy lost at impacts
+      real(wp), pointer, contiguous :: state(:, :) => null()
+      integer :: events = 0                        !! found, also past the room for them
+      integer(c_int), pointer, contiguous :: event_kind(:) => null()
+      !> (2, room): time [s]; rotation at a peak or collapse [rad], rate before an impact [rad/s],
+      !> both positive to +x; side at an uplift
+      real(wp), pointer, contiguous :: event(:, :) => null()
+      real(wp) :: work = 0.0_wp                    !! energy put in by the ground [J]
+      real(wp) :: loss = 0.0_wp                    !! energy lost at impacts [J]
+   contains
+      procedure :: note
+      procedure :: lose
+      procedure :: cover
+      procedure :: rest
+   end type response_history
+
+contains
+
+   !> An event; past the room it is only counted
+   subroutine note(self, kind, when, value)
+      class(response_history), intent(inout) :: self
+      integer(c_int), intent(in) :: kind
+      real(wp), intent(in) :: when   !! [s]
+      real(wp), intent(in) :: value  !! see event
+      self%events = self%events + 1
+      if (self%events > size(self%event_kind)) return
+      self%event_kind(self%events) = kind
+      self%event(:, self%events) = [when, value]
+   end subroutine note
+
+   !> Book kinetic energy at rest as lost, or as gained back
+   subroutine lose(self, problem, rate, sign)
+      class(response_history), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: problem
+      real(wp), intent(in) :: rate  !! [rad/s]
+      real(wp), intent(in) :: sign  !! +1 lost, -1 gained
+      self%loss = self%loss + sign * energy_of(problem, 0.0_wp, rate)
+   end subroutine lose
+
+   !> Fill the output times that the first part of a step covers, and book the work done over it
+   subroutine cover(self, problem, step, covered)
+      class(response_history), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: problem
+      type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: covered  !! fraction of the step
+      real(wp) :: x, end_time, rotation, rate, horizontal, vertical, energy, potential, sigma
+
+      sigma = real(problem%side, wp)
+      end_time = step%t + covered * step%h
+      do while (self%points < size(self%time))
+         if (self%time(self%points + 1) > end_time) exit
+         self%points = self%points + 1
+         x = max(0.0_wp, (self%time(self%points) - step%t) / step%h)
+         rotation = max(step%coordinate(x), 0.0_wp)
+         rate = step%rate(x)
+         call problem%ground%value_at(problem%segment, self%time(self%points), horizontal, vertical)
+         energy = energy_of(problem, rotation, rate)
+         potential = problem%body%potential(problem%side, rotation)
+         self%state(:, self%points) = [sigma * rotation, sigma * rate, &
+            sigma * problem%acceleration(self%time(self%points), rotation, rate), horizontal, vertical, &
+            energy - potential, potential, self%work + work_of(problem, step, x) - self%loss]
+      end do
+      self%work = self%work + work_of(problem, step, covered)
+   end subroutine cover
+
+   !> Fill the output times of a rest
+   subroutine rest(self, problem, until)
+      class(response_history), intent(inout) :: self
+      type(equation_of_motion), intent(in) :: problem
+      real(wp), intent(in) :: until  !! [s]
+      real(wp) :: horizontal, vertical
+      do while (self%points < size(self%time))
+         if (self%time(self%points + 1) > until) exit
+         self%points = self%points + 1
+         call problem%ground%value_at(problem%segment, self%time(self%points), horizontal, vertical)
+         self%state(:, self%points) = 0.0_wp
+         self%state(4:5, self%points) = [horizontal, vertical]
+         self%state(8, self%points) = self%work - self%loss
+      end do
+   end subroutine rest
+
+   !> Kinetic plus potential energy [J]
+   pure function energy_of(problem, rotation, rate) result(energy)
+      type(equation_of_motion), intent(in) :: problem
+      real(wp), intent(in) :: rotation  !! [rad]
+      real(wp), intent(in) :: rate      !! [rad/s]
+      real(wp) :: energy
+      real(wp) :: m, half_dm, dv, dh
+      logical :: closed
+      call problem%body%coefficients(problem%side, rotation, m, half_dm, dv, dh, closed)
+      energy = 0.5_wp * m * rate**2 + problem%body%potential(problem%side, rotation)
+   end function energy_of
+
+   !> The lower of the two energy barriers [J]
+   pure function barrier_of(problem) result(energy)
+      type(equation_of_motion), intent(in) :: problem
+      real(wp) :: energy
+      energy = min(problem%body%potential(1, problem%body%critical(1)), &
+         problem%body%potential(-1, problem%body%critical(2)))
+   end function barrier_of
+
+   !> Work of the ground over the first part of a step, by three Gauss points on the dense output
+   !> (thesis Eq. 6.4)
+   function work_of(problem, step, fraction) result(work)
+      type(equation_of_motion), intent(in) :: problem
+      type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: fraction
+      real(wp) :: work
+      real(wp), parameter :: node(3) = [0.1127016653792583_wp, 0.5_wp, 0.8872983346207417_wp]
+      real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp] / 18.0_wp
+      real(wp) :: m, half_dm, dv, dh, horizontal, vertical, x
+      logical :: closed
+      integer :: j
+
+      work = 0.0_wp
+      do j = 1, 3
+         x = fraction * node(j)
+         call problem%body%coefficients(problem%side, step%coordinate(x), m, half_dm, dv, dh, closed)
+         call problem%ground%value_at(problem%segment, step%t + x * step%h, horizontal, vertical)
+         work = work - weight(j) * fraction * step%h * step%rate(x) &
+            * (real(problem%side, wp) * horizontal * dh + dv * vertical / gravity)
+      end do
+   end function work_of
+
+end module rocking_record

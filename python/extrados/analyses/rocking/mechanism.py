@@ -1,0 +1,67 @@
+"""rocking of any section by the collapse mechanisms that limit analysis finds to +x and to -x."""
+
+import numpy as np
+
+from extrados.analyses.context import Context
+from extrados.analyses.limit.common import geometry_arrays
+from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.tables import Rocking
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.rockers.rocker import Rocker
+from extrados.results.model import Array, Result
+
+#: After the motion it rocks itself to rest within this many of its own time units
+SETTLE = 40.0
+
+
+def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
+    """History, impacts, energies, and the friction needed at the hinges where statics tells it."""
+    model = rocker.model
+    assert isinstance(model, MechanismModel)
+    context.warnings += [*rocker.warnings, *context.motion.notes]
+    end_time = options.end_time or context.motion.end + SETTLE * rocker.time_unit
+    joints = len(model.assembly.a)
+    response = run_history(context, options, rocker.body, end_time, 8 + joints, rocker.start_rotation)
+
+    forces = model.hinge_forces(
+        response.rotation, response.rate, response.acceleration, response.ground, response.vertical
+    )
+    friction = np.where(np.isnan(forces.normal), 0.0, forces.friction)
+    needed = float(friction.max(initial=0.0))
+    known = any(one.determinate for one in model.linkages)
+    side = 0 if response.peak >= 0.0 else 1
+    result = rocking_result(context, response, model.driver(side), friction)
+    result.results |= {
+        "restitution": model.restitution[1],
+        "restitution_to_left": model.restitution[0],
+        "critical_rotation_rad": model.critical[0],
+        "critical_rotation_left_rad": model.critical[1],
+        "uplift_acceleration_g": rocker.uplift,
+        "required_friction": needed if known and np.isfinite(needed) else None,
+        "hinges": _hinges(model, 0),
+        "hinges_opposite": _hinges(model, 1),
+    }
+    if not np.isfinite(needed):
+        result.warnings.append(
+            "a hinge comes under tension during the motion: the assumed mechanism does not hold there"
+        )
+    index = snapshot_index(response, options, result.warnings)
+    result.arrays |= {
+        **geometry_arrays(model.assembly),
+        "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
+        "snapshot_pose": Array(
+            model.pose(response.rotation[index]), ("snapshot", "block", "component"), "m, m, rad",
+            "x, y, rotation of the stones",
+        ),
+    }  # fmt: skip
+    result.answer = answer(context, response, "The structure", "comes down", rocker.uplift)
+    return result
+
+
+def _hinges(model: MechanismModel, side: int) -> list[dict[str, object]]:
+    """Where the mechanism of one side turns."""
+    one = model.linkages[side]
+    return [
+        {"joint": int(j), "name": model.assembly.joint_names[j], "x_m": float(x), "y_m": float(y)}
+        for j, (x, y) in zip(one.joint, one.point, strict=True)
+    ]

@@ -1,0 +1,118 @@
+"""Mechanisms of rigid parts in the core (fortran/mechanism): tables of their equation of motion, motion, impact.
+
+`linkage` is a limit.linkage.Linkage: rigid parts on hinges with one degree of freedom.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados import _core
+from extrados.core.calls import real
+from extrados.core.errors import check
+from extrados.core.rocking import Body
+
+
+@dataclass(frozen=True)
+class Table:
+    """The equation of motion of a mechanism on one side, as the core keeps it, and what became known meanwhile.
+
+    critical: rotation of unstable equilibrium; limit: rotation taken as collapse; lock: the greatest that the
+    hinges allow [rad], 1.6 where they do not lock before. mass M [kg m^2], gravity_moment V' [N m], drive H [kg m]:
+    at rest. misfit, energy: greatest relative difference of table and kinematics, of M, V', H and of V, M'.
+    """
+
+    numbers: np.ndarray
+    critical: float
+    limit: float
+    lock: float
+    mass: float
+    gravity_moment: float
+    drive: float
+    misfit: float
+    energy: float
+
+
+def _links(linkage) -> tuple:
+    """The arguments by which the facades describe a linkage."""
+    n, h = len(linkage.mass), len(linkage.joined)
+    return (
+        real("part mass", linkage.mass, (n,)),
+        real("part centroid", np.transpose(linkage.centroid), (2, n)),
+        real("part inertia", linkage.inertia, (n,)),
+        np.asfortranarray(np.transpose(linkage.joined), dtype=np.int32),
+        real("hinge", np.transpose(linkage.point), (2, h)),
+        np.asfortranarray(np.transpose(linkage.row), dtype=np.int32),
+        int(linkage.driver),
+        int(linkage.sense),
+    )
+
+
+def table(linkage) -> Table:
+    """Tabulate the mechanism from rest to past its collapse; CoreError where gravity does not hold it shut."""
+    numbers, facts, status = _core.api_mechanism.tabulate(
+        *_links(linkage), int(linkage.side), int(_core.api_mechanism.table_length())
+    )
+    check(status, "motion of the mechanism")
+    return Table(numbers, *(float(x) for x in facts))
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """M [kg m^2], M'/2 [kg m^2], V' [N m], H [kg m] and V [J] at rotations q [rad]; NaN past the end of the table."""
+
+    mass: np.ndarray
+    half_mass_slope: np.ndarray
+    gravity_moment: np.ndarray
+    drive: np.ndarray
+    potential: np.ndarray
+
+
+def coefficients(side: Table, q) -> Coefficients:
+    """What the integrator sees of one side at rotations q [rad]."""
+    values, inside, status = _core.api_mechanism.evaluate(side.numbers, real("q", np.atleast_1d(q), (None,)))
+    check(status, "table of the mechanism")
+    return Coefficients(*np.where(inside != 0, values, np.nan))
+
+
+def follow(linkage, q) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places (len(q), parts, 3) of the centroids x, y [m] and rotation [rad], and their first and second derivatives
+    by q; NaN where the hinges cannot be closed."""
+    q = real("q", np.atleast_1d(q), (None,))
+    order = np.argsort(q, kind="stable")
+    *arrays, reached, status = _core.api_mechanism.follow(*_links(linkage), q[order])
+    check(status, "motion of the mechanism")
+    out = []
+    for array in arrays:
+        back = np.full((len(q), len(linkage.mass), 3), np.nan)
+        back[order[:reached]] = array.transpose(2, 1, 0)[:reached]
+        out.append(back)
+    return tuple(out)
+
+
+def restitution(mass, inertia, before, after) -> float:
+    """c_v of the impact that closes the mechanism `before` and opens `after`, by workless impulses; may be negative.
+
+    mass (n), inertia (n) of the blocks; before, after (n, 3): velocities x, y, spin at rest per unit rate.
+    """
+    n = len(mass)
+    return float(
+        _core.api_mechanism.restitution(
+            real("mass", mass, (n,)),
+            real("inertia", inertia, (n,)),
+            real("before", np.transpose(before), (3, n)),
+            real("after", np.transpose(after), (3, n)),
+        )
+    )
+
+
+def table_body(right: Table, left: Table, restitution: tuple[float, float]) -> Body:
+    """The structure that rocks to +x by one table and to -x by the other.
+
+    restitution: rate after over rate before the impacts that start rocking to +x and to -x; above 1 only where
+    the coordinates of the two sides count differently, never so that energy grows.
+    """
+    energies = [restitution[0] ** 2 * right.mass / left.mass, restitution[1] ** 2 * left.mass / right.mass]
+    if min(restitution) < 0.0 or max(energies) > 1.0 + 1e-9:
+        raise ValueError(f"restitution is {restitution}: expected not below 0, and an impact must not create energy")
+    return Body(3, np.concatenate([restitution, right.numbers, left.numbers]))

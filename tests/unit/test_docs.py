@@ -1,0 +1,51 @@
+"""The documentation shows decks that are right and names tests and cases that exist."""
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from extrados.decks.reader import make_deck
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+
+
+def decks() -> list:
+    found = []
+    for page in PAGES:
+        for k, block in enumerate(re.findall(r"^```toml\n(.*?)^```", page.read_text(encoding="utf-8"), re.S | re.M)):
+            found.append(pytest.param(block, id=f"{page.name}-{k + 1}"))
+    return found
+
+
+@pytest.mark.parametrize("block", decks())
+def test_decks_in_the_docs_are_right(block: str) -> None:
+    data = tomllib.loads(block)
+    data.setdefault("analysis", {"kind": "motion" if "structure" not in data else "tilt"})
+    make_deck(data)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
+def test_what_the_docs_name_exists(page: Path) -> None:
+    """Cases, tests and modules that a page names in backquotes."""
+    text = page.read_text(encoding="utf-8")
+    missing = []
+    for name in re.findall(r"`((?:cases|tests|tools|docs|python|fortran|c)/[\w./*-]+)`", text):
+        place = name.rstrip("/")
+        there = [*ROOT.glob(place), *ROOT.glob(place + ".toml")]
+        if not there:
+            missing.append(name)
+    assert not missing
+    for function in re.findall(r"`(test_\w+\.py)`", text):
+        assert list((ROOT / "tests").rglob(function)), function
+
+
+def test_the_deck_reference_is_up_to_date() -> None:
+    made = subprocess.run(
+        [sys.executable, "-m", "extrados.cli", "explain", "--manual"], capture_output=True, text=True, check=True
+    )
+    assert made.stdout == (ROOT / "docs" / "decks.md").read_text(encoding="utf-8"), "run `make docs`"
