@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.building.errors import NoView
 from extrados.building.templates.block import BlockAssembly, monolith
 from extrados.core.rocking import Body, block_body
 from extrados.schema.constants import GRAVITY
@@ -83,11 +82,9 @@ class BlockModel:
 def block_model(building: "Building", linear: bool = False) -> BlockModel:
     """A `block`, or a `column` or a wall taken as one body, with the impact that [joints] asks for.
 
-    NoView for a wall that openings divide into several bodies.
+    A wall is its only pier: one that openings divide rocks by a mechanism.
     """
     made = building.pier_blocks() if building.structure.kind in WALLS else building.blocks()
-    if building.structure.kind in WALLS and len(made.mass) > 1:
-        raise NoView(f"the openings divide the wall into {len(made.mass)} bodies: it does not rock as one")
     block = made if isinstance(made, BlockAssembly) else monolith(made)
     rule = building.joints.restitution
     # The energy-safe projection of a block that lands on both toes is Housner's balance.
