@@ -35,7 +35,7 @@ STRUCTURES: dict[str, str] = {
     "panel": "building.templates.walls:Panel",
     "mesh": "building.templates.walls:MeshFile",
     "column": "building.templates.masonry:Column",
-    "brickwork": "building.templates.masonry:Brickwork",
+    "brickwork": "building.templates.brickwork:Brickwork",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",

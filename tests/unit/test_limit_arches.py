@@ -11,6 +11,7 @@ from extrados.building.geometry.builder import Builder
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.arches import make_elliptical_arch, make_pointed_arch
 from extrados.limit.answer import CannotStand, assess
+from extrados.limit.graphic import thrust_of
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.motion import finite_motion, rigid_parts
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
@@ -99,9 +100,10 @@ def test_least_and_greatest_thrust(embrace: float, voussoirs: int, least: float,
     arch = make_arch(10.0, 1.5, embrace, voussoirs)
     limit = LimitAnalysis(arch)
     weight = np.radians(embrace) * 10.0 * 1.5 * 2000.0 * GRAVITY
-    low, high = limit.thrust(0)
-    assert limit.horizontal(low, 0) / weight == pytest.approx(least, abs=5.1e-5)
-    assert limit.horizontal(high, 0) / weight == pytest.approx(most, abs=5.1e-5)
+    chain = arch.chains["arch"]
+    low, high = limit.thrust(chain)
+    assert thrust_of(arch, low, chain) / weight == pytest.approx(least, abs=5.1e-5)
+    assert thrust_of(arch, high, chain) / weight == pytest.approx(most, abs=5.1e-5)
 
 
 FRICTION = {

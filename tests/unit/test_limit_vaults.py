@@ -14,7 +14,7 @@ from extrados.building.templates.arch import make_arch
 from extrados.building.templates.vault import make_vault
 from extrados.limit.answer import assess
 from extrados.limit.fracture import crack, fractured_collapse, section_distance
-from extrados.limit.graphic import pier_line
+from extrados.limit.graphic import pier_line, thrust_of
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.supports import support_movement
@@ -261,7 +261,8 @@ def test_support_movement(embrace: float, direction: tuple) -> None:
     arch = make_arch(10.0, 1.5, embrace, 28)
     states = support_movement(arch, direction, 400)
     limit = LimitAnalysis(arch)
-    least, most = (limit.horizontal(s, 0) for s in limit.thrust(0))
+    chain = arch.chains["arch"]
+    least, most = (thrust_of(arch, s, chain) for s in limit.thrust(chain))
     if direction[1] == 0.0:  # spreading calls up the least thrust, closing the greatest
         assert states[0].force[0] == pytest.approx(least if direction[0] > 0 else most, rel=1e-9)
     unit = np.array(direction) / np.hypot(*direction)

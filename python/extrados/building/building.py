@@ -61,16 +61,26 @@ class Building:
     def blocks(self) -> Assembly:
         """Stones and joints."""
         return self._view(
-            "blocks", (self.structure, self.material.density),
-            lambda: self._structure().assembly(self.material.density, self.folder),
+            "blocks", (self.structure, self.material.density, *self.materials.items()), self._blocks
         )  # fmt: skip
+
+    def _blocks(self) -> Assembly:
+        structure, density = self._structure(), self.material.density
+        named = {name: material.density for name, material in self.materials.items()}
+        return structure.weighed(structure.assembly(density, self.folder), density, named)
+
+    def pier_blocks(self) -> Assembly:
+        """A wall as few rigid bodies: piers between its openings, spandrels over them."""
+        return self._view(
+            "piers", (self.structure, self.material.density), lambda: self._structure().piers(self.material.density)
+        )
 
     def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
         """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches
         what falls."""
         worn = self.joints.worn_corners
         return self._view(
-            "rigid", (self.structure, self.material.density, worn, groups, floor),
+            "rigid", (self.structure, self.material.density, *self.materials.items(), worn, groups, floor),
             lambda: rigid_bodies(self.blocks(), groups, worn, floor),
         )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Places on a wall: edges and ranges of x and y."""
+"""Places on a wall: edges, ranges of x and y, openings."""
 
 from typing import Annotated, Any, Literal
 
@@ -45,4 +45,17 @@ class Placed(Table):
     def _somewhere(self) -> "Placed":
         if self.edge is None and self.x is None and self.y is None:
             raise ValueError("the place is missing: expected edge, x or y")
+        return self
+
+
+class Opening(Table):
+    """A rectangle cut out: an opening, or a notch where it reaches an edge."""
+
+    x: Range = key(about="[from, to]")
+    y: Range = key(about="[from, to]")
+
+    @model_validator(mode="after")
+    def _area(self) -> "Opening":
+        if self.x[0] == self.x[1] or self.y[0] == self.y[1]:
+            raise ValueError("an opening needs a width and a height: expected x = [from, to] and y = [from, to]")
         return self

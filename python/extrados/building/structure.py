@@ -27,3 +27,11 @@ class Structure(Table):
         Raises BadGeometry with the part and the bound, NoView where the kind has no stones.
         """
         raise NoView(self.lacks["blocks"])
+
+    def weighed(self, made: "Assembly", density: float, densities: Mapping[str, float]) -> "Assembly":
+        """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""
+        return made
+
+    def piers(self, density: float) -> "Assembly":
+        """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""
+        raise NoView(f"a structure of kind '{self.kind}' has no piers")

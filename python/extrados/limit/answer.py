@@ -1,18 +1,27 @@
 """The whole answer of limit analysis about an assembly from one call."""
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.graphic import force_polygon, funicular, pier_line
 from extrados.limit.loads import Loads
-from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoEquilibrium, State
+from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.systems import Sparse
 
-MOST_LINES = 12
+Found = TypeVar("Found")
+LEVEL = 1e-6  # of a unit normal: a joint that leans this little bears nothing
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
+CENTRAL = 1e-6  # of the joints' length: a line this near to all middles runs through them
+
+
+def safety_factor(part: float) -> float:
+    """One over the least part of the joints that holds a thrust line; infinite where all their middles do."""
+    return np.inf if part < CENTRAL else 1.0 / part
 
 
 class CannotStand(ValueError):
@@ -26,7 +35,8 @@ class Answer:
     collapse_state is the state at collapse with the free part of the line at its most central; least and
     most are the states of least and greatest thrust of each chain; central the most central upright line,
     held by `part` of the joints' length (None and NaN for a wall of many loops, where this takes many large
-    programmes). touching: joints whose end the line touches without a hinge.
+    programmes). touching: joints whose end the line touches without a hinge. warnings: what could not be found
+    beside the collapse load; least and most then lack a chain, or central is None.
     """
 
     assembly: Assembly
@@ -39,6 +49,7 @@ class Answer:
     most: dict[str, State]
     central: State | None
     part: float
+    warnings: tuple[str, ...] = ()
 
     @property
     def gamma(self) -> float:
@@ -58,7 +69,7 @@ class Answer:
 
         Infinite where the line can run through the middles of all joints.
         """
-        return np.inf if self.part < 1e-9 else 1.0 / self.part
+        return safety_factor(self.part)
 
     @property
     def touching(self) -> list[int]:
@@ -78,9 +89,9 @@ class Answer:
         """Thrust lines (k, 2) [m]: along each chain, and down each block that stands on the ground."""
         points = state.points(self.assembly)
         lines = {name: points[joints] for name, joints in self.assembly.chains.items()}
-        standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
-        if not self.assembly.chains and len(standing) > MOST_LINES:
+        if not lines:
             return lines  # the first course of a wall: a line down each stone says nothing
+        standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
         for block in sorted(standing - {b for j in self.assembly.chains.values() for b in self._inner(j)}):
             line = pier_line(self.assembly, self.loads, state, block)
             if len(line):
@@ -109,10 +120,27 @@ def assess(
     loads: Loads | None = None,
     limit: LimitAnalysis | None = None,
 ) -> Answer:
-    """Everything limit analysis has to say; CannotStand where no line is admissible upright."""
+    """Everything limit analysis has to say; CannotStand where no line is admissible upright.
+
+    The collapse loads are the answer: thrusts and central lines that the solver gives up on become warnings.
+    """
     limit = limit or LimitAnalysis(assembly, friction, strength=strength, associated=associated, loads=loads)
+    warnings: list[str] = []
+
+    def beside(what: str, find: Callable[[], Found], gives_up: tuple[type[Exception], ...]) -> Found | None:
+        try:
+            return find()
+        except gives_up as error:
+            warnings.append(f"{what} is left out: {error}")
+            return None
+
     try:
-        ends = {name: limit.thrust(joints[0]) for name, joints in assembly.chains.items()}
+        thrusts = {
+            name: beside(
+                f"the least and greatest thrust of the {name}", lambda joints=joints: limit.thrust(joints), (NoAnswer,)
+            )
+            for name, joints in assembly.chains.items()
+        }
         state, mechanism = limit.collapse(1)
         back, back_mechanism = limit.collapse(-1)
         if not back.gamma <= 0.0 <= state.gamma:
@@ -121,23 +149,32 @@ def assess(
         raise
     except NoEquilibrium:
         raise CannotStand(why_not(limit)) from None
+    ends = {name: pair for name, pair in thrusts.items() if pair is not None}
     moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
-    if isinstance(limit.system, Sparse):
-        return Answer(
-            assembly, limit.loads, state, mechanism, back, back_mechanism,
-            {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()}, None, np.nan,
-        )  # fmt: skip
-    drawn = limit.recentred(state, moving)
-    central, part = limit.central(start=[state for pair in ends.values() for state in pair])
+    drawn, central = state, None
+    if not isinstance(limit.system, Sparse):
+        # The structure stands: that no line is found now is a matter of rounding too.
+        rounding = (NoAnswer, NoEquilibrium)
+        drawn = (
+            beside("the most central course of the line at collapse", lambda: limit.recentred(state, moving), rounding)
+            or state
+        )
+        start = [state for pair in ends.values() for state in pair]
+        central = beside("the most central line upright", lambda: limit.central(start=start), rounding)
     return Answer(
         assembly, limit.loads, drawn, mechanism, back, back_mechanism,
-        {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()}, central, part,
+        {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()},
+        *(central or (None, np.nan)), tuple(warnings),
     )  # fmt: skip
 
 
 def why_not(limit: LimitAnalysis) -> str:
-    """Why no thrust line is admissible upright: the joints it leaves, and by how much."""
+    """Why no thrust line is admissible upright: stones with nothing below, or the joints it leaves and by how much."""
     assembly = limit.assembly
+    if hanging := _hanging(assembly):
+        names = [assembly.block_names[i] for i in hanging]
+        more = f" and {len(names) - 4} more" if len(names) > 4 else ""
+        return f"nothing bears {', '.join(names[:4])}{more} from below"
     try:
         interval = sorted(limit.collapse(d)[0].gamma for d in (1, -1))
     except NoEquilibrium:
@@ -165,6 +202,13 @@ def why_not(limit: LimitAnalysis) -> str:
         f"no thrust line stays inside it: the joints would have to be {part:.4f} times as long about their middles, "
         f"the line leaves first at {', '.join(worst[:6])}"
     )
+
+
+def _hanging(assembly: Assembly) -> list[int]:
+    """Stones that no joint bears from below: they touch others at upright joints and from above only."""
+    up = assembly.normal[:, 1]
+    borne = np.concatenate([assembly.a[up > LEVEL], assembly.b[up < -LEVEL]])
+    return sorted(set(range(len(assembly.mass))) - set(borne.tolist()))
 
 
 def _slides(limit: LimitAnalysis) -> str:

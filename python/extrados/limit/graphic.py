@@ -14,15 +14,25 @@ def force_polygon(assembly: Assembly, state: State, joints: list[int]) -> np.nda
 
     Their tips, joined, are the load line: from one tip to the next leads the load of the voussoir between.
     """
-    force = state.force(assembly)[joints]
+    return state.force(assembly)[joints] * senses(assembly, joints)[:, None]
+
+
+def thrust_of(assembly: Assembly, state: State, joints: list[int]) -> float:
+    """Horizontal thrust of a chain across the first of its joints [N]; negative where it would pull."""
+    return float(force_polygon(assembly, state, joints)[0, 0])
+
+
+def senses(assembly: Assembly, joints: list[int]) -> np.ndarray:
+    """+1 for each joint of a chain whose force on block a is what its left part puts on its right part, else -1."""
     to_right = assembly.middle[joints[-1], 0] - assembly.middle[joints[0], 0] >= 0.0
     towards_a = np.array([_leads_to(assembly, joints, i) for i in range(len(joints))])
-    sign = np.where(towards_a == to_right, 1.0, -1.0)
-    return force * sign[:, None]
+    return np.where(towards_a == to_right, 1.0, -1.0)
 
 
 def _leads_to(assembly: Assembly, joints: list[int], i: int) -> bool:
     """True where block a of the i-th joint of a chain is the next along it."""
+    if len(joints) == 1:
+        return int(assembly.a[joints[0]]) != GROUND
     if i + 1 < len(joints):
         j = joints[i + 1]
         return (

@@ -53,6 +53,7 @@ def collapse_load(system: Sparse, friction: np.ndarray, direction: int) -> Inter
     return Interior(gamma, corners, -y.reshape(-1, 3), -(corner.T @ y).reshape(-1, 3))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # an iteration that runs away is seen by its numbers and given up
 def _mehrotra(
     a: sparse.csr_array, at: sparse.csr_array, live: np.ndarray, right: np.ndarray, direction: int
 ) -> tuple[np.ndarray, float, np.ndarray] | None:

@@ -1,9 +1,12 @@
 """The questions of limit analysis put to an assembly: collapse, standing, thrust, safety (thesis chapter 3)."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.equilibrium import spanning_tree
+from extrados.limit.graphic import senses
 from extrados.limit.interior import Interior, collapse_load
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.solver import BOUND, Immovable, NoAnswer, NoEquilibrium, Programme, Solution
@@ -17,6 +20,32 @@ LAW = 1e-9
 ROUNDS = 300
 # Joints that move less than this part of the fastest block are at rest to an interior-point method.
 INNER_REST = 1e-5
+
+
+# Of the total load: joints pressed by less carry nothing but rounding.
+CARRIES = 1e-7
+# Of the joints' length: where the search for the most central line may end.
+SETTLED = 1e-9
+
+# Of the joints' length: to which the most central line of a wall is found.
+LEAST_PART = 1e-3
+
+
+def _mixed(one: State, two: State, gamma: float, part: float) -> State | None:
+    """The state at gamma between two of joints cut down to a part; None where gamma does not lie between theirs."""
+    if not two.gamma <= gamma <= one.gamma:
+        return None
+    share = (gamma - two.gamma) / (one.gamma - two.gamma)
+    normal = share * one.normal + (1.0 - share) * two.normal
+    lean = share * one.normal * (one.position - 0.5) + (1.0 - share) * two.normal * (two.position - 0.5)
+    position = 0.5 + part * lean / np.maximum(normal, 1e-300)
+    return State(gamma, normal, share * one.shear + (1.0 - share) * two.shear, position)
+
+
+def _eccentric(lean: np.ndarray, normal: np.ndarray) -> float:
+    """Greatest |n_q - n_p| / N over the joints that carry anything."""
+    carries = normal > CARRIES
+    return float((np.abs(lean[carries]) / normal[carries]).max()) if carries.any() else 0.0
 
 
 class LimitAnalysis:
@@ -185,27 +214,28 @@ class LimitAnalysis:
             return False
         return True
 
-    def thrust(self, joint: int, gamma: float = 0.0) -> tuple[State, State]:
-        """States of least and greatest horizontal force across `joint` at a fixed gamma."""
-        a = self.assembly
+    def thrust(self, joints: list[int], gamma: float = 0.0) -> tuple[State, State]:
+        """States of least and greatest horizontal thrust of a chain, across the first of its joints, at a fixed gamma."""
+        a, joint = self.assembly, joints[0]
+        sense = senses(a, joints)[0]
         corner_cost = np.zeros((len(a.a), 3))
         corner_cost[joint] = a.normal[joint, 0], a.normal[joint, 0], a.tangent[joint, 0]
-        cost = self.system.cost(corner_cost * (1.0 if a.normal[joint, 0] >= 0.0 else -1.0))
+        cost = self.system.cost(corner_cost * sense)
         found = [self.optimise(sign * cost, (gamma, gamma)) for sign in (1.0, -1.0)]
         least, greatest = (self._state(solution, corners) for solution, _, corners in found)
         return least, greatest
-
-    def horizontal(self, state: State, joint: int) -> float:
-        """Horizontal force across a joint in a state [N]."""
-        return abs(float(state.force(self.assembly)[joint, 0]))
 
     def central(self, gamma: float = 0.0, start: list[State] | None = None) -> tuple[State, float]:
         """The most central state at a given gamma, and the least part of the joints' length that holds it.
 
         The part is measured about the middle of each joint; its inverse is the geometric safety factor, and
         above one it says by how much the joints would have to grow. Dinkelbach's iteration on
-        max |n_q - n_p| / N, from the mean of admissible states where some are given. Without crushing.
+        max |n_q - n_p| / N over the joints that carry anything, from the mean of admissible states where some
+        are given; where it creeps, as in walls whose head joints come to carry nothing, by halving. Without
+        crushing.
         """
+        if isinstance(self.system, Sparse):
+            return self._central_of_wall(gamma)
         m = len(self.assembly.a)
         cost = np.zeros(self.system.unknowns + 1)
         cost[-1] = -1.0
@@ -215,11 +245,11 @@ class LimitAnalysis:
             fixed = self._cone if fixed is None else fixed + self._cone
         part, share = 1.0, np.ones(m)
         if start:
-            share = np.maximum(sum(s.normal for s in start) / len(start) / self.loads.scale, 1e-12)
+            normal = sum(s.normal for s in start) / len(start) / self.loads.scale
             lean = sum(s.normal * (2.0 * s.position - 1.0) for s in start) / len(start) / self.loads.scale
-            part = float((np.abs(lean) / share).max())
-        programme = None
-        for _ in range(50):
+            part, share = _eccentric(lean, normal), np.maximum(normal, CARRIES)
+        programme, best, low, high = None, None, 0.0, np.inf
+        for _ in range(ROUNDS):
             rows = self._rows(self._joints, (part + 1.0, part - 1.0, 0.0)) + self._rows(
                 self._joints, (part - 1.0, part + 1.0, 0.0)
             )
@@ -231,12 +261,49 @@ class LimitAnalysis:
                 programme.pass_rows(rows, slack)
             solution = programme.minimise(cost, (gamma, gamma))
             corners = self.system.corners(solution.x[:-1])
-            normal = np.maximum(corners[:, 0] + corners[:, 1], 1e-12)
-            new = float((np.abs(corners[:, 1] - corners[:, 0]) / normal).max())
-            if abs(part - new) < 1e-9:
-                return self._unclipped(solution, corners), new
-            part, share = new, normal
+            normal = corners[:, 0] + corners[:, 1]
+            new = _eccentric(corners[:, 1] - corners[:, 0], normal)
+            if solution.x[-1] < -SETTLED:
+                low = part
+            creeps = best is not None and new > 0.5 * (low + high)
+            if new < high:
+                best, high, share = self._unclipped(solution, corners), new, np.maximum(normal, CARRIES)
+            if abs(part - new) < SETTLED or high - low < SETTLED:
+                return best, high
+            part = 0.5 * (low + high) if creeps else high
         raise NoAnswer("the most central thrust line did not settle")
+
+    def _central_of_wall(self, gamma: float) -> tuple[State, float]:
+        """The same of a wall, by halving: joints cut down to a part about their middles bear gamma, or do not.
+
+        The state is the mixture, at gamma, of the two at which the wall of shorter joints collapses.
+        """
+
+        def held(part: float) -> State | None:
+            a = self.assembly
+            half = 0.5 * part * (a.q - a.p)
+            limit = LimitAnalysis(
+                replace(a, p=a.middle - half, q=a.middle + half), self.friction, loads=self.loads, form="sparse"
+            )
+            try:
+                ends = [limit.collapse(direction)[0] for direction in (1, -1)]
+            except NoEquilibrium:
+                return None
+            return _mixed(*ends, gamma, part)
+
+        low, high = 0.0, 1.0
+        best = held(high)
+        if best is None:
+            raise NoEquilibrium("no admissible thrust line")
+        trial = LEAST_PART
+        while high - low > LEAST_PART:
+            state = held(trial)
+            if state is None:
+                low = trial
+            else:
+                best, high = state, trial
+            trial = 0.5 * (low + high)
+        return best, high if high > LEAST_PART else 0.0
 
     def _unclipped(self, solution: Solution, corners: np.ndarray) -> State:
         """State whose line may leave the joints: positions below 0 or above 1."""

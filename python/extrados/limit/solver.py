@@ -90,8 +90,7 @@ class Programme:
         """Minimise cost @ x with gamma in the given range."""
         self._solver.changeColsCost(self.columns, self._index, cost)
         self._solver.changeColBounds(self._gamma, *gamma)
-        self._solver.run()
-        status = self._solver.getModelStatus()
+        status = self._solved()
         if status in _INFEASIBLE:
             raise NoEquilibrium("no admissible thrust line")
         if status != highspy.HighsModelStatus.kOptimal:
@@ -101,8 +100,27 @@ class Programme:
         e = self.system.equations
         return Solution(np.array(solution.col_value), dual[e:], dual[:e], self._solver.getObjectiveValue())
 
+    def _solved(self) -> highspy.HighsModelStatus:
+        """Status of the solve from the last basis; where that ends without a word, from scratch by other methods."""
+        self._solver.run()
+        status = self._solver.getModelStatus()
+        if status in _DECIDED:
+            return status
+        kept = self._solver.getOptions()
+        for method in ("simplex", "ipm"):
+            self._solver.clearSolver()
+            self._solver.setOptionValue("presolve", "on")
+            self._solver.setOptionValue("solver", method)
+            self._solver.run()
+            status = self._solver.getModelStatus()
+            if status in _DECIDED:
+                break
+        self._solver.passOptions(kept)
+        return status
+
 
 _INFEASIBLE = (highspy.HighsModelStatus.kInfeasible, highspy.HighsModelStatus.kUnboundedOrInfeasible)
+_DECIDED = (highspy.HighsModelStatus.kOptimal, *_INFEASIBLE)
 
 
 @lru_cache(maxsize=4)

@@ -5,12 +5,13 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 
 from extrados.plots import style
 from extrados.results.limit import Hinge, Tilt
 from extrados.results.store import Stored
 
+MOST_FLOW = 3.0  # points: width of the greatest force between stones
 HATCH = "#cfc6b2"
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
@@ -93,6 +94,21 @@ def thrust_lines(ax: Axes, lines: dict[str, np.ndarray], colour: str | None = No
         ax.plot(*line.T, color=colour or style.THRUST, label=label if i == 0 else "_", zorder=3, **options)
 
 
+def compression(ax: Axes, run: Stored, name: str, state: str, label: str) -> None:
+    """Where forces flow through stones that form no chain: from each stone to its joints, as thick as they press."""
+    centroid, point, normal = (run.array(name, what) for what in ("centroid", f"{state}_point", f"{state}_normal"))
+    blocks = run.array(name, "joint_block")
+    ends = np.where((blocks >= 0)[..., None], centroid[blocks], point[:, None])
+    width = MOST_FLOW * normal / max(float(normal.max()), 1e-300)
+    shown = np.flatnonzero(width > 0.01 * MOST_FLOW)
+    lines = [[end, point[j]] for j in shown for end in ends[j]]
+    ax.add_collection(
+        LineCollection(
+            lines, linewidths=np.repeat(width[shown], 2), colors=style.THRUST, capstyle="round", zorder=3, label=label
+        )
+    )
+
+
 def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] = CHAIN_COLOURS) -> None:
     """Force polygons, one colour each: rays from the common pole and load lines."""
     for i, (name, rays) in enumerate(polygons.items()):
@@ -141,7 +157,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             )
             axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2)
         else:
-            axes[0].plot(*run.array(name, "collapse_point").T, ".", color=style.THRUST, markersize=3, zorder=3)
+            compression(axes[0], run, name, "collapse", "compression")
         hinge_marks(axes[0], r.hinges)
         overall_dimensions(axes[0], blocks)
         axes[0].set_title(f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)")
@@ -230,30 +246,34 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     r = run[name]
     blocks = outlines(run, name)
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
-    lines = {"least": r.least, "central": r.central, "most": r.most}
-    with style.figure(12.0, 4.6, columns=2, width_ratios=[1.4, 1]) as (fig, (ax, forces)):
+    lines_of = {which: line for which in colours if (line := getattr(r, which)) is not None}
+    colours = {which: colours[which] for which in lines_of}
+    lines = {which: paths(run, name, f"{which}_line") for which in colours}
+    arched = r.chain is not None
+    sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
+    with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
         stone(ax, blocks)
         ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
         for which, colour in colours.items():
-            thrust_lines(
-                ax, paths(run, name, f"{which}_line"), colour, f"{which}: {lines[which].horizontal_kN_per_m:.4g} kN/m"
-            )
+            if arched:
+                label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m"
+                thrust_lines(ax, lines[which], colour, label)
+            else:
+                compression(ax, run, name, which, f"{which} state: compression")
         overall_dimensions(ax, blocks)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
-        ax.set_title(f"Thrust lines at {r.gamma_g:g} g, safety factor {r.geometric_safety_factor:.2f}")
+        safety = r.geometric_safety_factor
+        told = f", safety factor {safety:.2f}" if safety is not None and np.isfinite(safety) else ""
+        ax.set_title(f"{'Thrust lines' if arched else 'Compression'} at {r['gamma_g']:g} g{told}")
         style.section_axes(ax)
-        polygon(
-            forces,
-            {which: paths(run, name, f"{which}_polygon")[r.chain] for which in colours},
-            tuple(colours.values()),
-        )
-        forces.set_title(f"Force polygons of the {r.chain}")
-        found = [
-            (
-                style.save(fig, folder, f"{name}-lines"),
-                "Thrust lines of least, greatest and most central thrust, and their force polygons.",
-            )
-        ]
+        for forces in others:
+            polygons = {which: paths(run, name, f"{which}_polygon")[r.chain] for which in colours}
+            polygon(forces, polygons, tuple(colours.values()))
+            forces.set_title(f"Force polygons of the {r['chain']}")
+        caption = "Thrust lines of least, greatest and most central thrust, and their force polygons."
+        if not arched:
+            caption = "The most central state: lines from stone to stone, as thick as the joints press."
+        found = [(style.save(fig, folder, f"{name}-lines"), caption)]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
             ax.plot(run.array(name, f"{which}_friction"), color=colour, marker=".", markersize=3, label=which)

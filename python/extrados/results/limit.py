@@ -103,9 +103,9 @@ class Tilt(KindResults):
 class ThrustLine(ResultModel):
     """One admissible thrust line."""
 
-    horizontal_N: float = fact("horizontal thrust at the left springing", "N")
-    horizontal_kN_per_m: float = fact("the same per metre of depth", "kN/m")
-    over_weight: float = fact("the same over the weight of the structure")
+    horizontal_N: float = maybe("horizontal thrust of the chain at its left springing, or its base", "N")
+    horizontal_kN_per_m: float = maybe("the same per metre of depth", "kN/m")
+    over_weight: float = maybe("the same over the weight of the structure")
     required_friction: float | None = fact("greatest coefficient of friction it needs")
     required_friction_joint: str = fact("the joint that needs it")
     greatest_eccentricity_ratio: float = fact("greatest distance from the middle of a joint over its length")
@@ -116,15 +116,17 @@ class Thrust(KindResults):
     """thrust: admissible thrust lines at a given horizontal acceleration."""
 
     gamma_g: float = fact("acceleration to +x at which the lines are drawn", "g")
-    chain: str = fact("the arch whose thrust is least and greatest")
+    chain: str | None = fact("the arch or stack whose thrust is least and greatest; null where there is none")
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
-    geometric_safety_factor: float | None = fact("one over the least part of the joints that holds a thrust line")
+    geometric_safety_factor: float | None = fact(
+        "one over the least part of the joints that holds a thrust line; null where one runs through all middles"
+    )
     least_part_of_joints: float = fact("the part of the joints, about their middles, that the most central line needs")
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
-    least: ThrustLine = fact("the line of least thrust")
-    most: ThrustLine = fact("the line of greatest thrust")
+    least: ThrustLine = maybe("the line of least thrust")
+    most: ThrustLine = maybe("the line of greatest thrust")
     central: ThrustLine = fact("the most central line")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -138,7 +140,7 @@ class Thrust(KindResults):
 class MovingLoad(KindResults):
     """moving-load: the load that brings an arch down, at every place along its span."""
 
-    chain: str = fact("the arch that the load crosses")
+    chain: str | None = fact("the arch that the load crosses; null where it crosses the whole top")
     collapse_load_N: float = fact("least load that brings it down", "N")
     collapse_load_kN_per_m: float = fact("the same per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle where that is", "m")

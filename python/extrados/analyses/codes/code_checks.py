@@ -7,6 +7,7 @@ import numpy as np
 from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, ntc, piers, west
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
+from extrados.building.rockers.block import WALLS
 from extrados.building.templates.block import BlockAssembly
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
@@ -21,8 +22,8 @@ def run(context: Context, options: CodeChecks) -> Result:
     structure = context.deck.structure
     result = Result("code-checks")
     demands: dict[str, Any] = {}
-    if structure.kind == "panel":
-        lines = _panel(context, options)
+    if structure.kind in WALLS:
+        lines = _wall(context, options)
     else:
         block = context.building.rocker().model.block
         lines, demands = _block(context, options, block)
@@ -108,18 +109,19 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     return lines, beside
 
 
-def _panel(context: Context, options: CodeChecks) -> list[Line]:
-    """The pier rules for a finite-element wall without openings, with its material's compressive strength."""
-    panel = context.deck.structure
+def _wall(context: Context, options: CodeChecks) -> list[Line]:
+    """The pier rules for a wall without openings, with its material's compressive strength."""
+    wall = context.deck.structure
     if options.axial_load is None:
-        raise Refused("a panel is checked as a pier: give axial_load")
-    if panel.width is None or panel.openings:
+        raise Refused("a wall is checked as a pier: give axial_load")
+    pier = context.building.pier_blocks()
+    if len(pier.mass) > 1:
         raise Refused(
             "the pier rules are for a rectangle without openings: check each pier between openings as its own panel"
         )
-    thickness = options.thickness or panel.thickness
-    weight = context.building.material.density * panel.width * panel.height * thickness * GRAVITY
-    return _pier(context, options, panel.width, panel.height, thickness, weight)
+    thickness = options.thickness or pier.depth
+    weight = float(pier.mass[0]) * GRAVITY * thickness / pier.depth
+    return _pier(context, options, *wall.size, thickness, weight)
 
 
 def _pier(

@@ -13,7 +13,7 @@ class CodeChecks(BuildingAnalysis):
     kind: Literal["code-checks"]
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.cohesion", "joints.restitution")
     view: ClassVar = ""
-    structures: ClassVar = ("block", "column", "panel")
+    structures: ClassVar = ("block", "column", "panel", "brickwork")
     peak_acceleration: Acceleration | None = key(None, "demand; default that of the motion", gt=0)
     peak_velocity: float | None = key(None, "demand [m/s]; default that of the motion", gt=0)
     behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")

@@ -22,6 +22,14 @@ from extrados.results.model import Array
 GAP = 1e-8
 
 
+def chain_of(assembly: Assembly, name: str | None) -> str | None:
+    """The chain of a name, the first where none is given, None where the assembly has no chain."""
+    if name is not None and name not in assembly.chains:
+        known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no stones form one here"
+        raise Refused(f"chain: there is no '{name}'; {known}")
+    return name or next(iter(assembly.chains), None)
+
+
 def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
     """The block with the highest surface at x, and that height [m]."""
     best, height = -1, -np.inf
@@ -111,6 +119,12 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
             np.cumsum([0, *map(len, outlines)]), ("block_edge",), "", "first vertex of each block, and the end"
         ),
         "centroid": Array(assembly.centroid, ("block", "axis"), "m", "centroids of the blocks"),
+        "joint_block": Array(
+            np.column_stack([assembly.a, assembly.b]),
+            ("joint", "joint_side"),
+            "",
+            "blocks on both sides, -1 the ground",
+        ),
     }
 
 

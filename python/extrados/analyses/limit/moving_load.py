@@ -6,10 +6,11 @@ import numpy as np
 
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.common import answer_of, block_under, geometry_arrays, loads_of
+from extrados.analyses.limit.common import answer_of, block_under, chain_of, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import MovingLoad
 from extrados.analyses.limit.variation import signature, spoken
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.chains import is_stack
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
@@ -73,20 +74,26 @@ class Places:
         }
 
 
+def _way(assembly: Assembly, chain: str | None) -> tuple[float, float]:
+    """From where to where a load crosses [m]: the extrados of a chain, or the whole top where there is no arch."""
+    if chain is not None and not is_stack(assembly, assembly.chains[chain]):
+        ends = assembly.q[[assembly.chains[chain][k] for k in (0, -1)], 0]
+        return float(ends.min()), float(ends.max())
+    points = np.concatenate(assembly.outlines)[:, 0]
+    return float(points.min()), float(points.max())
+
+
 def run(context: Context, options: MovingLoad) -> Result:
     """Collapse load over place; the most dangerous place with its thrust line and mechanism."""
     assembly = context.building.blocks()
-    chain = options.chain or next(iter(assembly.chains))
-    if chain not in assembly.chains:
-        raise Refused(f"chain: there is no '{chain}'; there are {', '.join(assembly.chains)}")
+    chain = chain_of(assembly, options.chain)
     answer_of(context.building, options)  # refuses what cannot stand
-    joints = assembly.chains[chain]
-    low, high = sorted((assembly.q[joints[0], 0], assembly.q[joints[-1], 0]))
+    low, high = _way(assembly, chain)
     axles = np.array(options.axles)
     shares = np.array(options.shares or np.ones(len(axles)))
     shares = shares / shares.sum()
     dead = loads_of(assembly, options).dead
-    # A hair inside, so that the ends still lie on a voussoir.
+    # A hair inside, so that the ends still lie on a stone.
     places = np.linspace(low, high + np.ptp(axles), options.count)
     places[0], places[-1] = places[0] + 1e-9 * (high - low), places[-1] - 1e-9 * (high - low)
     job = Places(
@@ -128,7 +135,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         )
     }
     result.answer = (
-        f"The load that brings the {chain} down is least, {capacity[k] / assembly.depth / 1e3:.4g} kN per metre of depth, when its "
+        f"The load that brings the {chain or 'structure'} down is least, {capacity[k] / assembly.depth / 1e3:.4g} kN per metre of depth, when its "
         f"first axle stands at x = {places[k]:.3g} m ({100 * (places[k] - low) / (high - low):.0f} % of the span)."
     )
     if options.force is not None:

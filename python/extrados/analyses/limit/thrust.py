@@ -4,6 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import (
+    chain_of,
     geometry_arrays,
     graphic_arrays,
     limit_of,
@@ -12,7 +13,9 @@ from extrados.analyses.limit.common import (
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
 from extrados.building.geometry.assembly import Assembly
-from extrados.limit.answer import CannotStand, assess
+from extrados.building.geometry.chains import is_stack
+from extrados.limit.answer import Answer, CannotStand, assess, safety_factor
+from extrados.limit.graphic import thrust_of
 from extrados.limit.programme import NoEquilibrium, State
 from extrados.results import limit as out
 from extrados.results.model import Result, TableData
@@ -22,31 +25,28 @@ def run(context: Context, options: Thrust) -> Result:
     """Least, greatest and most central thrust line, each with its force polygon."""
     assembly: Assembly = context.building.blocks()
     limit = limit_of(context.building, options)
-    chain = options.chain or next(iter(assembly.chains))
-    if chain not in assembly.chains:
-        raise Refused(f"chain: there is no '{chain}'; there are {', '.join(assembly.chains)}")
-    springing = assembly.chains[chain][0]
+    chain = chain_of(assembly, options.chain)
     try:
         answer = assess(assembly, limit=limit)
     except CannotStand as error:
         raise Refused(f"the structure cannot stand under its own weight: {error}") from None
     low, high = answer.back_state.gamma, answer.gamma
+    ends = {}
     try:
-        least, most = limit.thrust(springing, options.gamma)
-        central, part = limit.central(options.gamma, start=[least, most])
+        if chain is not None:
+            ends = dict(zip(("least", "most"), limit.thrust(assembly.chains[chain], options.gamma), strict=True))
+        central, part = limit.central(options.gamma, start=list(ends.values()))
     except NoEquilibrium:
         raise Refused(
             f"at {options.gamma:g} g no thrust line is admissible: the structure bears {low:.4f} to {high:.4f} g"
         ) from None
-    states = {"least": least, "most": most, "central": central}
+    states = {**ends, "central": central}
+    safety = safety_factor(part)
     result = Result("thrust")
     lines = {}
     for name, state in states.items():
-        thrust = limit.horizontal(state, springing)
         lines[name] = out.ThrustLine(
-            horizontal_N=thrust,
-            horizontal_kN_per_m=thrust / assembly.depth / 1e3,
-            over_weight=thrust / answer.loads.scale,
+            **_horizontal(answer, state, chain),
             required_friction=state.friction.max(),
             required_friction_joint=assembly.joint_names[int(state.friction.argmax())],
             greatest_eccentricity_ratio=np.abs(state.position - 0.5).max(),
@@ -57,7 +57,7 @@ def run(context: Context, options: Thrust) -> Result:
         gamma_g=options.gamma,
         chain=chain,
         admissible_interval_g=[low, high],
-        geometric_safety_factor=1.0 / part,
+        geometric_safety_factor=safety,
         least_part_of_joints=part,
         weight_N=answer.loads.scale,
         depth_m=assembly.depth,
@@ -70,15 +70,46 @@ def run(context: Context, options: Thrust) -> Result:
     for name, state in states.items():
         result.arrays.update(state_arrays(assembly, name, state, about[name]))
         result.arrays.update(graphic_arrays(answer, name, state, about[name]))
-    needed = np.inf if r.central.required_friction is None else r.central.required_friction
-    result.answer = (
-        f"At {options.gamma:g} g the thrust of the {chain} lies between {r.least.horizontal_kN_per_m:.4g} and "
-        f"{r.most.horizontal_kN_per_m:.4g} kN per metre of depth at its left springing; the most central line "
-        f"({r.central.horizontal_kN_per_m:.4g} kN/m) keeps to the middle {100 * part:.1f} % of the joints "
-        f"(geometric safety factor {1 / part:.2f}) and needs a friction of {needed:.2f}. "
-        f"Lines are admissible from {low:.4f} to {high:.4f} g."
-    )
+    result.warnings += answer.warnings
+    result.answer = _words(r, assembly)
     return result
+
+
+def _horizontal(answer: Answer, state: State, chain: str | None) -> dict[str, float]:
+    """Horizontal thrust of a chain; nothing where there is none."""
+    if chain is None:
+        return {}
+    thrust = thrust_of(answer.assembly, state, answer.assembly.chains[chain])
+    return {
+        "horizontal_N": thrust,
+        "horizontal_kN_per_m": thrust / answer.assembly.depth / 1e3,
+        "over_weight": thrust / answer.loads.scale,
+    }
+
+
+def _words(r: out.Thrust, assembly: Assembly) -> str:
+    part, safety, central = r.least_part_of_joints, r.geometric_safety_factor, r.central
+    keeps = (
+        "can run through the middles of all joints"
+        if safety is None
+        else f"keeps to the middle {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
+    )
+    needed = np.inf if central.required_friction is None else central.required_friction
+    needs = f"{keeps} and needs a friction of {needed:.2f}"
+    if r.chain is None:
+        text = (
+            f"At {r.gamma_g:g} g the most central state {needs}. No stones form an arch or a stack here, so no chain has "
+            "a least and a greatest thrust."
+        )
+    else:
+        least, most, middle = (line.horizontal_kN_per_m for line in (r.least, r.most, r.central))
+        where = "base" if is_stack(assembly, assembly.chains[r.chain]) else "left springing"
+        text = (
+            f"At {r.gamma_g:g} g the thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre of "
+            f"depth at its {where}; the most central line ({middle:.4g} kN/m) {needs}."
+        )
+    low, high = r.admissible_interval_g
+    return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g."
 
 
 def _table(assembly: Assembly, state: State) -> TableData:

@@ -17,6 +17,7 @@ from extrados.building.building import Building
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
+from extrados.limit.graphic import thrust_of
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import NoEquilibrium
 from extrados.results import limit as out
@@ -24,7 +25,7 @@ from extrados.results.model import Array, Result
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 
-MOST_NAMED = 12  # hinges and sliding joints told in words
+MOST_NAMED = 6  # hinges and sliding joints told in words
 
 #: Above this the joints of masonry slide
 USUAL_FRICTION = 0.7
@@ -75,13 +76,14 @@ def run(context: Context, options: Tilt) -> Result:
             "the mechanism carried on: places of the centroids, rotations",
         ),
     }  # fmt: skip
-    if assembly.chains:
-        first = next(iter(assembly.chains))
+    if answer.least:
+        first = next(iter(answer.least))
         for word, state_of in (("least", answer.least[first]), ("most", answer.most[first])):
             about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
             result.arrays.update(state_arrays(assembly, word, state_of, about))
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
     result.answer = _words(assembly, answer, found)
+    result.warnings += answer.warnings
     needed = found.required_friction or 0.0
     if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
@@ -98,12 +100,14 @@ def run(context: Context, options: Tilt) -> Result:
 def _thrusts(answer: Answer) -> dict[str, object]:
     """Least and greatest horizontal thrust upright of each chain [N]; the first also by the common names."""
 
-    def horizontal(name: str, state) -> float:
-        return abs(float(state.force(answer.assembly)[answer.assembly.chains[name][0], 0]))
-
     table = {
-        name: out.ChainThrust(min_N=horizontal(name, answer.least[name]), max_N=horizontal(name, answer.most[name]))
-        for name in answer.assembly.chains
+        name: out.ChainThrust(
+            **{
+                f"{end}_N": thrust_of(answer.assembly, states[name], answer.assembly.chains[name])
+                for end, states in (("min", answer.least), ("max", answer.most))
+            }
+        )
+        for name in answer.least
     }
     if not table:
         return {}
@@ -169,7 +173,7 @@ def _words(assembly: Assembly, answer: Answer, found: out.Tilt) -> str:
     if assembly.chains:
         where = _some([f"{h.side} of {h.name}" for h in found.hinges])
     else:
-        where = _some([f"joint {h.name} (x = {h.x_m:.2f}, y = {h.y_m:.2f} m)" for h in found.hinges])
+        where = _some([f"{h.name} (x = {h.x_m:.2f}, y = {h.y_m:.2f} m)" for h in found.hinges])
     slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
     moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
     text = (

@@ -9,7 +9,7 @@ from extrados.building.errors import BadGeometry
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.places import Placed
 from extrados.building.properties import Held, Material
-from extrados.building.templates.walls import Bar, Region, Tie
+from extrados.building.templates.walls import Bar, Tie
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
@@ -168,7 +168,9 @@ def build_mesh(
     rule = np.tile(default, (count, 1))
     warnings = []
     for i, region in enumerate(wall.regions):
-        inside = _inside(region, centre, xy)
+        if region.edge is not None:
+            raise BadGeometry("a region is given by x and y, not by an edge")
+        inside = region.holds(centre)
         if not inside.any():
             warnings.append(f"region {i + 1} holds no element")
         if region.material is not None:
@@ -191,13 +193,3 @@ def build_mesh(
     return Mesh(
         xy, groups, materials, size, held, wall.ties, wall.bars, building.materials, options.selective, warnings
     )
-
-
-def _inside(region: Region, centre: np.ndarray, xy: np.ndarray) -> np.ndarray:
-    inside = np.ones(len(centre), dtype=bool)
-    for axis, ends in enumerate((region.x, region.y)):
-        if ends is not None:
-            inside &= (centre[:, axis] > ends[0]) & (centre[:, axis] < ends[1])
-    if region.edge is not None:
-        raise BadGeometry("a region is given by x and y, not by an edge")
-    return inside

@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados.building.errors import NoView
 from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import BlockModel, block_model
+from extrados.building.rockers.block import WALLS, BlockModel, block_model
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core.rocking import Body
@@ -42,7 +42,9 @@ class Rocker:
 def make_rocker(building: "Building", linear: bool = False) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none."""
     structure, ratio = building.structure, building.initial.rotation_ratio
-    if structure is not None and structure.kind in MONOLITHS:
+    wall = structure is not None and structure.kind in WALLS
+    piers = building.pier_blocks() if wall else None
+    if structure is not None and (structure.kind in MONOLITHS or (piers is not None and len(piers.mass) == 1)):
         block = block_model(building, linear)
         alpha = block.alpha
         return Rocker(
@@ -50,7 +52,7 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
             float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
             ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
         )  # fmt: skip
-    made = building.blocks()
+    made = building.blocks() if piers is None else piers
     if linear:
         raise NoView('form = "linear" is known of blocks and columns only')
     if isinstance(made, ArchAssembly) and building.joints.restitution != "inelastic":

@@ -101,6 +101,7 @@ def make_block(
         depth=depth,
         block_names=["block"],
         joint_names=["base"],
+        chains={"stack": [0]},
         centre_height=float(centre_height),
         toe_right=float(toe_right),
         toe_left=float(toe_left),

@@ -9,6 +9,7 @@ from pydantic import model_validator
 from extrados.building.errors import BadGeometry
 from extrados.building.files import locate
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.chains import with_chains
 from extrados.building.geometry.contacts import find_contacts
 from extrados.building.geometry.drawing import MOST_POINTS, Polygon, read_dxf, read_json
 from extrados.building.geometry.polygons import crossing_edges, following, properties, signed_area
@@ -26,7 +27,7 @@ def make_blocks(
     depth: float = 1.0,
     tolerance: float = 1e-4,
 ) -> Assembly:
-    """Blocks whose shared edges are the joints. ground: segments (k, 4) [m], or None for the lowest level."""
+    """Blocks whose shared edges are the joints, with the chains found among them. ground: segments (k, 4) [m], or None for the lowest level."""
     if not polygons:
         raise BadGeometry("there are no blocks")
     names = [p.name for p in polygons]
@@ -61,7 +62,7 @@ def make_blocks(
         inward=np.ones(len(contacts.a), dtype=int),
     )
     _refuse_loose(assembly, contacts.near)
-    return assembly
+    return with_chains(assembly)
 
 
 def _outline(polygon: Polygon, tolerance: float) -> np.ndarray:

@@ -1,5 +1,6 @@
-"""Columns of drums and walls of units in running bond: stones by the row."""
+"""Columns of drums: stones one upon the other."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar, Literal
 
@@ -13,7 +14,7 @@ from extrados.schema.quantities import Length
 from extrados.schema.table import key
 
 
-def _assembly(
+def stones_and_joints(
     outlines: list[np.ndarray], names: list[str], joints: list[tuple[str, np.ndarray, np.ndarray, int, int]],
     density: float, depth: float,
 ) -> Assembly:  # fmt: skip
@@ -48,51 +49,8 @@ def make_column(
         )
         for i in range(n)
     ]  # fmt: skip
-    return _assembly(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
-
-
-def make_brickwork(
-    unit_length: float, unit_height: float, units: int, courses: int, density: float = 1800.0, depth: float = 0.25
-) -> Assembly:
-    """Running bond: every other course begins and ends with half a unit; sizes in m."""
-    rows = []
-    for c in range(courses):
-        ends = np.arange(units + 1.0) if c % 2 == 0 else np.concatenate([[0.0], np.arange(units) + 0.5, [units]])
-        rows.append(ends * unit_length)
-    outlines, names, joints = [], [], []
-    below: list[int] = []
-    for c, ends in enumerate(rows):
-        low, high = c * unit_height, (c + 1) * unit_height
-        row = []
-        for k in range(len(ends) - 1):
-            left, right = ends[k], ends[k + 1]
-            row.append(len(outlines))
-            names.append(f"unit {k + 1} of course {c + 1}")
-            outlines.append(np.array([[left, low], [right, low], [right, high], [left, high]]))
-            if k:
-                joints.append(
-                    (
-                        f"head joint {k} of course {c + 1}",
-                        np.array([left, low]),
-                        np.array([left, high]),
-                        row[k],
-                        row[k - 1],
-                    )
-                )
-            if c == 0:
-                joints.append((f"base of unit {k + 1}", np.array([left, low]), np.array([right, low]), row[k], GROUND))
-                continue
-            for m in below:
-                one, two = max(left, outlines[m][0, 0]), min(right, outlines[m][1, 0])
-                if two - one > 1e-9 * unit_length:
-                    joints.append(
-                        (
-                            f"bed joint of {names[row[k]]} on {names[m]}", np.array([one, low]), np.array([two, low]),
-                            row[k], m,
-                        )
-                    )  # fmt: skip
-        below = row
-    return _assembly(outlines, names, joints, density, depth)
+    made = stones_and_joints(outlines, [f"drum {i + 1}" for i in range(n)], joints, density, depth)
+    return replace(made, chains={"stack": list(range(n))})
 
 
 class Column(Structure):
@@ -120,24 +78,3 @@ class Column(Structure):
     def assembly(self, density: float, folder: Path) -> Assembly:
         heights = self.heights or [self.height / self.drums] * self.drums
         return make_column(self.width, heights, self.top_width, density, self.depth)
-
-
-class Brickwork(Structure):
-    """Wall of equal units in running bond on the ground, loaded in its plane; half units close every other course."""
-
-    kind: Literal["brickwork"]
-    starter: ClassVar = {"unit_length": '"40 cm"', "unit_height": '"20 cm"', "units": "5", "courses": "8"}
-    unit_length: Length = key(about="length of a unit", gt=0)
-    unit_height: Length = key(about="height of a unit", gt=0)
-    units: int = key(about="units in a course", ge=1, le=500)
-    courses: int = key(about="number of courses", ge=1, le=500)
-    depth: Length = key(0.25, "thickness of the wall", gt=0)
-
-    @model_validator(mode="after")
-    def _not_too_many(self) -> "Brickwork":
-        if self.units * self.courses > 20000:
-            raise ValueError(f"{self.units * self.courses} units are too many, expected at most 20000")
-        return self
-
-    def assembly(self, density: float, folder: Path) -> Assembly:
-        return make_brickwork(self.unit_length, self.unit_height, self.units, self.courses, density, self.depth)

@@ -1,11 +1,19 @@
 """Walls that are given whole, without stones: `panel` (rectangles with openings, or an outline) and `mesh` (a file)."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
 from typing import Annotated, ClassVar, Literal
 
+import numpy as np
 from pydantic import Field, model_validator
 
-from extrados.building.places import Placed, Range
+from extrados.building.errors import NoView
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.places import Placed
 from extrados.building.structure import Structure
+from extrados.building.templates.brickwork import Laid, make_brickwork
+from extrados.building.templates.piers import make_piers
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import Table, key
 
@@ -21,18 +29,13 @@ class Region(Placed):
     )
     crack_normal: Angle | None = key(None, "the only direction of crack normals allowed, from x", ge=-180, le=180)
 
-
-class Opening(Table):
-    """A rectangle cut out: an opening, or a notch where it reaches an edge."""
-
-    x: Range = key(about="[from, to]")
-    y: Range = key(about="[from, to]")
-
-    @model_validator(mode="after")
-    def _area(self) -> "Opening":
-        if self.x[0] == self.x[1] or self.y[0] == self.y[1]:
-            raise ValueError("an opening needs a width and a height: expected x = [from, to] and y = [from, to]")
-        return self
+    def holds(self, points: np.ndarray) -> np.ndarray:
+        """Which of the points (k, 2) [m] lie within it."""
+        inside = np.ones(len(points), dtype=bool)
+        for axis, ends in enumerate((self.x, self.y)):
+            if ends is not None:
+                inside &= (points[:, axis] > ends[0]) & (points[:, axis] < ends[1])
+        return inside
 
 
 class Tie(Placed):
@@ -59,8 +62,11 @@ class Wall(Structure):
     bars: list[Bar] = key([], "bars between two places", max_length=1000)
 
 
-class Panel(Wall):
-    """A rectangular wall or beam with rectangular openings and notches, meshed here; x from left, y from bottom."""
+class Panel(Laid, Wall):
+    """A rectangular wall or beam with rectangular openings and notches; x from left, y from bottom.
+
+    Finite elements see it whole. Of a given unit it is also laid in running bond, for all that looks at stones.
+    """
 
     kind: Literal["panel"]
     starter_analysis: ClassVar = "sla"
@@ -72,7 +78,8 @@ class Panel(Wall):
     }
     width: Length | None = key(None, "length along x; needed unless an outline is given", gt=0)
     height: Length | None = key(None, "length along y; needed unless an outline is given", gt=0)
-    openings: list[Opening] = key([], "rectangles cut out", max_length=1000)
+    unit_length: Length | None = key(None, "length of a unit of its masonry, where stones are looked at", gt=0)
+    unit_height: Length | None = key(None, "height of a unit of its masonry", gt=0)
     outline: str | None = key(
         None, "DXF file of closed polylines: the outer one and the openings; replaces width, height, openings"
     )
@@ -87,10 +94,45 @@ class Panel(Wall):
             return self
         if self.width is None or self.height is None:
             raise ValueError("width and height are missing (or an outline)")
-        for o in self.openings:
-            if o.x[1] <= 0 or o.x[0] >= self.width or o.y[1] <= 0 or o.y[0] >= self.height:
-                raise ValueError(f"the opening x {o.x}, y {o.y} lies outside the panel")
+        if (self.unit_length is None) != (self.unit_height is None):
+            raise ValueError("a unit has a length and a height: give unit_length and unit_height, or neither")
+        self.check_openings(*self.size)
         return self
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Length and height of the wall [m]."""
+        return self.width, self.height
+
+    def piers(self, density: float) -> Assembly:
+        if self.outline:
+            raise NoView("the piers of a panel are found between rectangular openings, not in an outline")
+        if any(region.material or region.thickness for region in self.regions):
+            raise NoView(
+                "the piers of a panel weigh the same everywhere; it has regions of another material or thickness"
+            )
+        return make_piers(*self.size, self.holes, density, self.thickness)
+
+    def assembly(self, density: float, folder: Path) -> Assembly:
+        if self.outline:
+            raise NoView("a panel of an outline has no stones: draw them and read the drawing as kind `blocks`")
+        if self.unit_length is None:
+            raise NoView("the stones of the panel are not known: give unit_length and unit_height")
+        bond = self.bond(self.unit_length, self.unit_height)
+        return make_brickwork(bond, *self.size, self.holes, density, self.thickness)
+
+    def weighed(self, made: Assembly, density: float, densities: Mapping[str, float]) -> Assembly:
+        """The stones whose centres lie in a region weigh what its material does."""
+        ratio = np.ones(len(made.mass))
+        for i, region in enumerate(self.regions, start=1):
+            if region.thickness not in (None, self.thickness):
+                raise NoView(f"region {i} of the panel has a thickness of its own; stones are all of one")
+            if region.material is None:
+                continue
+            if density == 0.0:
+                raise NoView(f"region {i} of the panel has a material of its own, but [material] has no density")
+            ratio[region.holds(made.centroid)] = densities[region.material] / density
+        return replace(made, mass=made.mass * ratio, inertia=made.inertia * ratio)
 
 
 class MeshFile(Wall):

@@ -1,0 +1,101 @@
+"""Chains of stones found in any assembly: arches from springing to springing, and stacks on the ground."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from extrados.building.geometry.assembly import GROUND, Assembly
+
+
+def with_chains(assembly: Assembly) -> Assembly:
+    """The assembly with its chains named, and their joints turned so that p lies on the intrados, q on the extrados.
+
+    A chain is a row of at least two stones of two joints each, between the ground and stones that have more; a stack
+    is a row that leads from the ground to a free end. Arches are called "chain", stacks "stack", with numbers from
+    left to right where there are several; those between two grounds come first.
+    """
+    spans, stacks = [], []
+    for joints in _rows(assembly):
+        grounded = int(_on_ground(assembly, joints[0])) + int(_on_ground(assembly, joints[-1]))
+        if is_stack(assembly, joints):
+            if grounded:
+                stacks.append(joints if _on_ground(assembly, joints[0]) else joints[::-1])
+        elif len(joints) > 2:
+            ends = assembly.middle[[joints[0], joints[-1]], 0]
+            spans.append((2 - grounded, min(ends), joints if ends[0] <= ends[1] else joints[::-1]))
+    spans.sort(key=lambda span: span[:2])
+    stacks.sort(key=lambda joints: assembly.middle[joints[0], 0])
+    chains: dict[str, list[int]] = {}
+    for word, rows in (("chain", [joints for _, _, joints in spans]), ("stack", stacks)):
+        chains |= {word if len(rows) == 1 else f"{word} {k}": joints for k, joints in enumerate(rows, start=1)}
+    return _turned(replace(assembly, chains=chains), [joints for _, _, joints in spans])
+
+
+def _on_ground(assembly: Assembly, joint: int) -> bool:
+    return GROUND in (assembly.a[joint], assembly.b[joint])
+
+
+def is_stack(assembly: Assembly, joints: list[int]) -> bool:
+    """True where the joints of a chain end at a stone that no other joint holds: no arch, but a stack."""
+    return any(_end(assembly, joints, k) not in (GROUND, None) for k in (0, -1))
+
+
+def _end(assembly: Assembly, joints: list[int], k: int) -> int | None:
+    """The stone with no other joint beyond the first or last joint of a row; None where it has others."""
+    for block in (int(assembly.a[joints[k]]), int(assembly.b[joints[k]])):
+        if block != GROUND and len(assembly.joints_of(block)) == 1:
+            return block
+    return None
+
+
+def _rows(assembly: Assembly) -> list[list[int]]:
+    """Joints of every longest row of stones with at most two joints each."""
+    touching: list[list[int]] = [[] for _ in assembly.mass]
+    pairs = list(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True))
+    for j, pair in enumerate(pairs):
+        for block in pair:
+            if block != GROUND:
+                touching[block].append(j)
+    plain = [1 <= len(joints) <= 2 for joints in touching]
+    left, rows = set(np.flatnonzero(plain).tolist()), []
+
+    def walk(block: int, joint: int) -> list[int]:
+        """Joints from `joint` of a stone on, away from that stone."""
+        way = [joint]
+        while True:
+            a, b = pairs[joint]
+            block = b if a == block else a
+            if block == GROUND or not plain[block] or block not in left:
+                return way
+            left.discard(block)
+            onward = [j for j in touching[block] if j != joint]
+            if not onward:
+                return way
+            joint = onward[0]
+            way.append(joint)
+
+    while left:
+        block = min(left)
+        left.discard(block)
+        ways = [walk(block, joint) for joint in touching[block]]
+        rows.append([*reversed(ways[0]), *(ways[1] if len(ways) > 1 else [])])
+    return rows
+
+
+def _turned(assembly: Assembly, spans: list[list[int]]) -> Assembly:
+    """The joints of arches with their ends in order: to the right on the way from left to right lies the intrados."""
+    p, q = assembly.p.copy(), assembly.q.copy()
+    inward = np.ones(len(p)) if assembly.inward is None else np.array(assembly.inward, dtype=float)
+    normal = assembly.normal
+    for joints in spans:
+        for i, j in enumerate(joints):
+            # The stone after the joint, on the way: shared with the next joint, or not with the one before.
+            other = joints[i + 1] if i + 1 < len(joints) else joints[i - 1]
+            beside = {int(assembly.a[other]), int(assembly.b[other])} - {GROUND}
+            a_is_next = (int(assembly.a[j]) in beside) == (i + 1 < len(joints))
+            onward = normal[j] if a_is_next else -normal[j]
+            along = q[j] - p[j]
+            if onward[0] * along[1] - onward[1] * along[0] < 0.0:  # q lies to the right of the way
+                p[j], q[j] = assembly.q[j], assembly.p[j]
+                inward[j] = -inward[j]
+    return replace(assembly, p=p, q=q, inward=None if assembly.inward is None else inward.astype(int))
