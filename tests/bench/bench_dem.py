@@ -21,7 +21,8 @@ from peers import has
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.rigid import rigid_bodies
 from extrados.building.templates.arch import make_arch
-from extrados.building.templates.masonry import make_brickwork, make_column
+from extrados.building.templates.brickwork import Bond, make_brickwork
+from extrados.building.templates.masonry import make_column
 from extrados.core import dem
 from extrados.core.ground import Ground
 
@@ -68,7 +69,7 @@ CASES = {
     "arch of 60": Case(make_arch(10.0, 1.5, 157.5, 60), PULSE, 30, 0.6, 0.4, 0.1, 1e10, 3e-3),
     # At 1e-3 s MuJoCo's wall falls apart; half of that is its largest step that does not.
     "wall of 420": Case(
-        make_brickwork(0.5, 0.25, 10, 40, 2000.0, 1.0), PULSE, 409, 0.3, 0.3, 0.01, 6e10, 3e-3, (5e-4,)
+        make_brickwork(Bond(0.5, 0.25), 5.0, 10.0, (), 2000.0, 1.0), PULSE, 409, 0.3, 0.3, 0.01, 6e10, 3e-3, (5e-4,)
     ),
 }
 
@@ -178,7 +179,16 @@ def sizes() -> None:
     """Cost per block and step over the size of a wall, as it settles and shakes."""
     print("cost over size: walls of units in running bond, 1 thread")
     for rows in (5, 10, 20, 44):
-        case = Case(make_brickwork(0.5, 0.25, rows, rows, 2000.0, 1.0), SHAKE, 0, 0.1, 0.1, 0.0, 5e9, 1e-3)
+        case = Case(
+            make_brickwork(Bond(0.5, 0.25), 0.5 * rows, 0.25 * rows, (), 2000.0, 1.0),
+            SHAKE,
+            0,
+            0.1,
+            0.1,
+            0.0,
+            5e9,
+            1e-3,
+        )
         bodies = case.bodies(5e9, 1e-3)
         n = len(case.assembly.mass)
         end = 40.0 / n

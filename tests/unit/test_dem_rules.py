@@ -9,7 +9,8 @@ from extrados.building.geometry.convex import convex_parts, is_convex
 from extrados.building.geometry.polygons import signed_area as area
 from extrados.building.geometry.rigid import rigid_bodies
 from extrados.building.templates.arch import make_arch
-from extrados.building.templates.masonry import make_brickwork, make_column
+from extrados.building.templates.brickwork import Bond, make_brickwork
+from extrados.building.templates.masonry import make_column
 
 
 def block(width: float, height: float, density: float, stiffness: float) -> rules.Impact:
@@ -96,7 +97,7 @@ def test_a_concave_block_is_cut_into_convex_parts() -> None:
 
 
 def test_a_wall_in_running_bond() -> None:
-    wall = make_brickwork(0.5, 0.25, 4, 3)
+    wall = make_brickwork(Bond(0.5, 0.25), 2.0, 0.75)
     assert wall.mass.sum() == pytest.approx(1800.0 * 0.25 * 2.0 * 0.75)
     assert len(wall.mass) == 4 + 5 + 4
     assert sum("bed joint" in name for name in wall.joint_names) == 2 * 8

@@ -11,7 +11,6 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from extrados.session import run_deck
 
 from extrados.analyses.context import Context
 from extrados.analyses.dem import dem_domain
@@ -21,6 +20,7 @@ from extrados.core import calls
 from extrados.core import sla as core
 from extrados.decks.reader import make_deck, read_deck
 from extrados.results.checkpoint import Checkpoint, folder_of
+from extrados.running.run import run_to
 
 BLOCK = """
 [structure]
@@ -187,7 +187,7 @@ def written(kind: str, folder: Path) -> Path:
 
 
 def run(deck: Path, out: Path, **context) -> None:
-    run_deck(Context(read_deck(deck), **context), out, figures=False)
+    run_to(Context(read_deck(deck), **context), out, figures=False)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="SIGKILL is POSIX")

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from extrados.analyses.failure_domain import shortest_durations
 
 from extrados.analyses.dem import model as dem_model
+from extrados.analyses.rocking.failure_domain import shortest_durations
 from extrados.building.properties import Joints, Material
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.core import dem

@@ -177,7 +177,7 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
             run.array(name, "failing_amplitude_own"),
             "--",
             color=style.EDGE,
-            label="Eq. 5.8, fitted to this arch",
+            label="Eq. 5.8, fitted to this structure",
         )
         curve.plot(
             run.array(name, "computed_period"),
@@ -208,7 +208,7 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         curve.set_xlim(0.0, period[-1])
         curve.set_xlabel("period of the impulse T_p [s]")
         curve.set_ylabel("amplitude A_p [g]")
-        curve.set_title(f"Verdict: the arch {r.verdict}")
+        curve.set_title(f"Verdict: it {r.verdict}")
         curve.legend(loc="upper right")
         t = run.array(name, "time")
         record.plot(t, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.6)

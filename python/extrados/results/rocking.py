@@ -154,23 +154,23 @@ class AssessedImpulse(PrimaryImpulse):
     rank: int = fact("1 for the primary impulse")
     explained: float = fact("share of the squared acceleration of the whole motion that it explains")
     failing_amplitude_g: float | None = fact("failing amplitude at its period; null: too short to do harm", "g")
-    failing_amplitude_own_g: float | None = fact("the same by the curve fitted to this arch", "g")
+    failing_amplitude_own_g: float | None = fact("the same by the curve fitted to this structure", "g")
     margin: float | None = fact("failing amplitude over its amplitude; null: too short to do harm")
-    verdict: Literal["stands", "fails"] = fact("whether it brings the arch down by the criterion")
+    verdict: Literal["stands", "fails"] = fact("whether it brings the structure down by the criterion")
 
 
 class Assessment(KindResults):
-    """assessment: the primary impulses of a motion against the failure curve of an arch."""
+    """assessment: the primary impulses of a motion against the failure curve of the structure."""
 
-    uplift_acceleration_g: float = fact("constant horizontal acceleration at which the arch hinges", "g")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which it starts to rock", "g")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     static_verdict: Literal["stands", "fails"] = fact("what the peak acceleration, taken as constant, would do")
     coefficients: Coefficients = fact("the failure curve that is used")
     coefficients_source: str = fact("where it comes from")
-    coefficients_of_this_arch: Coefficients = fact("the failure curve fitted to this arch")
+    coefficients_of_this_arch: Coefficients = fact("the failure curve fitted to this structure")
     restitution: float = fact("rate after over before an impact")
     impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
-    verdict: Literal["stands", "fails"] = fact("whether one of them brings the arch down by the criterion")
+    verdict: Literal["stands", "fails"] = fact("whether one of them brings it down by the criterion")
     margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
     primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
 
@@ -178,7 +178,7 @@ class Assessment(KindResults):
         """The impulse of the least margin against its failing amplitude [g]."""
         harmful = [i for i in self.impulses if i.margin is not None]
         if not harmful:
-            return judge("No impulse of the motion is long enough to bring the arch down.", None, None, "g", "stands")
+            return judge("No impulse of the motion is long enough to bring it down.", None, None, "g", "stands")
         worst = min(harmful, key=lambda i: i.margin)
         size = abs(worst.amplitude_g)
         word = "below" if size < worst.failing_amplitude_g else "at or above"

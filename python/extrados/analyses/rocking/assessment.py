@@ -3,9 +3,11 @@
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.rocking.criterion import Fit, fit_arch, interpolated
+from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.criterion import Fit, fit_own, interpolated
 from extrados.analyses.rocking.tables import Assessment
 from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.rocker import Rocker
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
@@ -14,37 +16,41 @@ from extrados.schema.constants import GRAVITY
 
 def run(context: Context, options: Assessment) -> Result:
     """Verdict and margin by Eq. 5.8, from the regenerated Table 5.3 and from the arch's own failure curve."""
-    model = context.building.rocker().model
-    if not isinstance(model, ArchModel):
-        raise Refused("assessment needs an arch: Eq. 5.8 and Table 5.3 speak of arches")
-    context.warnings += model.warnings + context.motion.notes
+    rocker = rocker_of(context, options)
+    arch = rocker.model.arch if isinstance(rocker.model, ArchModel) else None
+    context.warnings += context.motion.notes
     if context.motion.ground.channels > 1:
         context.warnings.append("the criterion knows the horizontal motion only: the vertical component is left out")
-    arch = model.arch
-    gamma = model.collapse[0].gamma
+    gamma, scale = rocker.uplift, rocker.scale
     time, acceleration = context.motion.series()
     impulses = primary_impulses(time, acceleration, options.impulses, options.min_period, options.max_period)
-    own, own_periods, own_curve = fit_arch(model, context.threads)
-    ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
-    # The table was made with the thesis' impact rule: another rule is judged by the curve of this arch.
-    table = interpolated(ratio, embrace, gamma) if model.rule == "thesis" else None
+    try:
+        own, own_periods, own_curve = fit_own(rocker.body, gamma, scale, context.threads)
+    except ValueError as error:
+        raise Refused(f"no failure curve of single sines could be fitted: {error}") from None
     result = Result("assessment")
-    if table is None and model.rule == "thesis":
+    # The table was made of arches with the thesis' impact rule: anything else is judged by its own curve.
+    table = None
+    by_table = arch is not None and rocker.model.rule == "thesis"
+    if by_table:
+        ratio, embrace = arch.thickness / arch.radius, float(np.degrees(arch.embrace))
+        table = interpolated(ratio, embrace, gamma)
+    if by_table and table is None:
         result.warnings.append(
             f"Table 5.3 covers t/R 0.12 to 0.21 and 140 to 180 deg; for t/R {ratio:.3f} and {embrace:g} deg the failure "
             "curve fitted to this arch is used alone"
         )
     fit = table or own
-    rows = [_row(k + 1, impulse, fit, own, arch.radius) for k, impulse in enumerate(impulses)]
+    rows = [_row(k + 1, impulse, fit, own, scale) for k, impulse in enumerate(impulses)]
     worst = min(rows, key=lambda r: np.inf if r.margin is None else r.margin, default=None)
     r = out.Assessment(
         uplift_acceleration_g=gamma,
         peak_ground_acceleration_g=context.motion.peak / GRAVITY,
         static_verdict="fails" if context.motion.peak > gamma * GRAVITY else "stands",
         coefficients=_coefficients(fit),
-        coefficients_source="Table 5.3, regenerated and interpolated" if table else "fitted to this arch",
+        coefficients_source="Table 5.3, regenerated and interpolated" if table else f"fitted to this {_word(rocker)}",
         coefficients_of_this_arch=_coefficients(own),
-        restitution=model.restitution,
+        restitution=rocker.restitution,
         impulses=rows,
         verdict="fails" if any(row.verdict == "fails" for row in rows) else "stands",
         margin=worst.margin if worst else None,
@@ -58,7 +64,7 @@ def run(context: Context, options: Assessment) -> Result:
     result.tables["assessment"] = TableData(
         {name: [np.nan if row[name] is None else row[name] for row in rows] for name in (columns if rows else ())}
     )
-    periods = np.geomspace(0.12, 1.6, 200) * np.sqrt(arch.radius)
+    periods = np.geomspace(0.12, 1.6, 200) * np.sqrt(scale)
     result.arrays = {
         "time": Array(time, ("time",), "s"),
         "ground": Array(acceleration, ("time",), "m/s^2", "ground acceleration"),
@@ -66,15 +72,20 @@ def run(context: Context, options: Assessment) -> Result:
         "impulse_period": Array(np.array([i.period for i in impulses]), ("impulse",), "s"),
         "impulse_start": Array(np.array([i.start for i in impulses]), ("impulse",), "s"),
         "period": Array(periods, ("period",), "s"),
-        "failing_amplitude": Array(fit.amplitude(periods, arch.radius), ("period",), "g", "Eq. 5.8"),
+        "failing_amplitude": Array(fit.amplitude(periods, scale), ("period",), "g", "Eq. 5.8"),
         "failing_amplitude_own": Array(
-            own.amplitude(periods, arch.radius), ("period",), "g", "Eq. 5.8 fitted to this arch"
+            own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 fitted to this {_word(rocker)}"
         ),
-        "computed_period": Array(own_periods * np.sqrt(arch.radius), ("computed",), "s"),
-        "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of this arch, computed"),
+        "computed_period": Array(own_periods * np.sqrt(scale), ("computed",), "s"),
+        "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of its own, computed"),
     }
-    result.answer = _answer(r, worst)
+    result.answer = _answer(r, worst, _word(rocker))
     return result
+
+
+def _word(rocker: Rocker) -> str:
+    """What the building is called in answers."""
+    return rocker.what if rocker.what in ("arch", "block", "column", "vault") else "structure"
 
 
 def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:
@@ -99,7 +110,7 @@ def _coefficients(fit: Fit) -> out.Coefficients:
     return out.Coefficients(C1=fit.c1, C2=fit.c2, T_min_s=fit.t_min, gamma=fit.gamma)
 
 
-def _answer(r: out.Assessment, worst: out.AssessedImpulse | None) -> str:
+def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> str:
     if worst is None:
         return "The motion holds no impulse in the range of periods asked for: it is too short for it, or zero."
     first = r.primary_impulse
@@ -111,11 +122,11 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None) -> str:
         "it" if worst.rank == 1 else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
     )
     if worst.margin is None:
-        text += "All impulses are too short to bring the arch down. "
+        text += f"All impulses are too short to bring the {what} down. "
     elif r.verdict == "fails":
-        text += f"The arch is predicted to fail: {which} reaches {1 / worst.margin:.2f} times the failing amplitude. "
+        text += f"The {what} is predicted to fail: {which} reaches {1 / worst.margin:.2f} times the failing amplitude. "
     else:
-        text += f"The arch is predicted to stand: {which} would have to be {worst.margin:.2f} times stronger. "
+        text += f"The {what} is predicted to stand: {which} would have to be {worst.margin:.2f} times stronger. "
     also = "also " if r.static_verdict == r.verdict else ""
     static = f"{also}predicts failure" if r.static_verdict == "fails" else f"{also}predicts that it stands"
     return (

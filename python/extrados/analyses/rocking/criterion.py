@@ -12,9 +12,10 @@ from importlib.resources import files
 
 import numpy as np
 
-from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time
+from extrados.analyses.rocking.failure_domain import Mapper, failure_curves
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import make_arch
+from extrados.core.rocking import Body
 from extrados.schema.constants import GRAVITY
 
 THICKNESSES = (0.12, 0.15, 0.18, 0.21)
@@ -42,10 +43,15 @@ class Fit:
             return np.where(x > 0.0, self.c1 * np.abs(x) ** self.c2 + self.gamma, np.inf)
 
 
-def mode_i_curve(model: ArchModel, periods: np.ndarray, cap: float = CAP, threads: int = 1) -> np.ndarray:
-    """Lowest amplitude [g] of a single sine of each period that brings the arch down; NaN above cap gamma."""
-    mapper = Mapper(model.body, "sine", periods, settling_time(model), threads)
-    amplitudes = model.collapse[0].gamma * GRAVITY * np.linspace(1.0, cap, 81)[1:]
+def mode_i_curve(
+    body: Body, gamma: float, scale: float, periods: np.ndarray, cap: float = CAP, threads: int = 1
+) -> np.ndarray:
+    """Lowest amplitude [g] of a single sine of each period [s] that brings a structure down; NaN above cap gamma.
+
+    gamma: acceleration at which it starts to rock [g]; scale [m]: see Rocker.
+    """
+    mapper = Mapper(body, "sine", periods, 40.0 * float(np.sqrt(scale / GRAVITY)), threads)
+    amplitudes = gamma * GRAVITY * np.linspace(1.0, cap, 81)[1:]
     return failure_curves(mapper, periods, amplitudes, 1e-4 * GRAVITY).mode_i / GRAVITY
 
 
@@ -76,11 +82,21 @@ def fit(periods: np.ndarray, amplitudes: np.ndarray, gamma: float) -> Fit:
     )
 
 
-def fit_arch(model: ArchModel, threads: int = 1, count: int = 80) -> tuple[Fit, np.ndarray, np.ndarray]:
-    """Fit, and the periods (scaled to R = 1 m) and amplitudes [g] it was made from."""
+def fit_own(
+    body: Body, gamma: float, scale: float, threads: int = 1, count: int = 80
+) -> tuple[Fit, np.ndarray, np.ndarray]:
+    """Fit to the structure's own curve, and the periods (scaled to 1 m) and amplitudes [g] it was made from.
+
+    ValueError where too little of the curve lies below the cap.
+    """
     periods = np.geomspace(0.1, 1.6, count)
-    curve = mode_i_curve(model, periods * np.sqrt(model.arch.radius), threads=threads)
-    return fit(periods, curve, model.collapse[0].gamma), periods, curve
+    curve = mode_i_curve(body, gamma, scale, periods * np.sqrt(scale), threads=threads)
+    return fit(periods, curve, gamma), periods, curve
+
+
+def fit_arch(model: ArchModel, threads: int = 1) -> tuple[Fit, np.ndarray, np.ndarray]:
+    """The same of an arch, scaled to R = 1 m."""
+    return fit_own(model.body, model.collapse[0].gamma, model.arch.radius, threads)
 
 
 def regenerate(rule: str = "thesis", threads: int = 1, say: Callable[[str], None] = print) -> list[dict[str, float]]:

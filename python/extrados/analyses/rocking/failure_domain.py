@@ -194,7 +194,7 @@ def run(context: Context, options: FailureDomain) -> Result:
     """Map, Mode I and Mode II curves of pulses on an arch or a block."""
     model = rocker_of(context, options)
     # The arch keeps sqrt(R/g); a block has 1/p, and its curves span omega/p from about 1 to 12.
-    unit = float(np.sqrt(model.length / GRAVITY)) if model.what == "arch" else 2.5 * model.time_unit
+    unit = float(np.sqrt(model.scale / GRAVITY))
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
     mapper = Mapper(

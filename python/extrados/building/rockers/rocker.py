@@ -11,6 +11,7 @@ from extrados.building.rockers.block import WALLS, BlockModel, block_model
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core.rocking import Body
+from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
@@ -37,6 +38,12 @@ class Rocker:
     length: float
     start_rotation: float = 0.0
     warnings: tuple[str, ...] = ()
+
+    @property
+    def scale(self) -> float:
+        """Length [m] whose root scales durations, as R does for an arch (thesis Eq. 5.7): sqrt(scale/g) is 2.5 / p of
+        a slender block."""
+        return self.length if isinstance(self.model, ArchModel) else GRAVITY * (2.5 * self.time_unit) ** 2
 
 
 def make_rocker(building: "Building", linear: bool = False) -> Rocker:
