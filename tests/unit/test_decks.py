@@ -61,7 +61,7 @@ def test_good_deck() -> None:
         ("voussoirs = 7", "voussoirs = 7.5", 7, ["voussoirs"]),
         ("embrace = 157.5", "embrace-x = 157.5", 6, ["unknown key", "did you mean 'embrace'"]),
         ("embrace = 157.5", "embrace = 157.5\nfloat = 1", 7, ["unknown key"]),
-        ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'thesis' or 'energy-safe', or", "number"]),
+        ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'energy-safe' or 'inelastic', or", "number"]),
         ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
         ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),

@@ -316,10 +316,9 @@ STRUCTURES = {
 @pytest.mark.parametrize("name", STRUCTURES)
 def test_every_structure_of_stones(name: str, tmp_path: Path) -> None:
     """Its properties are the building's: softer ground, joints that differ; it moves, and is drawn."""
-    from extrados.session import run_deck
-
     from extrados.plots.dem import draw_dem
     from extrados.results.store import read
+    from extrados.running.run import run_to
 
     (tmp_path / "pier.json").write_text(json.dumps({"blocks": [{"name": "pier", "points": PIER}]}))
     if name == "DXF":
@@ -334,7 +333,7 @@ def test_every_structure_of_stones(name: str, tmp_path: Path) -> None:
             "analysis": [{"kind": "dem", "end_time": 0.1, "output_step": 0.02}],
             **tables,
         }
-        return run_deck(Context(make_deck(deck, tmp_path)), tmp_path / "run", figures=False)[1][0]
+        return run_to(Context(make_deck(deck, tmp_path)), tmp_path / "run", figures=False).results[0]
 
     soft = answer(supports={"stiffness": 1e8})
     slippery = answer(joints={"types": [{"joints": ["ground"], "friction": 0.05}]})

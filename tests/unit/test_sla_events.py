@@ -351,7 +351,7 @@ def test_refusals(path, value, says) -> None:
 @pytest.mark.parametrize(("path", "value", "says"), [
     ("structure.regions", [{"x": [0, 1], "material": "steel"}], "unknown material 'steel'"),
     ("analysis.0.mesh.pattern", "random", 'expected "T3" or "T6"'),
-    ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "lies outside the panel"),
+    ("structure.openings", [{"x": [5, 6], "y": [0, 1]}], "lies outside the wall"),
     ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "needs a width and a height"),
     ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
     ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),

@@ -4,7 +4,7 @@ import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -215,6 +215,7 @@ class Brickwork(Laid, Structure):
     """Wall of equal units in running bond on the ground, loaded in its plane; half units close every other course."""
 
     kind: Literal["brickwork"]
+    starter: ClassVar = {"unit_length": '"40 cm"', "unit_height": '"20 cm"', "units": "5", "courses": "8"}
     unit_length: Length = key(about="length of a unit", gt=0)
     unit_height: Length = key(about="height of a unit", gt=0)
     units: int = key(about="units in a course", ge=1, le=500)
