@@ -1,6 +1,6 @@
 """The base of every deck table."""
 
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, create_model
 
@@ -34,7 +34,7 @@ def override_of(model: type[Table]) -> type[Table]:
     """
     fields: dict[str, Any] = {}
     for name, field in model.model_fields.items():
-        asked = field._copy()
-        asked.default, asked.default_factory = None, None
-        fields[name] = (field.annotation | None, asked)
+        bounded = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
+        asked = Field(None, description=field.description, json_schema_extra=field.json_schema_extra)
+        fields[name] = (bounded | None, asked)
     return create_model(f"{model.__name__}Override", __base__=Table, __doc__=model.__doc__, **fields)
