@@ -230,7 +230,11 @@ def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
 
 def _collect(batches: _Batches, job: Job, pace: _Pace, client: Any, address: str) -> Swept:
     """Two batches for each worker are out at any time; finished ones are kept as they come."""
-    pending: dict[Any, int] = {}
+    pending: dict[Any, tuple[int, int]] = {}
+
+    def send(first: int, count: int) -> None:
+        pending[client.submit(_timed, job, first, count, 1, pure=False, retries=5)] = first, count
+
     todo = _pieces(batches.missing(), lambda: pace.size)
     upcoming = next(todo, None)
     while upcoming is not None or pending:
@@ -238,8 +242,7 @@ def _collect(batches: _Batches, job: Job, pace: _Pace, client: Any, address: str
             return _interrupted(batches)
         workers = max(1, sum(client.nthreads().values())) if client.status == "running" else 1
         while upcoming is not None and len(pending) < 2 * workers:
-            first, count = upcoming
-            pending[client.submit(_timed, job, first, count, 1, pure=False, retries=5)] = first
+            send(*upcoming)
             upcoming = next(todo, None)
         ready = [future for future in pending if future.done()]
         if not ready:
@@ -247,14 +250,18 @@ def _collect(batches: _Batches, job: Job, pace: _Pace, client: Any, address: str
                 break
             time.sleep(0.02)
         for future in ready:
-            first = pending.pop(future)
+            piece = pending.pop(future)
             if future.status == "error":
                 return batches.swept(f"a batch failed on the cluster: {future.exception()!r}{batches.again}")
-            if future.status != "finished":
-                return _lost(batches, address)
+            if future.status != "finished":  # its worker died with the rows before they were fetched
+                if client.status != "running":
+                    return _lost(batches, address)
+                time.sleep(0.02)
+                send(*piece)
+                continue
             rows, seconds = future.result()
             pace.learn(_rows(rows), seconds)
-            batches.add(first, rows)
+            batches.add(piece[0], rows)
     return batches.swept() if batches.done == batches.count else _lost(batches, address)
 
 
