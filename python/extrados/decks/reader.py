@@ -53,6 +53,10 @@ class Deck:
     sha256: str = ""
     data: dict[str, Any] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        structure = self.structure.kind if self.structure else "no structure"
+        return f"<Deck {self.path}: {structure}; {', '.join(a.kind for a in self.analyses)}>"
+
     @property
     def structure(self) -> Structure | None:
         """The geometry; None in a deck without [structure]."""
@@ -148,7 +152,7 @@ class _Checker:
     def deck(self, data: dict[str, Any], folder: Path, sha256: str) -> Deck:
         for word in data:
             if word not in TOP_LEVEL:
-                self.complain((word,), f"unknown key or section{_nearest(word, TOP_LEVEL)}")
+                self.complain((word,), f"unknown key or section{_nearest(word, sorted(TOP_LEVEL))}")
         for word in ("title", "note"):
             if not isinstance(data.get(word, ""), str):
                 self.complain((word,), "expected text in quotes")
