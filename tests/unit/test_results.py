@@ -215,6 +215,8 @@ def test_explain() -> None:
     )
     assert "hinges[].x_m [m]" in explain.explain("results.tilt") and "sla" in explain.explain("results")
     assert explain.explain("results.fragility").count("fragility:") == 2
+    assert explain.explain("results.tilt.verdict") == explain.explain("results.verdict")
+    assert "statement: the verdict" in explain.explain("results.verdict")
     with pytest.raises(KeyError, match="collapse_acceleration_g"):
         explain.explain("results.tilt.colapse_acceleration")
     with pytest.raises(KeyError, match="tilt"):
