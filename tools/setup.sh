@@ -81,3 +81,6 @@ if [ ! -f "$stamp" ] || [ "$(cat "$stamp")" != "$want" ]; then
     --no-build-isolation --config-settings=setup-args=-Dwerror=$strict -e ".[dev]"
   echo "$want" > "$stamp"
 fi
+
+# The loader of editable installs reads compiled modules but keeps none: without this every command compiles its own.
+.venv/bin/python -m compileall -q python/extrados || true

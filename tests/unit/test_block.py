@@ -229,7 +229,7 @@ def test_bad_properties(tables: dict, said: str) -> None:
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"restitution": 0.9}, r"stands elsewhere now: \[joints\] restitution"),
+        ({"restitution": 0.9}, r"has moved to \[joints\] restitution"),
         ({"mass": 100.0}, "give one of the two"),
         ({"width": None, "height": None, "mass": 10.0}, "missing"),
         ({"width": 0.0}, "greater than 0"),

@@ -69,6 +69,7 @@ def test_good_deck() -> None:
         ('kind = "step-pulse"', 'kind = "step-puls"', 9, ["did you mean 'step-pulse'"]),
         ('kind = "tilt"', 'kind = "tlit"', 13, ["did you mean 'tilt'"]),
         ('kind = "tilt"', "", 12, ["kind is missing"]),
+        ("voussoirs = 7", "voussoirs = 7\nfriction = 0.5", 8, ["unknown key; it belongs in [joints]"]),
         ("[structure]", "[struture]", 2, ["struture", "did you mean 'structure'"]),
         ("duration = 0.20", "duration = 0,20", 11, ["decimal sign is a point"]),
         ("duration = 0.20", "duration = 0.20\nduration = 0.3", 12, ["duration"]),
@@ -184,6 +185,13 @@ def test_explain_schema_and_starters() -> None:
     assert "R_A" in explain.explain("radius") and "thesis" in explain.explain("restitution")
     with pytest.raises(KeyError, match="radius"):
         explain.explain("raduis")
+    assert 'or "no-sliding", default 0.7' in explain.explain("joints.friction")
+    assert "joints.types.cohesion: " in explain.explain("joints.types")
+    assert explain.explain("analysis.tilt").startswith('[analysis] kind = "tilt"')
+    assert explain.explain("tilt.fracture").startswith("analysis.fracture (tilt): ")
+    for ask in (explain.explain, explain.starter):
+        with pytest.raises(KeyError, match="now called 'brickwork'"):
+            ask("wall")
     for kind in kinds.ANALYSES:
         assert tomllib.loads(explain.starter(kind))["analysis"][0]["kind"] == kind
     assert "`radius`" in explain.manual()

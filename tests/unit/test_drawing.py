@@ -60,6 +60,6 @@ def test_damaged_results_are_named_from_a_worker_too(tmp_path) -> None:
     stored = extrados.load(tmp_path / "run")
     del stored.arrays["rocking"]["rotation"]
     (tmp_path / "drawn").mkdir()
-    with pytest.raises(StoreError, match="rocking lacks 'rotation'"):
+    with pytest.raises(StoreError, match="rocking has no array 'rotation'"):
         report.draw(stored, Path(tmp_path / "drawn"))
     assert run.folder == tmp_path / "run"

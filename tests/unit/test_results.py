@@ -215,6 +215,8 @@ def test_explain() -> None:
     )
     assert "hinges[].x_m [m]" in explain.explain("results.tilt") and "sla" in explain.explain("results")
     assert explain.explain("results.fragility").count("fragility:") == 2
+    assert explain.explain("results.tilt.verdict") == explain.explain("results.verdict")
+    assert "statement: the verdict" in explain.explain("results.verdict")
     with pytest.raises(KeyError, match="collapse_acceleration_g"):
         explain.explain("results.tilt.colapse_acceleration")
     with pytest.raises(KeyError, match="tilt"):
@@ -247,3 +249,15 @@ def test_typed_takes_each_shape() -> None:
 
 def test_generated_references_are_up_to_date() -> None:
     assert (ROOT / "docs" / "results.md").read_text(encoding="utf-8").rstrip() == explain.manual().rstrip(), "make docs"
+
+
+def test_what_is_shown_of_results_is_short_and_a_wrong_name_is_told_the_right_ones() -> None:
+    live = extrados.live(Path(__file__).parents[2] / "cases" / "arch" / "readme.toml")
+    run, building = live.run(), live.deck.building
+    shown = [run, live, live.deck, run["rocking"], run.results, run.arrays["rocking"]["rotation"]]
+    for thing in [*shown, building.blocks(), building.rigid(), building.rocker()]:
+        assert len(repr(thing)) < 1000 and "array(" not in repr(thing) and " object at " not in repr(thing)
+    with pytest.raises(KeyError, match="rocking has no array 'rotaton'; there are time, rotation"):
+        run.array("rocking", "rotaton")
+    with pytest.raises(KeyError, match="no result 'colapse'; there are collapse_acceleration_g"):
+        run["tilt"]["colapse"]

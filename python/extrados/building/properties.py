@@ -102,7 +102,9 @@ class Joints(Table):
         source="thesis Eq. 6.2",
     )  # fmt: skip
     worn_corners: Length = key(0.0, "radius to which the corners of the stones are worn", ge=0)
-    types: list[JointType] = key([], "joints that differ, [[joints.types]]", max_length=1000)
+    types: list[JointType] = key(
+        [], "joints that differ, [[joints.types]]; what one leaves out is as in [joints]", max_length=1000
+    )
 
     @model_validator(mode="after")
     def _one_impact(self) -> "Joints":

@@ -8,6 +8,7 @@ from typing import Any, get_args
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.decks.moved import MOVED_KINDS
 from extrados.schema import quantities
 from extrados.schema.table import Table
 
@@ -127,6 +128,8 @@ def _facts(about: dict[str, Any]) -> str:
     for branch in branches:
         if "enum" in branch:
             facts.append(" | ".join(f'"{c}"' for c in branch["enum"]))
+        if "const" in branch:
+            facts.append(f'or "{branch["const"]}"')
         for word, sign in (
             ("exclusiveMinimum", ">"),
             ("minimum", ">="),
@@ -136,8 +139,8 @@ def _facts(about: dict[str, Any]) -> str:
         ):
             if word in branch:
                 facts.append(f"{sign} {branch[word]:g}")
-    if "default" in about and about["default"] is not None:
-        facts.append(f"default {about['default']}")
+    if about.get("default") not in (None, []) and not isinstance(about["default"], dict):
+        facts.append(f"default {_toml(about['default'])}")
     return ", ".join(facts)
 
 
@@ -149,8 +152,13 @@ def _entry(section: str, kind: str, name: str, about: dict[str, Any]) -> str:
 
 
 def explain(word: str) -> str:
-    """What a key, a kind or a section means; KeyError with the nearest known word where there is none."""
+    """What a key, a kind or a section means; KeyError with the nearest known word where there is none.
+
+    A key may follow its table or its kind: "friction", "joints.friction", "analysis.tilt", "tilt.fracture".
+    """
     everything = sections()
+    if word == "materials":
+        return "[materials.NAME]: Further materials, with the keys of [material], for the parts that name them."
     if word in kinds.TABLES:
         rows = [f"{kind:16} {_summary(model)}" for kind, model in everything[word].items()]
         return f"[{word}] takes kind =\n  " + "\n  ".join(rows)
@@ -160,20 +168,37 @@ def explain(word: str) -> str:
         for kind, model in there.items():
             names = _names(model)
             known |= {kind, *names}
-            if word != (kind or section) and word.rsplit(".", 1)[-1] not in names:
+            itself = word in (kind or section, f"{section}.{kind}")
+            if not itself and word.rsplit(".", 1)[-1] not in names:
                 continue  # to work out what it says takes long
             keys = {name: about for name, about in _keys(model.model_json_schema()).items() if name != "kind"}
-            if word == (kind or section):
+            if itself:
                 rows = [textwrap.indent(_entry(section, kind, name, about), "  ") for name, about in keys.items()]
                 head = f'[{section}] kind = "{kind}"' if kind else f"[{section}]"
                 found.append(f"{head}: {_summary(model)}\n" + "\n".join(rows))
-            for name, about in keys.items():
-                if word in (name, name.rsplit(".", 1)[-1], f"{section}.{name}"):
-                    found.append(_entry(section, kind, name, about))
+            asked = {name for name in keys if word in _called(section, kind, name)}
+            found += [
+                _entry(section, kind, name, about)
+                for name, about in keys.items()
+                if any(name == one or name.startswith(f"{one}.") for one in asked)
+            ]
     if not found:
+        _renamed(word)
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
         raise KeyError(f"no key or kind '{word}'" + (f"; near are {', '.join(close)}" if close else ""))
     return "\n".join(found)
+
+
+def _called(section: str, kind: str, name: str) -> set[str]:
+    """What a user may call a key."""
+    return {name, name.rsplit(".", 1)[-1], f"{section}.{name}", f"{kind}.{name}", f"{section}.{kind}.{name}"}
+
+
+def _renamed(kind: str) -> None:
+    """KeyError with the new name of a kind that had another one."""
+    for (_, old), new in MOVED_KINDS.items():
+        if kind == old:
+            raise KeyError(f"'{old}' is now called '{new}'")
 
 
 def _summary(model: type[Table]) -> str:
@@ -185,6 +210,7 @@ def starter(kind: str) -> str:
     section = next((name for name in ("analysis", "structure", "motion") if kind in kinds.TABLES[name]), None)
     if section is None:
         known = [kind for there in kinds.TABLES.values() for kind in there]
+        _renamed(kind)
         close = difflib.get_close_matches(kind, known, n=1, cutoff=0.4)
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
     asked = kind
@@ -244,7 +270,9 @@ def _toml(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, str):
         return f'"{value}"'
-    return repr(value)
+    if isinstance(value, list):
+        return f"[{', '.join(_toml(v) for v in value)}]"
+    return f"{value:g}" if isinstance(value, float) and abs(value) >= 1e6 else repr(value)
 
 
 def manual() -> str:

@@ -12,7 +12,7 @@ def _material(name: str) -> str:
 
 
 def _mesh(name: str) -> str:
-    return f"{name} of [analysis.mesh], the elements of an sla analysis"
+    return f"{name} in [analysis.mesh], the elements of an sla analysis"
 
 
 #: (section, key) -> the new place in words
@@ -24,7 +24,7 @@ MOVED: dict[tuple[str, str], str] = {
     ("structure", "restitution"): "[joints] restitution",
     ("structure", "energy_ratio"): "[joints] energy_ratio",
     ("structure", "initial_rotation_ratio"): "[initial] rotation_ratio",
-    ("structure", "form"): "form of the analysis",
+    ("structure", "form"): "form in the [[analysis]] table",
     ("structure", "mesh"): _mesh("pattern"),
     **{("structure", name): _mesh(name)
        for name in ("size", "element", "seed", "refine", "lines_x", "lines_y", "selective")},

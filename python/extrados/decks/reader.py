@@ -53,6 +53,10 @@ class Deck:
     sha256: str = ""
     data: dict[str, Any] = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        structure = self.structure.kind if self.structure else "no structure"
+        return f"<Deck {self.path}: {structure}; {', '.join(a.kind for a in self.analyses)}>"
+
     @property
     def structure(self) -> Structure | None:
         """The geometry; None in a deck without [structure]."""
@@ -148,7 +152,7 @@ class _Checker:
     def deck(self, data: dict[str, Any], folder: Path, sha256: str) -> Deck:
         for word in data:
             if word not in TOP_LEVEL:
-                self.complain((word,), f"unknown key or section{_nearest(word, TOP_LEVEL)}")
+                self.complain((word,), f"unknown key or section{_nearest(word, sorted(TOP_LEVEL))}")
         for word in ("title", "note"):
             if not isinstance(data.get(word, ""), str):
                 self.complain((word,), "expected text in quotes")
@@ -228,7 +232,7 @@ class _Checker:
             if kind is None:
                 self.complain(path, f"kind is missing: expected one of {_words(known)}")
             elif (section, kind) in MOVED_KINDS:
-                self.complain((*path, "kind"), f"'{kind}' is called '{MOVED_KINDS[section, kind]}' now")
+                self.complain((*path, "kind"), f"'{kind}' is now called '{MOVED_KINDS[section, kind]}'")
             else:
                 self.complain((*path, "kind"), f"unknown kind {_shown(kind)}{_nearest(str(kind), known)}")
             return None
@@ -256,9 +260,12 @@ class _Checker:
         at = (*path, *place)
         sort = problem["type"]
         if sort == "extra_forbidden" and (path[0], place[-1]) in MOVED and len(place) == 1:
-            self.complain(at, f"stands elsewhere now: {MOVED[path[0], place[-1]]}")
+            self.complain(at, f"has moved to {MOVED[path[0], place[-1]]}")
         elif sort == "extra_forbidden":
-            self.complain(at, f"unknown key{_nearest(str(place[-1]), _table_at(model, place[:-1]).model_fields)}")
+            known = _table_at(model, place[:-1]).model_fields
+            home = next((name for name, there in PROPERTIES.items() if place[-1] in there.model_fields), "")
+            hint = f"; it belongs in [{home}]" if home and home != path[0] else _nearest(str(place[-1]), known)
+            self.complain(at, f"unknown key{hint}")
         elif sort == "missing":
             known = _table_at(model, place[:-1]).model_fields
             about = known[place[-1]].description if place and place[-1] in known else ""

@@ -1,7 +1,6 @@
 """The blow when an open mechanism closes: what the joints of the whole section let go on moving."""
 
 import numpy as np
-from scipy.optimize import nnls
 
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.linkage import laden
@@ -18,6 +17,8 @@ def inelastic_impact(assembly: Assembly, velocity: np.ndarray) -> np.ndarray:
     "Unilateral contact and dry friction in finite freedom dynamics"): many hinges may open at once. For one block
     it is Housner's impact.
     """
+    from scipy.optimize import nnls  # takes a fifth of a second to load
+
     mass, centroid, inertia = laden(assembly)
     count = len(mass)
     root = np.sqrt(np.stack([mass, mass, inertia], axis=1))

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
 
 from extrados.limit.systems import Sparse
 
@@ -58,6 +57,8 @@ def _mehrotra(
     a: sparse.csr_array, at: sparse.csr_array, live: np.ndarray, right: np.ndarray, direction: int
 ) -> tuple[np.ndarray, float, np.ndarray] | None:
     """Minimise -direction * gamma subject to a x + live gamma = right, x >= 0: x, gamma and the multipliers."""
+    from scipy.sparse.linalg import splu  # takes a tenth of a second to load, and most sections do without
+
     rows, n = a.shape
 
     def factor(weight: np.ndarray):

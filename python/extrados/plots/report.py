@@ -72,7 +72,7 @@ def _draw_one(run: Stored, name: str, figures: Callable[..., Figures], folder: P
     except OSError as error:
         raise StoreError(f"{run.folder}: figures could not be written: {reason(error)}") from None
     except KeyError as error:
-        raise StoreError(f"{run.folder}: the results are damaged: {name} lacks {error}") from None
+        raise StoreError(f"{run.folder}: the results are damaged: {name}: {error.args[0]}") from None
 
 
 def _drawn(tasks: list[tuple]) -> list[Figures]:

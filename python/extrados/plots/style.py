@@ -5,9 +5,6 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import matplotlib
-
-matplotlib.use("Agg")
-import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -31,12 +28,9 @@ def figure(
     width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options
 ) -> Iterator[tuple[Figure, np.ndarray]]:
     """A figure in the common style; its axes come as a flat array."""
-    with plt.rc_context(RC):
-        fig, axes = plt.subplots(rows, columns, figsize=(width, height), squeeze=False, **options)
-        try:
-            yield fig, axes.ravel()
-        finally:
-            plt.close(fig)
+    with matplotlib.rc_context(RC):
+        fig = FigureCanvasAgg(Figure(figsize=(width, height))).figure
+        yield fig, fig.subplots(rows, columns, squeeze=False, **options).ravel()
 
 
 def save(fig: Figure, folder: Path, name: str) -> str:

@@ -58,13 +58,22 @@ def summary(model: type[ResultModel]) -> str:
     return " ".join((model.__doc__ or "").split())
 
 
+#: What every analysis gives beside its results
+BESIDE: dict[str, type[ResultModel]] = {"verdict": Verdict, "assumptions": Assumption}
+
+
 def explain(word: str) -> str:
-    """What "results", "results.KIND" or "results.KIND.KEY" mean; KeyError with the nearest known word where there is none."""
+    """What "results", "results.KIND" or "results.KIND.KEY" mean, or "results.verdict"; KeyError with the nearest known word where there is none."""
     path = word.split(".", 2)[1:]
     if not path:
-        rows = [f"{kind:16} {summary(model)}" for kind in kinds.ANALYSES for model in shapes(kind)]
+        rows = [
+            f"{kind:16} {summary(model).removeprefix(f'{kind}: ')}" for kind in kinds.ANALYSES for model in shapes(kind)
+        ]
         return "Results of an analysis, in summary.json and as run[NAME]:\n  " + "\n  ".join(rows)
     kind, *rest = path
+    if path[-1] in BESIDE:
+        model = BESIDE[path[-1]]
+        return f"{path[-1]}: {summary(model)}\n" + "\n".join(f"  {_line(f)}" for f in facts(model))
     if kind not in kinds.ANALYSES:
         raise KeyError(f"no results of a kind '{kind}'" + _near(kind, list(kinds.ANALYSES)))
     if not rest:

@@ -53,7 +53,7 @@ class ResultModel(BaseModel):
         for name, field in type(self).model_fields.items():
             if key == (field.alias or name) and name in self.model_fields_set:
                 return getattr(self, name)
-        raise KeyError(key)
+        raise KeyError(f"no result '{key}'; there are {', '.join(self.keys()) or 'none'}")
 
     def __contains__(self, key: str) -> bool:
         return key in self.keys()
@@ -66,9 +66,27 @@ class ResultModel(BaseModel):
         """Keys and values that were given."""
         return ((key, self[key]) for key in self.keys())
 
+    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
+        """What was given, long lists by their length."""
+        for name in type(self).model_fields:
+            if name in self.model_fields_set:
+                value = getattr(self, name)
+                yield name, _Long(len(value)) if isinstance(value, list) and len(value) > _SHOWN else value
+
     def as_json(self) -> dict[str, Any]:
         """What summary.json holds."""
         return self.model_dump(by_alias=True, exclude_unset=True)
+
+
+#: Values of a list that the representation of a model shows
+_SHOWN = 8
+
+
+class _Long(int):
+    """The length of a list that is too long to show."""
+
+    def __repr__(self) -> str:
+        return f"[... {int(self)} values]"
 
 
 def plain(value: Any) -> Any:

@@ -22,6 +22,10 @@ class Array:
     about: str = ""
     series: str = ""
 
+    def __repr__(self) -> str:
+        axes = ", ".join(f"{name} {size}" for name, size in zip(self.dims, self.data.shape, strict=False))
+        return f"<Array ({axes}){f' [{self.unit}]' if self.unit else ''}>"
+
 
 @dataclass(frozen=True)
 class TableData:
@@ -54,6 +58,9 @@ class Result:
     tables: dict[str, TableData] = field(default_factory=dict)
     files: dict[str, bytes] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+
+    def __repr__(self) -> str:
+        return f"<Result of {self.kind}: {self.status}, {len(self.results.keys())} values, {len(self.arrays)} arrays>"
 
     def __getitem__(self, name: str) -> Any:
         """A result by its name, or an array's data."""

@@ -256,6 +256,10 @@ class Stored:
         self.folder, self.head, self.analyses, self.arrays = folder, head, analyses, arrays
         self._typed = dict(typed or {})
 
+    def __repr__(self) -> str:
+        told = ", ".join(f"{row['name']} {row['status']}" for row in self.analyses)
+        return f"<{type(self).__name__}: {told}; {'in memory' if self.folder is None else self.folder}>"
+
     @cached_property
     def summary(self) -> dict[str, Any]:
         """What summary.json holds (its `files` only for a run that was read back)."""
@@ -293,7 +297,12 @@ class Stored:
         return [array for array in self.arrays[analysis].values() if array.series == name]
 
     def array(self, analysis: str, name: str) -> np.ndarray:
-        return self.arrays[analysis][name].data
+        """The data of an array; KeyError with the names that there are."""
+        self.analysis(analysis)
+        there = self.arrays[analysis]
+        if name not in there:
+            raise KeyError(f"{self._place}{analysis} has no array '{name}'; there are {', '.join(there) or 'none'}")
+        return there[name].data
 
     def dataset(self, analysis: str) -> Any:
         """The arrays of an analysis as an xarray.Dataset (xarray must be installed)."""

@@ -48,6 +48,9 @@ class Live:
         self.deck = replace(deck, building=building, buildings=buildings)
         self.names = store.group_names([options.kind for options in deck.analyses])
 
+    def __repr__(self) -> str:
+        return f"<Live: {', '.join(self.names)}>"
+
     def set(self, key: str, value: Any) -> None:
         """Give a key of the deck another value, as it would stand in the deck: set("structure.thickness", "20 cm").
 

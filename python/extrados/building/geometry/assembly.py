@@ -41,6 +41,9 @@ class Assembly:
     fill: np.ndarray | None = field(default=None, kw_only=True)
     measures: dict[str, float] = field(default_factory=dict, kw_only=True)
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {len(self.mass)} blocks, {len(self.a)} joints>"
+
     @cached_property
     def length(self) -> np.ndarray:
         """Length of each joint [m]."""

@@ -45,6 +45,9 @@ class RigidBodies:
     joints: list[tuple[int, int] | None]
     depth: float
 
+    def __repr__(self) -> str:
+        return f"<RigidBodies: {self.count} bodies, {len(self.mass) - self.count} supports>"
+
 
 def rigid_bodies(
     assembly: Assembly, groups: Sequence[Sequence[int]] = (), worn: float = 0.0, floor: float | None = None

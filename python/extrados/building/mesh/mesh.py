@@ -53,6 +53,9 @@ class Mesh:
     ground: np.ndarray | None = None
     joint_names: list[str] = field(default_factory=list)
 
+    def __repr__(self) -> str:
+        return f"<Mesh: {len(self.xy)} nodes, {sum(len(group.connect) for group in self.groups)} elements>"
+
     @property
     def has_joints(self) -> bool:
         return any(group.joint is not None for group in self.groups)

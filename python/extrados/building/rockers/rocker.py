@@ -39,6 +39,9 @@ class Rocker:
     start_rotation: float = 0.0
     warnings: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<Rocker: {self.what}, rocks from {self.uplift:.4g} g>"
+
     @property
     def scale(self) -> float:
         """Length [m] whose root scales durations, as R does for an arch (thesis Eq. 5.7): sqrt(scale/g) is 2.5 / p of

@@ -14,7 +14,7 @@ from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ArchAssembly(Assembly):
     """Voussoir i lies between joints i and i + 1; joint 0 is the left springing, joint n the right one.
 

@@ -17,7 +17,7 @@ _BODY = ("mass", "inertia", "centre_height", "toe_right", "toe_left")
 SIZES = {"width", "height", "depth", *_BODY}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class BlockAssembly(Assembly):
     """One block on the ground; the origin lies on the ground below its centre of mass, x to the right, y up.
 
