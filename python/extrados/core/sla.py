@@ -12,6 +12,7 @@ from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
     ELEMENTS,
+    EVENT,
     EVENTS,
     LAWS,
     STOPS,
@@ -28,6 +29,7 @@ from extrados.core.sla_parts import (
 
 __all__ = [
     "ELEMENTS",
+    "EVENT",
     "EVENTS",
     "LAWS",
     "REPORT",

@@ -10,6 +10,8 @@ from extrados.core import lists
 LAWS = lists.numbers("sla_law")
 ELEMENTS = lists.numbers("sla_element")
 EVENTS = lists.words("sla_event")
+#: Name of an event -> its number
+EVENT = {entry.name: entry.number for entry in lists.entries("sla_event")}
 STOPS = lists.words("sla_stop")
 
 

@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.rocking import Outcome
+from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 
@@ -21,7 +21,7 @@ class Check(ResultModel):
 class CodeChecks(KindResults):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
-    dynamic_outcome: Outcome = maybe("of a block under a motion: what the computed rocking gives")
+    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: what the computed rocking gives")
     dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
     peak_ground_acceleration_g: float | None = maybe("of a block: demand of the rules", "g")
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of the rules", "m/s")

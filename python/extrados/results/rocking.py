@@ -1,11 +1,13 @@
 """Results of rocking dynamics: rocking, failure-domain, assessment."""
 
-from typing import Literal
+from typing import Literal, get_args
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
-Outcome = Literal["no-hinging", "recovery", "collapse"]
+RockingOutcome = Literal["no-hinging", "recovery", "collapse"]
+#: Numbers of the outcomes in stored arrays, as the core counts them
+NO_HINGING, RECOVERY, COLLAPSE = range(len(get_args(RockingOutcome)))
 Pulse = Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"]
 
 
@@ -22,7 +24,7 @@ class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
     rotation_of: str = fact("whose rotation is told")
-    outcome: Outcome = fact("does not rock, rocks and stays up, or comes down")
+    outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
     settled: bool = fact("whether it came to rest, or down, before the run ended; false leaves the outcome open")
     collapse_half_cycle: int | None = fact("half cycle in which it comes down")
     collapse_time_s: float | None = fact("when it turned past recall", "s")

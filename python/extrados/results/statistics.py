@@ -1,7 +1,7 @@
 """Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
 from extrados.results.fields import fact, maybe
-from extrados.results.rocking import Outcome
+from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 
@@ -107,7 +107,7 @@ Fragility = Ensemble | OverDurations
 class Resonance(KindResults):
     """resonance: the motion under a cap that feeds most energy to a rocking structure."""
 
-    outcome: Outcome = fact("what it does under that motion")
+    outcome: RockingOutcome = fact("what it does under that motion")
     cap_g: float = fact("cap of the ground acceleration", "g")
     cap_ratio: float = fact("the same over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")

@@ -16,7 +16,7 @@ from extrados.analyses.sla.tables import Sla
 from extrados.building.building import Building
 from extrados.core.calls import interruptible
 from extrados.core.errors import Cancelled, status_code
-from extrados.core.sla import EVENTS, Plane, teeth
+from extrados.core.sla import EVENT, EVENTS, Plane, teeth
 from extrados.results import sla as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.sla import PREFIXES
@@ -134,7 +134,10 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     """Results of one curve; keys end in their unit."""
     events, peak, unit = curve.events, curve.peak, model.unit
     lost = np.flatnonzero(~events.equilibrium)
-    tension = np.isin(events.code, (1, 2))
+
+    def kinds(*names: str) -> np.ndarray:
+        return np.isin(events.code, [EVENT[name] for name in names])
+
     numbers: dict[str, Any] = {
         "sense": curve.sense,
         "peak_load_N": float(events.load[peak] * unit) if peak >= 0 else None,
@@ -148,10 +151,10 @@ def _numbers(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "events_without_equilibrium": len(lost),
         "first_event_without_equilibrium": int(lost[0]) + 1 if len(lost) else None,
         "stop": events.reason or ("interrupted" if events.interrupted else "number of events"),
-        "secondary_cracks": int(np.isin(events.code, (2,)).sum()),
-        "damaged_points": len(np.unique(events.point[tension])),
-        "closings": int(np.isin(events.code, (5, 6)).sum()),
-        "crushing_events": int(np.isin(events.code, (3, 4)).sum()),
+        "secondary_cracks": int(kinds("tension_s").sum()),
+        "damaged_points": len(np.unique(events.point[kinds("tension", "tension_s")])),
+        "closings": int(kinds("close", "close_s").sum()),
+        "crushing_events": int(kinds("compression", "compression_s").sum()),
         "last_load_N": float(events.load[-1] * unit) if len(events) else None,
         "last_displacement_m": float(events.monitors[-1, 0]) if len(events) else None,
         "energy_residual_ratio": events.ledger_error,
