@@ -29,9 +29,13 @@ class CodeChecks(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The rule of the least capacity over demand; without a demand the weakest strength of a pier [N]."""
-        asked = {name: c for name, c in self.checks.items() if c.demand is not None and c.demand > 0.0}
+        asked = [
+            (c.capacity / c.demand, name, c)
+            for name, c in self.checks.items()
+            if c.demand is not None and c.demand > 0.0
+        ]
         if asked:
-            name, worst = min(asked.items(), key=lambda item: item[1].capacity / item[1].demand)
+            _, name, worst = min(asked, key=lambda row: row[0])
             unit = f" {worst.unit}" if worst.unit else ""
             return judge(
                 f"{name} governs and {worst.verdict}: {worst.demand:.3g} against {worst.capacity:.3g}{unit}.",

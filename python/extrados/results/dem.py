@@ -5,7 +5,7 @@ from typing import Literal
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import NamedHinge
 from extrados.results.rocking import RockingOutcome, between
-from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, acceleration, judge
 
 #: What a joint does, in the stored array `hinge`: hinged at its first end (intrados) or its second (extrados)
 HINGED_FIRST, CLOSED, HINGED_SECOND, APART = -1, 0, 1, 2
@@ -73,7 +73,7 @@ class DemRun(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
-        outcome = "falls" if self.outcome == "collapse" else "open" if self.still_moving else "stands"
+        outcome: Outcome = "falls" if self.outcome == "collapse" else "open" if self.still_moving else "stands"
         most, limit = self.peak_displacement_m, self.collapse_displacement_m
         text = {
             "falls": f"A block moves farther than the {limit:.3g} m that count as collapse",

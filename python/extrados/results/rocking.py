@@ -3,7 +3,7 @@
 from typing import Literal, get_args
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Verdict, judge
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
 RockingOutcome = Literal["no-hinging", "recovery", "collapse"]
 #: Numbers of the outcomes in stored arrays, as the core counts them
@@ -59,7 +59,7 @@ class Rocking(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest rotation against the critical one; open where the run ended before it settled."""
-        outcome = "falls" if self.outcome == "collapse" else "stands" if self.settled else "open"
+        outcome: Outcome = "falls" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
             "falls": "Under the motion it comes down",
             "stands": f"Under the motion it turns by {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation "
@@ -178,13 +178,17 @@ class Assessment(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The impulse of the least margin against its failing amplitude [g]."""
-        harmful = [i for i in self.impulses if i.margin is not None]
+        harmful = [
+            (i.margin, i.failing_amplitude_g, i)
+            for i in self.impulses
+            if i.margin is not None and i.failing_amplitude_g is not None
+        ]
         if not harmful:
             return judge("No impulse of the motion is long enough to bring it down.", None, None, "g", "stands")
-        worst = min(harmful, key=lambda i: i.margin)
+        _, failing, worst = min(harmful, key=lambda row: row[0])
         size = abs(worst.amplitude_g)
-        word = "below" if size < worst.failing_amplitude_g else "at or above"
+        word = "below" if size < failing else "at or above"
         return judge(
             f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
-            f"{worst.failing_amplitude_g:.3g} g.", size, worst.failing_amplitude_g, "g",
+            f"{failing:.3g} g.", size, failing, "g",
         )  # fmt: skip
