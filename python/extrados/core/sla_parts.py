@@ -89,6 +89,11 @@ class Plane:
     selective: bool = False
     joint: bool = False
 
+    @property
+    def points_each(self) -> int:
+        """Integration points of an element."""
+        return {"T3": 1, "T6": 3}.get(self.kind, self.points[0] * self.points[1])
+
 
 @dataclass(frozen=True)
 class Bars:
