@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from extrados.limit.systems import Sparse
 
@@ -60,7 +60,7 @@ def _mehrotra(
     """Minimise -direction * gamma subject to a x + live gamma = right, x >= 0: x, gamma and the multipliers."""
     rows, n = a.shape
 
-    def factor(weight: np.ndarray):
+    def factor(weight: np.ndarray) -> SuperLU:
         matrix = sparse.csc_array(a @ sparse.diags_array(weight) @ at)
         matrix = matrix + sparse.eye_array(rows, format="csc") * SHIFT
         return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -84,7 +84,8 @@ def _mehrotra(
 
         def newton(
             complement: np.ndarray,
-            solver=solver, along=along, primal=primal, dual=dual, free=free, x=x, z=z,
+            solver: SuperLU = solver, along: np.ndarray = along, primal: np.ndarray = primal, dual: np.ndarray = dual,
+            free: np.floating | np.ndarray = free, x: np.ndarray = x, z: np.ndarray = z,
         ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:  # fmt: skip
             part = solver.solve(primal + a @ ((x * dual - complement) / z))
             dgamma = float((live @ part - free) / (live @ along))
