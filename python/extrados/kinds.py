@@ -66,7 +66,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "survey": _analysis("limit", "Survey", "survey", "limit:draw_survey", "limit/survey"),
     "supports": _analysis("limit", "Supports", "supports", "limit:draw_supports", "limit/oppenheim"),
     "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit:draw_moving_load", "limit/oppenheim"),
-    "rocking": _analysis("rocking", "Rocking", "rocking", "arch:draw_rocking", "arch/oppenheim"),
+    "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),
     "failure-domain": _analysis(
         "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"
     ),
@@ -84,8 +84,8 @@ ANALYSES: dict[str, AnalysisKind] = {
     "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "rocking/el-centro-block"),
     "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
     "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
-    "sla": _analysis("sla", "Sla", "sla", "sla:draw_sla", "sla/beam"),
-    "dem": _analysis("dem", "Dem", "dem", "dem:draw_dem", "dem/oppenheim"),
+    "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla/beam"),
+    "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem/oppenheim"),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
     "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "dem/rocking-block"),
 }  # fmt: skip

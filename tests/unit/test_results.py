@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 import pytest
@@ -9,7 +10,8 @@ from pydantic import ValidationError
 
 import extrados
 from extrados import kinds
-from extrados.results import explain, limit, store
+from extrados.core import lists
+from extrados.results import explain, limit, rocking, store
 from extrados.results.assumptions import spoken
 from extrados.results.dem import DemDomain
 from extrados.results.fields import ResultModel, fact, maybe
@@ -261,3 +263,10 @@ def test_what_is_shown_of_results_is_short_and_a_wrong_name_is_told_the_right_on
         run.array("rocking", "rotaton")
     with pytest.raises(KeyError, match="no result 'colapse'; there are collapse_acceleration_g"):
         run["tilt"]["colapse"]
+
+
+def test_stored_outcomes_are_numbered_as_in_the_core() -> None:
+    """Figures read stored numbers by results.rocking, which may not ask the core."""
+    numbers = lists.numbers("rocking_outcome")
+    assert numbers == {word: k for k, word in enumerate(get_args(rocking.RockingOutcome))}
+    assert (rocking.NO_HINGING, rocking.RECOVERY, rocking.COLLAPSE) == tuple(numbers.values())

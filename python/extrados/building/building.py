@@ -50,7 +50,7 @@ class Building:
         """Pickled without its views, which are made again where it arrives."""
         return {**self.__dict__, "_views": {}}
 
-    def having(self, **tables: Table) -> "Building":
+    def having(self, **tables: Any) -> "Building":
         """The same building with other tables: structure, material, joints, supports, initial."""
         return replace(self, **tables)
 
@@ -136,21 +136,7 @@ class Building:
         of a random pattern."""
         options = options or MeshOptions()
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
-        return self._view("mesh", tables, lambda: self._mesh(options, seed))
-
-    def _mesh(self, options: MeshOptions, seed: int | None) -> Mesh:
-        match self._structure().kind:
-            case "panel":
-                from extrados.building.mesh.panel import make_panel
-
-                return make_panel(self, options, seed)
-            case "mesh":
-                from extrados.building.mesh.file import read_mesh
-
-                return read_mesh(self, options)
-        from extrados.building.mesh.stones import make_stones
-
-        return make_stones(self, options)
+        return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
 
     def _structure(self) -> Structure:
         if self.structure is None:

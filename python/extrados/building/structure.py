@@ -2,23 +2,30 @@
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from extrados.building.errors import NoView
 from extrados.schema.table import Table
 
 if TYPE_CHECKING:
+    from extrados.building.building import Building
     from extrados.building.geometry.assembly import Assembly
+    from extrados.building.mesh.mesh import Mesh
+    from extrados.building.mesh.options import MeshOptions
+
+RocksAs = Literal["mechanism", "block", "piers"]
 
 
 class Structure(Table):
     """Base of the structure kinds. `lacks`: views that the kind cannot have, with the reason in words.
 
+    rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, or its piers.
     starter_analysis: the analysis of the deck that `new` writes.
     """
 
     kind: str
     lacks: ClassVar[Mapping[str, str]] = {}
+    rocks_as: ClassVar[RocksAs] = "mechanism"
     starter_analysis: ClassVar[str] = "tilt"
 
     def assembly(self, density: float, folder: Path) -> "Assembly":
@@ -35,3 +42,12 @@ class Structure(Table):
     def piers(self, density: float) -> "Assembly":
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""
         raise NoView(f"a structure of kind '{self.kind}' has no piers")
+
+    def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
+        """Finite elements: of the stones, with a row of elements along every joint, where a kind does not mesh itself.
+
+        building: the one of this structure; seed: instead of that of a random pattern. BadGeometry says what is wrong.
+        """
+        from extrados.building.mesh.stones import make_stones
+
+        return make_stones(building, options)

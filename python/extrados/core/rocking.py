@@ -15,12 +15,14 @@ from extrados.core.ground import Ground, MotionSet, as_motion_set
 from extrados.core.handles import Owner
 
 __all__ = [
-    "EVENTS", "OUTCOMES", "Body", "BodyList", "Ensemble", "Ground", "MotionSet", "Response", "arch_body", "block_body",
+    "EVENTS", "FAILED", "OUTCOMES", "Body", "BodyList", "Ensemble", "Ground", "MotionSet", "Response", "arch_body", "block_body",
     "ensemble", "history",
 ]  # fmt: skip
 
 #: Outcomes by their number, from 0; events by theirs.
 OUTCOMES = tuple(lists.words("rocking_outcome").values())
+#: Outcome of a run that failed or was not run
+FAILED = -1
 EVENTS = lists.words("rocking_event")
 
 
@@ -208,7 +210,7 @@ def history(
 class Ensemble:
     """Results of many runs, one entry each; `failed` maps a run to the reason why it has no result."""
 
-    outcome: np.ndarray  # 0 no hinging, 1 recovery, 2 collapse; -1 failed or not run
+    outcome: np.ndarray  # place in OUTCOMES, or FAILED
     half_cycles: np.ndarray
     impacts: np.ndarray
     peak: np.ndarray  # [rad], NaN where failed
@@ -272,7 +274,7 @@ def ensemble(
     failed = {int(k): status_list()[int(run_status[k])][1] for k in np.flatnonzero(bad & (run_status != cancelled))}
     gone = np.where(bad, np.nan, 1.0)
     return Ensemble(
-        np.where(bad, -1, outcome[0]),
+        np.where(bad, FAILED, outcome[0]),
         outcome[1],
         outcome[2],
         peak[0] * gone,

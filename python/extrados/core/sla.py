@@ -12,6 +12,7 @@ from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
     ELEMENTS,
+    EVENT,
     EVENTS,
     LAWS,
     STOPS,
@@ -28,6 +29,7 @@ from extrados.core.sla_parts import (
 
 __all__ = [
     "ELEMENTS",
+    "EVENT",
     "EVENTS",
     "LAWS",
     "REPORT",
@@ -240,9 +242,8 @@ class Model(Owner):
                 properties, _rows(tension, compression, (1 + int(group.joint)) * given.astype(np.int32)),
             )  # fmt: skip
             what = "element"
-            points = {"T3": 1, "T6": 3}.get(group.kind, group.points[0] * group.points[1])
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
-            self.plane_points.append((group, first, points))
+            self.plane_points.append((group, first, group.points_each))
         if bad:
             raise BadElement(int(bad) - 1, what)
         check(status, f"{what}s")

@@ -10,6 +10,8 @@ from extrados.core import lists
 LAWS = lists.numbers("sla_law")
 ELEMENTS = lists.numbers("sla_element")
 EVENTS = lists.words("sla_event")
+#: Name of an event -> its number
+EVENT = {entry.name: entry.number for entry in lists.entries("sla_event")}
 STOPS = lists.words("sla_stop")
 
 
@@ -86,6 +88,11 @@ class Plane:
     points: tuple[int, int] = (2, 2)
     selective: bool = False
     joint: bool = False
+
+    @property
+    def points_each(self) -> int:
+        """Integration points of an element."""
+        return {"T3": 1, "T6": 3}.get(self.kind, self.points[0] * self.points[1])
 
 
 @dataclass(frozen=True)

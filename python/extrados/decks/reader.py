@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import ValidationError
+from pydantic_core import ErrorDetails
 
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES, Analysis
@@ -246,14 +247,14 @@ class _Checker:
         try:
             return model.model_validate(table)
         except ValidationError as error:
-            groups: dict[tuple, list[dict[str, Any]]] = {}
+            groups: dict[tuple, list[ErrorDetails]] = {}
             for problem in error.errors():
                 groups.setdefault(_place(problem), []).append(problem)
             for problems in groups.values():
                 self.problem(model, path, problems)
             return None
 
-    def problem(self, model: type[Table], path: tuple, problems: list[dict[str, Any]]) -> None:
+    def problem(self, model: type[Table], path: tuple, problems: list[ErrorDetails]) -> None:
         """One complaint; a key that may be of several types fails each of them, which makes several problems."""
         problem = problems[0]
         place = _place(problem)
@@ -273,8 +274,11 @@ class _Checker:
         elif sort == "value_error":
             text = str(problem.get("ctx", {}).get("error", problem["msg"]))
             if not place:  # a rule over several keys: shown at the first one that it names
-                given = problem.get("input") if isinstance(problem.get("input"), dict) else {}
-                found = ((re.search(rf"\b{re.escape(key)}\b", text), key) for key in given)
+                given = problem["input"]
+                found = (
+                    (re.search(rf"\b{re.escape(key)}\b", text), key)
+                    for key in (given if isinstance(given, dict) else {})
+                )
                 named = min(((match.start(), key) for match, key in found if match), default=None)
                 at = (*path, named[1]) if named else at
             self.complain(at, text)
@@ -301,7 +305,7 @@ class _Checker:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")
 
 
-def _place(problem: dict[str, Any]) -> tuple:
+def _place(problem: ErrorDetails) -> tuple:
     """The keys that lead to a problem: the first part is one, whatever it is called; so is one unknown or missing."""
     first, rest = problem["loc"][:1], problem["loc"][1:]
     last = rest[-1:] if problem["type"] in ("extra_forbidden", "missing") else ()

@@ -3,6 +3,7 @@
 import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -136,9 +137,7 @@ def assess(
 
     try:
         thrusts = {
-            name: beside(
-                f"the least and greatest thrust of the {name}", lambda joints=joints: limit.thrust(joints), (NoAnswer,)
-            )
+            name: beside(f"the least and greatest thrust of the {name}", partial(limit.thrust, joints), (NoAnswer,))
             for name, joints in assembly.chains.items()
         }
         state, mechanism = limit.collapse(1)
@@ -161,10 +160,11 @@ def assess(
         )
         start = [state for pair in ends.values() for state in pair]
         central = beside("the most central line upright", lambda: limit.central(start=start), rounding)
+    upright, part = central or (None, np.nan)
     return Answer(
         assembly, limit.loads, drawn, mechanism, back, back_mechanism,
         {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()},
-        *(central or (None, np.nan)), tuple(warnings),
+        upright, part, tuple(warnings),
     )  # fmt: skip
 
 

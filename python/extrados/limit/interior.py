@@ -8,11 +8,15 @@ simplex and crossover labour over its many equal answers. Where it does not clos
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
 
 from extrados.limit.systems import Sparse
+
+if TYPE_CHECKING:
+    from scipy.sparse.linalg import SuperLU
 
 GAP = 5e-10  # of gamma: where the iteration may end
 RESIDUAL = 1e-9  # of the total load
@@ -61,7 +65,7 @@ def _mehrotra(
 
     rows, n = a.shape
 
-    def factor(weight: np.ndarray):
+    def factor(weight: np.ndarray) -> "SuperLU":
         matrix = sparse.csc_array(a @ sparse.diags_array(weight) @ at)
         matrix = matrix + sparse.eye_array(rows, format="csc") * SHIFT
         return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -85,7 +89,8 @@ def _mehrotra(
 
         def newton(
             complement: np.ndarray,
-            solver=solver, along=along, primal=primal, dual=dual, free=free, x=x, z=z,
+            solver: SuperLU = solver, along: np.ndarray = along, primal: np.ndarray = primal, dual: np.ndarray = dual,
+            free: np.floating | np.ndarray = free, x: np.ndarray = x, z: np.ndarray = z,
         ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:  # fmt: skip
             part = solver.solve(primal + a @ ((x * dual - complement) / z))
             dgamma = float((live @ part - free) / (live @ along))

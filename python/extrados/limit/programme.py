@@ -112,16 +112,20 @@ class LimitAnalysis:
     def optimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[Solution, Constraints, np.ndarray]:
         """Minimise under all laws of the joints: solution, the rows it obeys, and the scaled corner forces."""
         if self.associated:
-            if self._programme is None:
-                self._programme = Programme(self.system, self._whole())
             return self._crushing(cost, gamma, None)
         return self._without_dilatancy(cost, gamma)
+
+    def _own_programme(self) -> Programme:
+        """The programme of the laws themselves, kept: other loads change its costs only."""
+        if self._programme is None:
+            self._programme = Programme(self.system, self._whole())
+        return self._programme
 
     def _crushing(
         self, cost: np.ndarray, gamma: tuple[float, float], cone: Constraints | None
     ) -> tuple[Solution, Constraints, np.ndarray]:
         """Tangent planes of min(n_p, n_q) >= N^2 / (2 f L), added where the last solution breaks it."""
-        programme = self._programme if cone is None else Programme(self.system, self._whole(cone))
+        programme = Programme(self.system, self._whole(cone)) if cone is not None else self._own_programme()
         for _ in range(ROUNDS):
             solution = programme.minimise(cost, gamma)
             corners = self.system.corners(solution.x)
@@ -183,7 +187,7 @@ class LimitAnalysis:
         if isinstance(self.system, Sparse) and self._cone is not None and self.associated and self._crush is None:
             inner = collapse_load(self.system, self._mu, direction)
             if inner is not None:
-                return self._interior_answer(inner)
+                return self._interior_answer(self.system, inner)
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
         if abs(solution.value) > 0.99 * BOUND:
             raise Immovable("no such load brings it down: the joints hold it from all sides")
@@ -197,10 +201,10 @@ class LimitAnalysis:
         )
         return self._state(solution, corners), mechanism
 
-    def _interior_answer(self, inner: Interior) -> tuple[State, Mechanism]:
+    def _interior_answer(self, system: Sparse, inner: Interior) -> tuple[State, Mechanism]:
         """State and mechanism in the middle of all that are equally good: whatever can move does."""
         nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
-        twist, defect = self.system.velocities(inner.motion, -inner.twist.ravel())
+        twist, defect = system.velocities(inner.motion, -inner.twist.ravel())
         mechanism = read_mechanism(
             self.assembly, self.loads, nothing, np.empty(0), inner.motion, twist, defect, at_rest=INNER_REST
         )
@@ -245,8 +249,9 @@ class LimitAnalysis:
             fixed = self._cone if fixed is None else fixed + self._cone
         part, share = 1.0, np.ones(m)
         if start:
-            normal = sum(s.normal for s in start) / len(start) / self.loads.scale
-            lean = sum(s.normal * (2.0 * s.position - 1.0) for s in start) / len(start) / self.loads.scale
+            normal = np.sum([s.normal for s in start], axis=0) / len(start) / self.loads.scale
+            leans = [s.normal * (2.0 * s.position - 1.0) for s in start]
+            lean = np.sum(leans, axis=0) / len(start) / self.loads.scale
             part, share = _eccentric(lean, normal), np.maximum(normal, CARRIES)
         programme, best, low, high = None, None, 0.0, np.inf
         for _ in range(ROUNDS):
@@ -268,7 +273,7 @@ class LimitAnalysis:
             creeps = best is not None and new > 0.5 * (low + high)
             if new < high:
                 best, high, share = self._unclipped(solution, corners), new, np.maximum(normal, CARRIES)
-            if abs(part - new) < SETTLED or high - low < SETTLED:
+            if best is not None and (abs(part - new) < SETTLED or high - low < SETTLED):
                 return best, high
             part = 0.5 * (low + high) if creeps else high
         raise NoAnswer("the most central thrust line did not settle")
@@ -286,10 +291,10 @@ class LimitAnalysis:
                 replace(a, p=a.middle - half, q=a.middle + half), self.friction, loads=self.loads, form="sparse"
             )
             try:
-                ends = [limit.collapse(direction)[0] for direction in (1, -1)]
+                right, left = (limit.collapse(direction)[0] for direction in (1, -1))
             except NoEquilibrium:
                 return None
-            return _mixed(*ends, gamma, part)
+            return _mixed(right, left, gamma, part)
 
         low, high = 0.0, 1.0
         best = held(high)

@@ -10,7 +10,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 
 from extrados.plots import style
 from extrados.plots.arch import moved, outlines
-from extrados.results.dem import DemRun
+from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, DemRun
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -65,9 +65,9 @@ class _Scene:
         shapes = [moved(o, c, p) for o, c, p in zip(self.blocks, self.centroid, place, strict=True)]
         ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
         points = []
-        for j in np.flatnonzero(np.abs(self.hinge[k]) == 1):
+        for j in np.flatnonzero(np.isin(self.hinge[k], (HINGED_FIRST, HINGED_SECOND))):
             if self.owner[j] >= 0:
-                point = self.p[j] if self.hinge[k, j] < 0 else self.q[j]
+                point = self.p[j] if self.hinge[k, j] == HINGED_FIRST else self.q[j]
                 points.append(moved(point[None], self.centroid[self.owner[j]], place[self.owner[j]])[0])
         if points and len(points) <= 40:
             style.draw_hinges(ax, np.array(points))

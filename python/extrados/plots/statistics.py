@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from extrados.plots import style
+from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.results.statistics import OverDurations
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
@@ -247,9 +248,9 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
     r = run[name]
     f, a, outcome, ratio = (run.array(name, k) for k in ("frequency", "amplitude", "outcome", "peak_ratio"))
     with style.figure(7.0, 4.4) as (fig, (ax,)):
-        shown = np.where(outcome == 1, np.minimum(ratio, 1.0), np.nan)
+        shown = np.where(outcome == RECOVERY, np.minimum(ratio, 1.0), np.nan)
         drawn = ax.pcolormesh(f, a, shown.T, cmap="YlGnBu", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True)
-        fell = np.where(outcome == 2, 1.0, np.nan)
+        fell = np.where(outcome == COLLAPSE, 1.0, np.nan)
         from matplotlib.colors import ListedColormap
 
         ax.pcolormesh(f, a, fell.T, cmap=ListedColormap([style.MODES[3]]), shading="nearest", rasterized=True)

@@ -112,7 +112,8 @@ class Checkpoint:
     def keep(self, name: str, first: int, arrays: dict[str, np.ndarray]) -> Path:
         """Store a batch; it is there whole or not at all."""
         stream = io.BytesIO()
-        np.savez(stream, **arrays)
+        named: dict[str, Any] = dict(arrays)  # none is called as an option of savez
+        np.savez(stream, **named)
         content = stream.getvalue()
         path = self.folder / name / f"{first:012d}-{_digest(content)}.npz"
         try:

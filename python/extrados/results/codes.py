@@ -3,7 +3,7 @@
 from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.rocking import Outcome
+from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Verdict, judge
 
 
@@ -21,7 +21,7 @@ class Check(ResultModel):
 class CodeChecks(KindResults):
     """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
 
-    dynamic_outcome: Outcome = maybe("of a block under a motion: what the computed rocking gives")
+    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: what the computed rocking gives")
     dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
     peak_ground_acceleration_g: float | None = maybe("of a block: demand of the rules", "g")
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of the rules", "m/s")
@@ -29,9 +29,13 @@ class CodeChecks(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The rule of the least capacity over demand; without a demand the weakest strength of a pier [N]."""
-        asked = {name: c for name, c in self.checks.items() if c.demand is not None and c.demand > 0.0}
+        asked = [
+            (c.capacity / c.demand, name, c)
+            for name, c in self.checks.items()
+            if c.demand is not None and c.demand > 0.0
+        ]
         if asked:
-            name, worst = min(asked.items(), key=lambda item: item[1].capacity / item[1].demand)
+            _, name, worst = min(asked, key=lambda row: row[0])
             unit = f" {worst.unit}" if worst.unit else ""
             return judge(
                 f"{name} governs and {worst.verdict}: {worst.demand:.3g} against {worst.capacity:.3g}{unit}.",

@@ -4,8 +4,11 @@ from typing import Literal
 
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.limit import NamedHinge
-from extrados.results.rocking import Outcome, between
-from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+from extrados.results.rocking import RockingOutcome, between
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, acceleration, judge
+
+#: What a joint does, in the stored array `hinge`: hinged at its first end (intrados) or its second (extrados)
+HINGED_FIRST, CLOSED, HINGED_SECOND, APART = -1, 0, 1, 2
 
 
 class Variation(ResultModel):
@@ -31,7 +34,7 @@ class Variation(ResultModel):
 class DemRun(KindResults):
     """dem: the blocks under a motion."""
 
-    outcome: Outcome = fact("no joint opens, joints open and it stands, or it comes down")
+    outcome: RockingOutcome = fact("no joint opens, joints open and it stands, or it comes down")
     collapse_time_s: float | None = fact("when a block first moved farther than the collapse displacement", "s")
     stopped: str = fact("why the run ended")
     stopped_by: list[str] = fact("the blocks that ended it")
@@ -70,7 +73,7 @@ class DemRun(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
-        outcome = "falls" if self.outcome == "collapse" else "open" if self.still_moving else "stands"
+        outcome: Outcome = "falls" if self.outcome == "collapse" else "open" if self.still_moving else "stands"
         most, limit = self.peak_displacement_m, self.collapse_displacement_m
         text = {
             "falls": f"A block moves farther than the {limit:.3g} m that count as collapse",
@@ -84,7 +87,7 @@ class DemTilt(KindResults):
     """dem: the constant acceleration that brings the blocks down."""
 
     test: Literal["tilt"] = fact("the test")
-    outcome: Outcome = fact("it comes down, at these accelerations")
+    outcome: RockingOutcome = fact("it comes down, at these accelerations")
     collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed to +x", "g")
     collapse_acceleration_opposite_g: float = fact("the same, pushed to -x", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg")

@@ -40,15 +40,16 @@ def facts(model: type[ResultModel], before: str = "") -> Iterator[Fact]:
 
 def fact_of(key: str, field: FieldInfo) -> Fact:
     """What a field says of itself, under a key."""
-    extra = field.json_schema_extra or {}
-    return Fact(key, field.description or "", extra.get("unit", ""), extra.get("source", ""), field.is_required())
+    extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
+    unit, source = (str(extra.get(name, "")) for name in ("unit", "source"))
+    return Fact(key, field.description or "", unit, source, field.is_required())
 
 
 def _rows(annotation: Any, mark: str = "") -> Iterator[tuple[type[ResultModel], str]]:
     """The models within a type, each with what stands between its key and theirs."""
     if isinstance(annotation, type) and issubclass(annotation, ResultModel):
         yield annotation, mark
-    origin = getattr(annotation, "__origin__", None)
+    origin: Any = getattr(annotation, "__origin__", None)
     for part in get_args(annotation):
         yield from _rows(part, {list: "[]", dict: ".NAME"}.get(origin, mark))
 
@@ -112,12 +113,13 @@ def manual() -> str:
         "Beside its results each analysis gives these.",
         "",
     ]
-    for head, model in (("verdict", Verdict), ("assumptions.KEY", Assumption)):
+    of_each: dict[str, type[ResultModel]] = {"verdict": Verdict, "assumptions.KEY": Assumption}
+    for head, model in of_each.items():
         lines += [f"### {head}", "", summary(model), "", *_table(model)]
     for kind in kinds.ANALYSES:
         lines += [f"## {kind}", ""]
-        for model in shapes(kind):
-            lines += [summary(model), "", *_table(model)]
+        for shape in shapes(kind):
+            lines += [summary(shape), "", *_table(shape)]
     return "\n".join(lines).rstrip() + "\n"
 
 

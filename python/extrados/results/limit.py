@@ -191,7 +191,7 @@ class Supports(KindResults):
         )  # fmt: skip
 
 
-class Mechanism(ResultModel):
+class GoverningMechanism(ResultModel):
     """A mechanism that governs somewhere in a sweep."""
 
     number: int = fact("its number in the figures")
@@ -221,7 +221,7 @@ class Sweep(KindResults):
 
     vary: str = fact("the key that varies")
     unit: str = fact("its unit")
-    mechanisms: list[Mechanism] = fact("the mechanisms that govern somewhere")
+    mechanisms: list[GoverningMechanism] = fact("the mechanisms that govern somewhere")
     changes: list[Change] = fact("where another begins to govern")
     stable_limits: list[float] = fact("values at which the range ends in which it stands, in the unit of the key")
     locked_limits: list[float] = fact("values past which no load of the kind brings it down")

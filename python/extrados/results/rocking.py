@@ -1,11 +1,13 @@
 """Results of rocking dynamics: rocking, failure-domain, assessment."""
 
-from typing import Literal
+from typing import Literal, get_args
 
 from extrados.results.fields import ResultModel, fact, maybe
-from extrados.results.verdict import Demand, KindResults, Verdict, judge
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
-Outcome = Literal["no-hinging", "recovery", "collapse"]
+RockingOutcome = Literal["no-hinging", "recovery", "collapse"]
+#: Numbers of the outcomes in stored arrays, as the core counts them
+NO_HINGING, RECOVERY, COLLAPSE = range(len(get_args(RockingOutcome)))
 Pulse = Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"]
 
 
@@ -22,7 +24,7 @@ class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
     rotation_of: str = fact("whose rotation is told")
-    outcome: Outcome = fact("does not rock, rocks and stays up, or comes down")
+    outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
     settled: bool = fact("whether it came to rest, or down, before the run ended; false leaves the outcome open")
     collapse_half_cycle: int | None = fact("half cycle in which it comes down")
     collapse_time_s: float | None = fact("when it turned past recall", "s")
@@ -57,7 +59,7 @@ class Rocking(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest rotation against the critical one; open where the run ended before it settled."""
-        outcome = "falls" if self.outcome == "collapse" else "stands" if self.settled else "open"
+        outcome: Outcome = "falls" if self.outcome == "collapse" else "stands" if self.settled else "open"
         text = {
             "falls": "Under the motion it comes down",
             "stands": f"Under the motion it turns by {100.0 * self.peak_rotation_ratio:.3g} % of the critical rotation "
@@ -176,13 +178,17 @@ class Assessment(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The impulse of the least margin against its failing amplitude [g]."""
-        harmful = [i for i in self.impulses if i.margin is not None]
+        harmful = [
+            (i.margin, i.failing_amplitude_g, i)
+            for i in self.impulses
+            if i.margin is not None and i.failing_amplitude_g is not None
+        ]
         if not harmful:
             return judge("No impulse of the motion is long enough to bring it down.", None, None, "g", "stands")
-        worst = min(harmful, key=lambda i: i.margin)
+        _, failing, worst = min(harmful, key=lambda row: row[0])
         size = abs(worst.amplitude_g)
-        word = "below" if size < worst.failing_amplitude_g else "at or above"
+        word = "below" if size < failing else "at or above"
         return judge(
             f"The motion's impulse of {size:.3g} g over {worst.period_s:.3g} s is {word} the failing amplitude of "
-            f"{worst.failing_amplitude_g:.3g} g.", size, worst.failing_amplitude_g, "g",
+            f"{failing:.3g} g.", size, failing, "g",
         )  # fmt: skip

@@ -86,10 +86,11 @@ class Sla(SlaCurve, KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
-        borne = [c.peak_acceleration_g for c in (self, self.minus) if c is not None]
-        if all(a is not None for a in borne):
-            return acceleration("The building", min(abs(a) for a in borne), demand)
-        peaks = [c.peak_load_N for c in (self, self.minus) if c is not None and c.peak_load_N is not None]
+        curves = [c for c in (self, self.minus) if c is not None]
+        borne = [abs(c.peak_acceleration_g) for c in curves if c.peak_acceleration_g is not None]
+        if len(borne) == len(curves):
+            return acceleration("The building", min(borne), demand)
+        peaks = [c.peak_load_N for c in curves if c.peak_load_N is not None]
         if not peaks:
             return judge(f"No greatest load was found; the run ended by: {self.stop}.", None, None, "N")
-        return judge(f"The wall bears {min(peaks) / 1e3:.4g} kN of the growing load.", None, min(peaks), "N")
+        return judge(f"The building bears {min(peaks) / 1e3:.4g} kN of the growing load.", None, min(peaks), "N")

@@ -1,8 +1,8 @@
 """Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
 from extrados.results.fields import fact, maybe
-from extrados.results.rocking import Outcome
-from extrados.results.verdict import Demand, KindResults, Verdict, judge
+from extrados.results.rocking import RockingOutcome
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
 
 class Ensemble(KindResults):
@@ -60,7 +60,7 @@ class Ensemble(KindResults):
         """The share of runs that come down; open unless all runs agree. With levels the fitted median is the capacity."""
         if self.collapse_probability is None:
             return judge("No motion could be run.", outcome="open")
-        outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
+        outcome: Outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
         text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} runs bring it down"
         if self.intensity is None:
             return judge(f"{text}.", self.collapse_probability, None, "probability", outcome)
@@ -96,7 +96,7 @@ class OverDurations(KindResults):
         if not self.count:
             return judge("No motion could be run.", outcome="open")
         share = self.collapsed / self.count
-        outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
+        outcome: Outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
         text = f"Over all durations {100.0 * share:.3g} % of {self.count} runs bring it down."
         return judge(text, share, None, "probability", outcome)
 
@@ -107,7 +107,7 @@ Fragility = Ensemble | OverDurations
 class Resonance(KindResults):
     """resonance: the motion under a cap that feeds most energy to a rocking structure."""
 
-    outcome: Outcome = fact("what it does under that motion")
+    outcome: RockingOutcome = fact("what it does under that motion")
     cap_g: float = fact("cap of the ground acceleration", "g")
     cap_ratio: float = fact("the same over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
@@ -139,8 +139,10 @@ class Resonance(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The cap [g] against the least that makes the rotation grow; open where it grows without coming down."""
         least = self.least_cap_g
+        outcome: Outcome
         if self.outcome == "collapse":
-            outcome, does = "falls", "brings it down"
+            outcome = "falls"
+            does = "brings it down"
         else:
             outcome = "stands" if least is not None and self.cap_g < least else "open"
             does = f"does not bring it down within {self.half_cycles} half cycles"

@@ -56,10 +56,12 @@ def judge(
     outcome: Outcome | None = None,
 ) -> Verdict:
     """The verdict on a demand against a capacity; without an `outcome` of its own the comparison decides."""
-    known = demand is not None and capacity is not None
-    if outcome is None:
-        outcome = ("stands" if demand < capacity else "falls") if known else "none"
-    ratio = capacity / demand if known and demand > 0.0 else None
+    ratio = None
+    if demand is None or capacity is None:
+        outcome = outcome or "none"
+    else:
+        outcome = outcome or ("stands" if demand < capacity else "falls")
+        ratio = capacity / demand if demand > 0.0 else None
     return Verdict(
         demand=demand, capacity=capacity, unit=unit, ratio=ratio, outcome=outcome, statement=statement
     )  # fmt: skip

@@ -55,7 +55,7 @@ def pattern(si: str) -> str:
 def _registry() -> Any:
     import pint
 
-    units = pint.UnitRegistry()
+    units: Any = pint.UnitRegistry()
     units.define("gravity_unit = 9.80665 m/s**2")
     return units
 

@@ -23,7 +23,7 @@ class Motion(Table):
 
 def key(default: Any = ..., about: str = "", *, source: str = "", **limits: Any) -> Any:
     """A deck key: default, one-sentence meaning, source of the formula behind it, bounds."""
-    extra = {"source": source} if source else None
+    extra: dict[str, Any] | None = {"source": source} if source else None
     return Field(default, description=about, json_schema_extra=extra, **limits)
 
 
@@ -34,7 +34,7 @@ def override_of(model: type[Table]) -> type[Table]:
     """
     fields: dict[str, Any] = {}
     for name, field in model.model_fields.items():
-        bounded = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
+        bounded: Any = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
         asked = Field(None, description=field.description, json_schema_extra=field.json_schema_extra)
         fields[name] = (bounded | None, asked)
     return create_model(f"{model.__name__}Override", __base__=Table, __doc__=model.__doc__, **fields)

@@ -7,7 +7,6 @@ import numpy as np
 from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, ntc, piers, west
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
-from extrados.building.rockers.block import WALLS
 from extrados.building.templates.block import BlockAssembly
 from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
@@ -22,7 +21,7 @@ def run(context: Context, options: CodeChecks) -> Result:
     structure = context.deck.structure
     result = Result("code-checks")
     demands: dict[str, Any] = {}
-    if structure.kind in WALLS:
+    if structure.rocks_as == "piers":
         lines = _wall(context, options)
     else:
         block = context.building.rocker().model.block

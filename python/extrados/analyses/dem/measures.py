@@ -6,6 +6,7 @@ from extrados.analyses.context import Refused
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.tables import Dem
 from extrados.core import dem
+from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -54,16 +55,16 @@ def openings(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, np.nda
 
 
 def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray, slip: np.ndarray) -> np.ndarray:
-    """State of each joint (time, joint): 0 closed, -1 hinged at p (intrados), 1 at q (extrados), 2 apart."""
+    """State of each joint (time, joint): closed, hinged at p (intrados) or at q (extrados), or apart."""
     small = OPEN * model.assembly.length
     open_p, open_q = np.nan_to_num(gap_p) > small, np.nan_to_num(gap_q) > small
     apart = (open_p & open_q) | (np.abs(np.nan_to_num(slip)) > 0.5 * model.assembly.length)
-    return np.where(apart, 2, np.where(open_p, 1, np.where(open_q, -1, 0)))
+    return np.where(apart, APART, np.where(open_p, HINGED_SECOND, np.where(open_q, HINGED_FIRST, CLOSED)))
 
 
 def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
     """Greatest slip of joints that still touch [m]."""
-    return float(np.nanmax(np.abs(np.where(state == 2, 0.0, slip)), initial=0.0))
+    return float(np.nanmax(np.abs(np.where(state == APART, 0.0, slip)), initial=0.0))
 
 
 def displacements(model: Model, run: dem.Run) -> np.ndarray:
@@ -76,7 +77,7 @@ def outcome(run: dem.Run, state: np.ndarray, farthest: float, limit: float) -> s
     """no-hinging, recovery or collapse: a block moved farther than the limit [m] at some time."""
     if run.reason in ("collapse", "left") or farthest > limit:
         return "collapse"
-    return "recovery" if (state != 0).any() else "no-hinging"
+    return "recovery" if (state != CLOSED).any() else "no-hinging"
 
 
 def collapse_time(run: dem.Run, far: np.ndarray, limit: float) -> float | None:
@@ -109,7 +110,7 @@ def restitution(run: dem.Run, state: np.ndarray, ground: np.ndarray) -> float | 
             continue
         before = limits[k] + np.abs(angle[limits[k] : limits[k + 1]]).argmax()
         after = limits[k + 1] + np.abs(angle[limits[k + 1] : limits[k + 2]]).argmax()
-        if (state[before] * state[after] == -1).any() and rate[c - 2] * rate[c + 4] > 0.0:
+        if (state[before] * state[after] == HINGED_FIRST * HINGED_SECOND).any() and rate[c - 2] * rate[c + 4] > 0.0:
             fast = np.abs(rate[c - 3 : c + 1]).max()  # gravity speeds it up until the impact
             ratios.append((fast, abs(rate[c + 4]) / fast))
     fastest = max((r for r, _ in ratios), default=0.0)
@@ -175,10 +176,13 @@ def snapshot_times(options: Dem, run: dem.Run) -> np.ndarray:
 
 def hinge_table(model: Model, time: np.ndarray, state: np.ndarray) -> TableData:
     """Changes of the hinges over time."""
-    words = {0: "closed", -1: "hinge at the first end (intrados)", 1: "hinge at the second end (extrados)", 2: "open"}
+    words = {
+        CLOSED: "closed", HINGED_FIRST: "hinge at the first end (intrados)",
+        HINGED_SECOND: "hinge at the second end (extrados)", APART: "open",
+    }  # fmt: skip
     if not len(time):
         return TableData({"time": np.zeros(0), "joint": [], "state": []}, {"time": "s"})
-    before = np.vstack([np.zeros_like(state[:1]), state[:-1]])
+    before = np.vstack([np.full_like(state[:1], CLOSED), state[:-1]])
     when, joint = np.nonzero(state != before)
     return TableData(
         {

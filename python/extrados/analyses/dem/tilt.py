@@ -16,6 +16,7 @@ from extrados.analyses.limit.common import geometry_arrays
 from extrados.core import dem
 from extrados.core.ground import Ground
 from extrados.results import dem as out
+from extrados.results.dem import HINGED_FIRST, HINGED_SECOND
 from extrados.results.model import Array, Result
 from extrados.schema.constants import GRAVITY
 
@@ -134,7 +135,7 @@ def _hinged(model: Model, run: dem.Run) -> tuple[np.ndarray, np.ndarray, int, li
     begun = np.searchsorted(measures.displacements(model, run).max(axis=1), 0.005 * model.size)
     at = min(int(begun), len(run.time) - 1)
     rows = [
-        {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] < 0 else "extrados"}
-        for j in np.flatnonzero(np.abs(state[at]) == 1)
+        {"joint": int(j), "name": model.assembly.joint_names[j], "side": "intrados" if state[at, j] == HINGED_FIRST else "extrados"}
+        for j in np.flatnonzero(np.isin(state[at], (HINGED_FIRST, HINGED_SECOND)))
     ]  # fmt: skip
     return state, slip, at, rows

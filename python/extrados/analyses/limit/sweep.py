@@ -120,7 +120,7 @@ def run(context: Context, options: Sweep) -> Result:
     r = out.Sweep(
         vary=options.vary,
         unit=unit_of(type(model), path),
-        mechanisms=[out.Mechanism(number=n, hinges=spoken(s)) for s, n in numbers.items()],
+        mechanisms=[out.GoverningMechanism(number=n, hinges=spoken(s)) for s, n in numbers.items()],
         changes=[
             out.Change(
                 value=c["value"],

@@ -23,9 +23,11 @@ from extrados.motions import pulses
 from extrados.motions.motion import Motion
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
+from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.schema.constants import GRAVITY
 
-NO_HINGING, RECOVERY, MODE_I, MODE_II = 0, 1, 2, 3
+#: Codes of the map: those of the outcomes, with collapse told apart by its mode
+MODE_I, MODE_II = COLLAPSE, COLLAPSE + 1
 BATCH = 4096
 
 
@@ -61,7 +63,7 @@ class Curves:
 
 def codes_of(outcome: np.ndarray, half_cycles: np.ndarray) -> np.ndarray:
     """Outcome codes of the map."""
-    return np.where(outcome == 2, np.where(half_cycles == 1, MODE_II, MODE_I), np.minimum(outcome, 1)).astype(int)
+    return np.where(outcome == COLLAPSE, np.where(half_cycles == 1, MODE_II, MODE_I), outcome).astype(int)
 
 
 class Mapper:

@@ -19,6 +19,7 @@ from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
+from extrados.core.sla import EVENT
 
 BATCH_SECONDS = 0.7
 #: Events between two states that are kept; a new factor takes as long as some tens of events of a large wall.
@@ -262,14 +263,14 @@ def damage_before(start: np.ndarray, end: np.ndarray, point: np.ndarray, code: n
     """
     damage = start.copy()
     for p, c in zip(point.tolist(), code.tolist(), strict=True):
-        k = (c - 1) % 2
+        k = (c - EVENT["tension"]) % 2  # 0 across the first crack, 1 across the second
         if not damage[2, p]:
             damage[:2, p], damage[2, p] = end[:2, p], 1.0
-        if c <= 2:
+        if c <= EVENT["tension_s"]:
             damage[3 + k, p] += 1.0
-        elif c <= 4:
+        elif c <= EVENT["compression_s"]:
             damage[5 + k, p] += 1.0
         else:
-            damage[7 + k, p] = 1.0 if c <= 6 else 0.0
+            damage[7 + k, p] = 1.0 if c <= EVENT["close_s"] else 0.0
             damage[9 + k, p] += 1.0
     return damage

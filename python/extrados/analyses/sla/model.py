@@ -25,7 +25,7 @@ FLOOR_OF_JOINTS = 1e-11
 
 @dataclass
 class SlaModel:
-    """A wall ready for the core. constant, reference: nodal forces (nodes, 2) [N]; unit: resultant of the
+    """A wall or stones ready for the core. constant, reference: nodal forces (nodes, 2) [N]; unit: resultant of the
     reference load, by which lambda becomes a force [N]; control: the displacement that is followed."""
 
     mesh: Mesh
@@ -40,6 +40,11 @@ class SlaModel:
     point_xy: np.ndarray  # (points, 2) of the plane groups [m]
     mechanism_ratio: float  # growth of the compliance that ends a run
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
+
+    @property
+    def planes(self) -> list[core.Plane]:
+        """The groups of plane elements, in the order of the mesh."""
+        return [group for group in self.groups if isinstance(group, core.Plane)]
 
     def open(self, options: Sla, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""

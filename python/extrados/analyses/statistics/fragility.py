@@ -15,12 +15,12 @@ from extrados.analyses.statistics.tables import UNCERTAIN, Fragility
 from extrados.building.rockers.rocker import Rocker, make_rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
-from extrados.core.rocking import Body, Ground
+from extrados.core.rocking import FAILED, Body, Ground
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
+from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY
 from extrados.schema.constants import GRAVITY
 
-FAILED, COLLAPSE = -1, 2
 #: Intensity -> (name in the results, unit of a level in SI, unit of the column)
 INTENSITIES = {
     "pga": ("PGA", GRAVITY, "g"),
@@ -183,7 +183,7 @@ def shares(swept: Swept, confidence: float, initial: float) -> dict[str, Any]:
     collapsed = int((swept["outcome"] == COLLAPSE).sum())
     # With a start off rest every member rocks: uplift then means that it rose beyond its start.
     lifted = (
-        int((ok & (swept["outcome"] > 0)).sum())
+        int((ok & (swept["outcome"] > NO_HINGING)).sum())
         if initial == 0.0
         else int((ok & (swept["peak_ratio"] > abs(initial) * (1 + 1e-9))).sum())
     )
@@ -321,7 +321,7 @@ def _curves(
     ratio[swept.members] = swept["peak_ratio"]
     outcome, ratio = outcome.reshape(motions, n)[:, order], ratio.reshape(motions, n)[:, order]
     levels = levels[order]
-    valid, over, up = outcome != FAILED, outcome == COLLAPSE, outcome >= 1
+    valid, over, up = outcome != FAILED, outcome == COLLAPSE, outcome >= RECOVERY
     count, hits, lifted = valid.sum(axis=0), over.sum(axis=0), (up & valid).sum(axis=0)
     low, high = wilson(hits, count, options.confidence)
     up_low, up_high = wilson(lifted, count, options.confidence)

@@ -10,6 +10,7 @@ from extrados.analyses.statistics.tables import HarmonicMap
 from extrados.motions import pulses
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
+from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
 
 
@@ -33,7 +34,7 @@ def run(context: Context, options: HarmonicMap) -> Result:
         return result
     shape = (len(frequency), len(amplitude))
     outcome = swept["outcome"].reshape(shape)
-    over = outcome == 2
+    over = outcome == COLLAPSE
     ratio = np.where(over, np.nan, swept["peak_ratio"].reshape(shape))
     lowest = np.where(over.any(axis=1), amplitude[over.argmax(axis=1)], np.nan) / GRAVITY
     pockets = int(((~over) & (amplitude / GRAVITY > lowest[:, None])).sum())

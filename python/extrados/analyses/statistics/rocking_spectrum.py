@@ -14,6 +14,7 @@ from extrados.building.rockers.rocker import make_rocker
 from extrados.core.rocking import Body, block_body
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
+from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
 
 
@@ -52,7 +53,7 @@ def run(context: Context, options: RockingSpectrum) -> Result:
         result.status, result.reason = ("interrupted" if swept.interrupted else "failed"), swept.stopped
         return result
     shape = (len(family), len(periods))
-    overturned = swept["outcome"].reshape(shape) == 2
+    overturned = swept["outcome"].reshape(shape) == COLLAPSE
     ratio = np.where(overturned, np.nan, swept["peak_ratio"].reshape(shape))
     rotation = np.where(overturned, np.nan, np.abs(swept["peak"].reshape(shape)))
     longest = [float(periods[row].max()) if row.any() else None for row in overturned]

@@ -23,7 +23,7 @@ def openings_within(length: float, height: float, openings: Sequence[Box], size:
         known.append(value)
         return value
 
-    return [(*(same(v, xs) for v in o[:2]), *(same(v, ys) for v in o[2:])) for o in openings]
+    return [(same(left, xs), same(right, xs), same(low, ys), same(high, ys)) for left, right, low, high in openings]
 
 
 def outline(box: Box) -> np.ndarray:

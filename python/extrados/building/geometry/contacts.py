@@ -44,7 +44,7 @@ def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: flo
     low, high, gap = _shared(first[one], last[one], first[two], last[two])
     long_enough = high - low > 10.0 * tolerance
     touch = long_enough & (gap <= tolerance)
-    near = {}
+    near: dict[tuple[int, int], float] = {}
     for i, j, g in zip(
         owner[one[long_enough & ~touch]], owner[two[long_enough & ~touch]], gap[long_enough & ~touch], strict=True
     ):
@@ -104,7 +104,15 @@ def _shared(
     return low, np.where(s0 > s1, high, low), gap
 
 
-def _stretches(first, last, edge, low, high, a, b) -> np.ndarray:
+def _stretches(
+    first: np.ndarray,
+    last: np.ndarray,
+    edge: np.ndarray,
+    low: np.ndarray,
+    high: np.ndarray,
+    a: np.ndarray,
+    b: np.ndarray,
+) -> np.ndarray:
     """Rows a, b, p, q."""
     along = last[edge] - first[edge]
     t = along / np.hypot(along[:, 0], along[:, 1])[:, None]
@@ -134,11 +142,17 @@ def _joined(rows: np.ndarray, slack: float) -> np.ndarray:
     return np.array(kept).reshape(-1, 6)
 
 
-def _refuse_overlaps(outlines, first, last, owner, one, two, tolerance, names) -> None:
+def _refuse_overlaps(
+    outlines: list[np.ndarray], first: np.ndarray, last: np.ndarray, owner: np.ndarray, one: np.ndarray, two: np.ndarray,
+    tolerance: float, names: list[str],
+) -> None:  # fmt: skip
+    """Overlap where two blocks lie in each other: their edges cross, or one holds a place of the other."""
+
     def offsets(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         t = last[a] - first[a]
         t = t / np.hypot(t[:, 0], t[:, 1])[:, None]
-        return tuple(t[:, 0] * (e[b] - first[a])[:, 1] - t[:, 1] * (e[b] - first[a])[:, 0] for e in (first, last))
+        begin, end = (t[:, 0] * (e[b] - first[a])[:, 1] - t[:, 1] * (e[b] - first[a])[:, 0] for e in (first, last))
+        return begin, end
 
     (b0, b1), (a0, a1) = offsets(one, two), offsets(two, one)
     cross = (np.minimum(b0, b1) < -tolerance) & (np.maximum(b0, b1) > tolerance)
@@ -167,7 +181,8 @@ def _refuse_overlaps(outlines, first, last, owner, one, two, tolerance, names) -
         deep = _depth(points[probe[at]], first[edge], last[edge], group) > tolerance
         if deep.any():
             k = int(np.flatnonzero(deep)[0])
-            raise Overlap(_say(names, *some[pair[k]], points[probe[k]]))
+            i, j = some[pair[k]].tolist()
+            raise Overlap(_say(names, i, j, points[probe[k]]))
 
 
 PAIRS_AT_ONCE = 5000

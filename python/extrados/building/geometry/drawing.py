@@ -4,6 +4,7 @@ import itertools
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -40,17 +41,18 @@ def read_dxf(
     A drawing without units is refused until `unit` is given. Needs the extra `dxf` (ezdxf).
     """
     try:
-        import ezdxf
         from ezdxf import path as curve
+        from ezdxf.filemanagement import readfile
+        from ezdxf.lldxf.const import DXFError
     except ImportError:
         raise BadGeometry("reading DXF needs ezdxf: pip install 'extrados[dxf]'") from None
     try:
         if path.stat().st_size > LARGEST_FILE:
             raise BadGeometry(f"{path.name}: larger than {LARGEST_FILE / 1e6:g} MB")
-        drawing = ezdxf.readfile(path)
+        drawing = readfile(path)
     except OSError as error:
         raise BadGeometry(f"{path.name}: cannot be read as DXF: {error}") from None
-    except (ezdxf.DXFError, UnicodeDecodeError) as error:
+    except (DXFError, UnicodeDecodeError) as error:
         raise BadGeometry(f"{path.name}: is not a sound DXF file: {error}") from None
     scale = UNITS[unit or _unit(path, int(drawing.header.get("$INSUNITS", 0)))]
     polygons: list[Polygon] = []
@@ -58,6 +60,7 @@ def read_dxf(
     known = {entity.dxf.layer for entity in drawing.modelspace()}
     for missing in [name for name in layers or [] if name not in known]:
         raise BadGeometry(f"{path.name}: no layer '{missing}'; there are {', '.join(sorted(known))}")
+    entity: Any  # ezdxf makes the attributes of an entity as it reads it
     for entity in drawing.modelspace():
         layer, kind = entity.dxf.layer, entity.dxftype()
         where = f"{path.name}: layer '{layer}', {kind} #{entity.dxf.handle}"
@@ -90,12 +93,12 @@ def _unit(path: Path, code: int) -> str:
     return INSUNITS[code]
 
 
-def _ends_meet(entity, curve) -> bool:
+def _ends_meet(entity: Any, curve: Any) -> bool:
     path = curve.make_path(entity)
     return path.start.isclose(path.end)
 
 
-def _segments(entity, kind: str, where: str) -> list[list[float]]:
+def _segments(entity: Any, kind: str, where: str) -> list[list[float]]:
     if kind == "LINE":
         points = [entity.dxf.start, entity.dxf.end]
     elif kind == "LWPOLYLINE":

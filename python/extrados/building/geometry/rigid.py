@@ -91,8 +91,8 @@ def rigid_bodies(
     middles = [parts[k].mean(axis=0) for k, o in enumerate(owner) if o >= count]
     joints: list[tuple[int, int] | None] = []
     for j, (a, b) in enumerate(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True)):
-        pair = tuple(support_of[j] if k == GROUND else int(body[k]) for k in (a, b))
-        joints.append(None if pair[0] == pair[1] else pair)
+        one, two = (support_of[j] if k == GROUND else int(body[k]) for k in (a, b))
+        joints.append(None if one == two else (one, two))
     return RigidBodies(
         names, count, np.concatenate([centroid, np.reshape(middles, (supports, 2))]),
         np.concatenate([mass, np.zeros(supports)]), np.concatenate([inertia, np.zeros(supports)]),
@@ -178,7 +178,7 @@ def _ground_lines(assembly: Assembly) -> list[list[int]]:
     """Joints to the ground, those on one line together."""
     lines: list[list[int]] = []
     size = float(np.ptp(np.concatenate([assembly.p, assembly.q]), axis=0).max())
-    for j in np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)):
+    for j in np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)).tolist():
         up = _inward(assembly, j)
         for line in lines:
             first = line[0]
@@ -209,14 +209,13 @@ def _support(assembly: Assembly, line: list[int], blocks: list[np.ndarray]) -> n
     extent = float(np.ptp(everything, axis=0).max())
     flat = up[1] > 1.0 - 1e-9
     deep = 0.25 * extent if flat else 0.5 * (high - low)
-    polygon = None
     for margin in ((1.5 * extent,) if flat else ()) + (0.25 * (high - low), 0.0):
         a, b = origin + (low - margin) * along, origin + (high + margin) * along
         polygon = np.array([a - deep * up, b - deep * up, b, a])
         if area(polygon) < 0.0:
             polygon = polygon[::-1]
         if all(overlap_depth(polygon, block) < 1e-6 * extent for block in blocks):
-            return polygon
+            break
     return polygon
 
 

@@ -10,6 +10,7 @@ from extrados.building.errors import BadGeometry
 from extrados.building.files import locate
 from extrados.building.mesh.mesh import Mesh, build_mesh, element_areas
 from extrados.building.mesh.options import MeshOptions
+from extrados.building.templates.walls import MeshFile
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
@@ -18,14 +19,13 @@ KINDS = {"triangle": "T3", "triangle6": "T6", "quad": "Q4", "quad8": "Q8"}
 LARGEST = 500_000_000  # bytes
 
 
-def read_mesh(building: "Building", options: MeshOptions) -> Mesh:
+def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mesh:
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     try:
         import meshio
     except ImportError:
         raise BadGeometry("reading meshes needs meshio: pip install 'extrados[mesh]'") from None
-    model = building.structure
-    path = locate(model.file, building.folder)
+    path = locate(wall.file, building.folder)
     try:
         if path.stat().st_size > LARGEST:
             raise BadGeometry(f"{path.name}: larger than {LARGEST / 1e6:g} MB")
@@ -38,7 +38,7 @@ def read_mesh(building: "Building", options: MeshOptions) -> Mesh:
         if isinstance(error, BadGeometry):
             raise
         raise BadGeometry(f"{path.name}: is not a mesh that meshio reads: {str(error) or 'unknown format'}") from None
-    found = {}
+    found: dict[str, list[np.ndarray]] = {}
     for cells in mesh.cells:
         if cells.type in KINDS:
             found.setdefault(cells.type, []).append(np.asarray(cells.data))
@@ -56,9 +56,9 @@ def read_mesh(building: "Building", options: MeshOptions) -> Mesh:
         raise BadGeometry(f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place")
     ((name, parts),) = found.items()
     kind, connect = KINDS[name], np.concatenate(parts)
-    xy = model.scale * points[:, :2]
+    xy = wall.scale * points[:, :2]
     area = element_areas(xy, kind, connect)
     if (area < 0).all():  # a mesh drawn clockwise throughout is only looked at from behind
         order = {"T3": [0, 2, 1], "T6": [0, 2, 1, 5, 4, 3], "Q4": [0, 3, 2, 1], "Q8": [0, 3, 2, 1, 7, 6, 5, 4]}[kind]
         connect = connect[:, order]
-    return build_mesh(building, options, xy, kind, connect, float(np.sqrt(np.median(np.abs(area)))))
+    return build_mesh(wall, building, options, xy, kind, connect, float(np.sqrt(np.median(np.abs(area)))))

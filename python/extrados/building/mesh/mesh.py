@@ -9,7 +9,7 @@ from extrados.building.errors import BadGeometry
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.places import Placed
 from extrados.building.properties import Held, Material
-from extrados.building.templates.walls import Bar, Tie
+from extrados.building.templates.walls import Bar, MeshedWall, Tie
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
@@ -77,13 +77,13 @@ class Mesh:
                 "left": (0, self.low), "right": (0, self.high), "bottom": (1, self.low), "top": (1, self.high),
             }[place.edge]  # fmt: skip
             inside &= np.abs(self.xy[:, axis] - end[axis]) <= tolerance
-        single = all(r is not None and r[0] == r[1] for r in (place.x, place.y))
-        if single and place.edge is None:
-            distance = np.hypot(*(self.xy - [place.x[0], place.y[0]]).T)
+        point = [r[0] for r in (place.x, place.y) if r is not None and r[0] == r[1]]
+        if len(point) == 2 and place.edge is None:
+            distance = np.hypot(*(self.xy - point).T)
             nearest = int(distance.argmin())
             if distance[nearest] > 1.5 * self.size:
                 raise BadGeometry(
-                    f"{what}: no node near x {place.x[0]:g} m, y {place.y[0]:g} m; the nearest is at "
+                    f"{what}: no node near x {point[0]:g} m, y {point[1]:g} m; the nearest is at "
                     f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
                 )
             return np.array([nearest])
@@ -139,10 +139,10 @@ def add_middles(xy: np.ndarray, kind: str, connect: np.ndarray) -> tuple[np.ndar
 
 
 def build_mesh(
-    building: "Building", options: MeshOptions, xy: np.ndarray, kind: str, connect: np.ndarray, size: float
-) -> Mesh:
+    wall: MeshedWall, building: "Building", options: MeshOptions, xy: np.ndarray, kind: str, connect: np.ndarray,
+    size: float,
+) -> Mesh:  # fmt: skip
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
-    wall = building.structure
     if options.joint_thickness is not None:
         raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: leave joint_thickness out")
     if not len(connect):

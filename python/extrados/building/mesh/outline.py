@@ -8,24 +8,23 @@ from extrados.building.errors import BadGeometry
 from extrados.building.files import locate
 from extrados.building.geometry.drawing import read_dxf
 from extrados.building.geometry.polygons import signed_area
-from extrados.building.templates.walls import Panel
 
 JITTER = 0.33  # of the spacing: Delaunay triangles stay well shaped and keep to straight edges
 
 
-def fill_outline(model: Panel, folder: Path, size: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (n, 2) [m] and triangles (m, 3) within the outline, about `size` apart."""
+def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (n, 2) [m] and triangles (m, 3) within the outline of a DXF file, about `size` [m] apart."""
     from matplotlib.path import Path as Ring
     from scipy.spatial import Delaunay, cKDTree
 
-    polygons, _ = read_dxf(locate(model.outline, folder), model.outline_unit)
+    polygons, _ = read_dxf(locate(drawing, folder), unit)
     rings = sorted((np.asarray(p.points) for p in polygons), key=lambda r: -abs(signed_area(r)))
     if not rings:
-        raise BadGeometry(f"{model.outline}: no closed polyline in the drawing")
+        raise BadGeometry(f"{drawing}: no closed polyline in the drawing")
     outer, holes = Ring(rings[0]), [Ring(r) for r in rings[1:]]
     for ring in rings[1:]:
         if not outer.contains_points(ring, radius=1e-9).any():
-            raise BadGeometry(f"{model.outline}: a polyline lies outside the largest, which is taken for the wall")
+            raise BadGeometry(f"{drawing}: a polyline lies outside the largest, which is taken for the wall")
 
     def inside(points: np.ndarray) -> np.ndarray:
         found = outer.contains_points(points)
@@ -51,7 +50,7 @@ def fill_outline(model: Panel, folder: Path, size: float, seed: int) -> tuple[np
     wanted = abs(signed_area(rings[0])) - sum(abs(signed_area(r)) for r in rings[1:])
     if abs(area.sum() - wanted) > 1e-6 * wanted:
         raise BadGeometry(
-            f"{model.outline}: triangles of {size:g} m do not follow the outline (area {area.sum():.4g} m2 for "
+            f"{drawing}: triangles of {size:g} m do not follow the outline (area {area.sum():.4g} m2 for "
             f"{wanted:.4g} m2): use smaller elements"
         )
     return xy, triangles

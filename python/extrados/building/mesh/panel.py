@@ -10,6 +10,7 @@ from extrados.building.errors import BadGeometry
 from extrados.building.mesh.mesh import Mesh, add_middles, build_mesh
 from extrados.building.mesh.options import LARGEST_MESH, MeshOptions
 from extrados.building.mesh.outline import JITTER, fill_outline
+from extrados.building.templates.walls import Panel
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
@@ -31,9 +32,8 @@ class Layout:
     size: float
 
 
-def make_panel(building: "Building", options: MeshOptions, seed: int | None = None) -> Mesh:
+def make_panel(panel: Panel, building: "Building", options: MeshOptions, seed: int | None = None) -> Mesh:
     """Mesh of a panel; `seed` overrides that of the options. BadGeometry says what does not fit."""
-    panel = building.structure
     seed = options.seed if seed is None else seed
     if panel.outline is not None:
         if options.element not in ("T3", "T6"):
@@ -45,17 +45,18 @@ def make_panel(building: "Building", options: MeshOptions, seed: int | None = No
         if options.size is None:
             raise BadGeometry("an outline needs a size of elements")
         size = options.size
-        xy, connect = fill_outline(panel, building.folder, size, seed)
+        xy, connect = fill_outline(panel.outline, panel.outline_unit, building.folder, size, seed)
     else:
-        size = options.size or min(panel.width, panel.height) / DEFAULT_DIVISIONS
+        width, height = panel.size
+        size = options.size or min(width, height) / DEFAULT_DIVISIONS
         smallest = min([size, *(r.size for r in options.refine)])
-        count = panel.width * panel.height / smallest**2
+        count = width * height / smallest**2
         if count > LARGEST_MESH:
             raise BadGeometry(
                 f"about {count:.2g} elements of {smallest:g} m: the most are {LARGEST_MESH:g}; use larger elements"
             )
         placed = [*panel.openings, *panel.regions, *options.refine, *building.supports.held, *panel.ties]
-        layout = Layout(panel.width, panel.height, panel.openings, placed, options, size)
+        layout = Layout(width, height, panel.openings, placed, options, size)
         columns, rows = grid_lines(layout, 0), grid_lines(layout, 1)
         if options.pattern == "random":
             fixed = [(part.x, part.y) for part in panel.regions]
@@ -65,7 +66,7 @@ def make_panel(building: "Building", options: MeshOptions, seed: int | None = No
     base = "T3" if options.element in ("T3", "T6") else "Q4"
     if options.element in ("T6", "Q8"):
         xy, connect = add_middles(xy, base, connect)
-    return build_mesh(building, options, xy, options.element, connect, size)
+    return build_mesh(panel, building, options, xy, options.element, connect, size)
 
 
 def grid_lines(layout: Layout, axis: int) -> np.ndarray:

@@ -95,11 +95,11 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
         one, two = sides
         rows.append(np.column_stack([two[:-1], two[1:], one[1:], one[:-1]]))
         row_joint.append(np.full(len(line) - 1, j))
-    xy = np.concatenate(xy)
+    nodes = np.concatenate(xy)
     row, joint = np.concatenate(rows), np.concatenate(row_joint)
-    turned = element_areas(xy, "Q4", row) < 0.0
+    turned = element_areas(nodes, "Q4", row) < 0.0
     row[turned] = row[turned][:, [1, 0, 3, 2]]  # the first side stays along the joint
-    bad = np.flatnonzero(element_areas(xy, "Q4", row) <= 0.0)
+    bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
     if len(bad):
         raise BadGeometry(
             f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' folds: use a smaller joint_thickness"
@@ -122,7 +122,7 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
     ))  # fmt: skip
     mass = np.concatenate([*(_masses(s, assembly, i) for i, s in enumerate(stones)), np.zeros(free - first[-1])])
     return Mesh(
-        xy, groups, [building.material, *materials], size, building.supports.held, selective=options.selective,
+        nodes, groups, [building.material, *materials], size, building.supports.held, selective=options.selective,
         mass=mass, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
     )  # fmt: skip
 
@@ -284,9 +284,9 @@ def _outline_pieces(assembly: Assembly, block: int, lines: list[np.ndarray], sna
         twice = np.concatenate([at[:-1], at[:-1] + around, at[:-1] + 2.0 * around])
         within = np.flatnonzero((twice > begin + snap) & (twice < end - snap)) % len(outline)
         pieces.append(Piece(np.concatenate([this[3][-1:], outline[within], after[3][:1]])))
-    for this, after in zip(pieces, pieces[1:] + pieces[:1], strict=True):
-        if this.joint >= 0 and after.joint >= 0:
-            this.points[-1] = after.points[0] = 0.5 * (this.points[-1] + after.points[0])
+    for piece, following_one in zip(pieces, pieces[1:] + pieces[:1], strict=True):
+        if piece.joint >= 0 and following_one.joint >= 0:
+            piece.points[-1] = following_one.points[0] = 0.5 * (piece.points[-1] + following_one.points[0])
     return [part for piece in pieces for part in _at_corners(piece)]
 
 
@@ -372,9 +372,9 @@ def _withdrawal(assembly: Assembly, block: int, pieces: list[Piece], thickness: 
                 move = np.linalg.solve(normals, [here[1], there[1]])
             else:  # one face, two joints
                 move = 0.5 * (here[0] * here[1] + there[0] * there[1])
-        elif here is not None or there is not None:
+        elif (only := here or there) is not None:
             # Along the free edge, so that the outline stays; where that runs on in the joint's line, across it
-            normal, width = here or there
+            normal, width = only
             ends = (piece.points[1] - piece.points[0]) if here is not None else (before.points[-2] - before.points[-1])
             free = ends / np.hypot(*ends)
             slope = float(free @ normal)

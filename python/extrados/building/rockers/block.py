@@ -14,10 +14,6 @@ if TYPE_CHECKING:
     from extrados.building.building import Building
 
 
-#: Walls, which rock as piers
-WALLS = ("brickwork", "panel")
-
-
 @dataclass(frozen=True)
 class BlockModel:
     """A block and its impact rule: "housner", or c_v; or `energy_ratio` c_E. Pairs are (to +x, to -x)."""
@@ -84,7 +80,8 @@ def block_model(building: "Building", linear: bool = False) -> BlockModel:
 
     A wall is its only pier: one that openings divide rocks by a mechanism.
     """
-    made = building.pier_blocks() if building.structure.kind in WALLS else building.blocks()
+    piers = building.structure is not None and building.structure.rocks_as == "piers"
+    made = building.pier_blocks() if piers else building.blocks()
     block = made if isinstance(made, BlockAssembly) else monolith(made)
     rule = building.joints.restitution
     # The energy-safe projection of a block that lands on both toes is Housner's balance.

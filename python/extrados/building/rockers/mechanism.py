@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
@@ -238,22 +239,25 @@ class MechanismModel:
         """The structure for the rocking core."""
         return table_body(*self.tables, self.restitution)
 
-    def coefficients(self, side: int, q) -> Coefficients:
+    def coefficients(self, side: int, q: npt.ArrayLike) -> Coefficients:
         """M, M'/2, V', H and V of one side at rotations q >= 0 [rad]."""
         return core_mechanism.coefficients(self.tables[SIDES.index(side)], q)
 
-    def pose(self, rotation) -> np.ndarray:
+    def pose(self, rotation: npt.ArrayLike) -> np.ndarray:
         """Places (states, blocks, 3) of all blocks, x, y [m] and rotation [rad], at signed rotations [rad]."""
-        rotation = np.atleast_1d(np.asarray(rotation, dtype=float))
-        out = np.zeros((len(rotation), len(self.assembly.mass), 3))
+        turned_by = np.atleast_1d(np.asarray(rotation, dtype=float))
+        out = np.zeros((len(turned_by), len(self.assembly.mass), 3))
         out[:, :, :2] = self.assembly.centroid
         for side, one in zip(SIDES, self.linkages, strict=True):
-            here = side * rotation > 0.0
+            here = side * turned_by > 0.0
             if here.any():
-                out[here] = one.blocks(self.assembly, core_mechanism.follow(one, np.abs(rotation[here]))[0])
+                out[here] = one.blocks(self.assembly, core_mechanism.follow(one, np.abs(turned_by[here]))[0])
         return out
 
-    def hinge_forces(self, rotation, rate, acceleration, horizontal, vertical) -> HingeForces:
+    def hinge_forces(
+        self, rotation: npt.ArrayLike, rate: npt.ArrayLike, acceleration: npt.ArrayLike, horizontal: npt.ArrayLike,
+        vertical: npt.ArrayLike,
+    ) -> HingeForces:  # fmt: skip
         """Forces at the hinges while it rocks, by the equations of motion of the parts (Newton and Euler).
 
         rotation [rad], its rate and acceleration are signed, positive to +x; horizontal, vertical: acceleration of
@@ -263,11 +267,11 @@ class MechanismModel:
         given = [
             np.atleast_1d(np.asarray(x, dtype=float)) for x in (rotation, rate, acceleration, horizontal, vertical)
         ]
-        rotation = given[0]
-        normal, shear = np.full((2, len(rotation), len(a.a)), np.nan)
-        miss = np.zeros(len(rotation))
+        turned_by = given[0]
+        normal, shear = np.full((2, len(turned_by), len(a.a)), np.nan)
+        miss = np.zeros(len(turned_by))
         for side, one in zip(SIDES, self.linkages, strict=True):
-            here = side * rotation > 0.0
+            here = side * turned_by > 0.0
             if not (here.any() and one.determinate):
                 continue
             q, v, acc, ground, up = (x[here] for x in given)

@@ -7,7 +7,7 @@ import numpy as np
 
 from extrados.building.errors import NoView
 from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.block import WALLS, BlockModel, block_model
+from extrados.building.rockers.block import BlockModel, block_model
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core.rocking import Body
@@ -15,8 +15,6 @@ from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
-
-MONOLITHS = ("block", "column")
 
 
 @dataclass(frozen=True)
@@ -52,9 +50,10 @@ class Rocker:
 def make_rocker(building: "Building", linear: bool = False) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none."""
     structure, ratio = building.structure, building.initial.rotation_ratio
-    wall = structure is not None and structure.kind in WALLS
-    piers = building.pier_blocks() if wall else None
-    if structure is not None and (structure.kind in MONOLITHS or (piers is not None and len(piers.mass) == 1)):
+    if structure is None:
+        raise NoView("the deck has no [structure]")
+    piers = building.pier_blocks() if structure.rocks_as == "piers" else None
+    if structure.rocks_as == "block" or (piers is not None and len(piers.mass) == 1):
         block = block_model(building, linear)
         alpha = block.alpha
         return Rocker(

@@ -50,7 +50,8 @@ def make_pointed_arch(
     away = radius - 0.5 * span  # the centre of an arc lies this far beyond the axis
     crown_in, crown_out = np.arccos(away / radius), np.arccos(away / (radius + thickness))
     half = voussoirs // 2
-    inner, outer = [], []
+    inner: list[np.ndarray] = []
+    outer: list[np.ndarray] = []
     for i in range(half):
         # From the springing (angle 0 at the far side of the centre) up to the crown
         start, end = crown_in * i / half, crown_in * (i + 1) / half

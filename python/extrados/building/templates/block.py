@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.mass import together
-from extrados.building.structure import Structure
+from extrados.building.structure import RocksAs, Structure
 from extrados.schema.quantities import Inertia, Length, Mass
 from extrados.schema.table import key
 
@@ -81,11 +81,13 @@ def make_block(
 ) -> BlockAssembly:
     """A rectangle by width and height [m] and density [kg/m^3], or a body by mass [kg], inertia [kg m^2], height
     of its centre and distances of its toes [m], drawn as a rectangle on its toes of twice that height."""
-    if width is not None:
+    if width is not None and height is not None:
         mass = density * width * height * depth
         inertia = mass * (width**2 + height**2) / 12.0
         centre_height, toe_right, toe_left = 0.5 * height, 0.5 * width, 0.5 * width
     toe_left = toe_right if toe_left is None else toe_left
+    if mass is None or inertia is None or centre_height is None or toe_right is None or toe_left is None:
+        raise ValueError("a block is given by width and height, or by mass, inertia, centre_height and toe_right")
     if not min(mass, inertia, centre_height, toe_right, toe_left) > 0.0:
         raise ValueError("mass, inertia, height of the centre and toes of a block must be above zero")
     top = 2.0 * centre_height
@@ -112,6 +114,7 @@ class Block(Structure):
     """Rigid block that rocks on its two toes: a rectangle, or a body given by mass, inertia, centre and toes."""
 
     kind: Literal["block"]
+    rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"width": "1.0", "height": "4.0"}
     width: Length | None = key(None, "full width B of a rectangle", gt=0)
     height: Length | None = key(None, "full height H of a rectangle", gt=0)

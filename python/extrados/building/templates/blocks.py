@@ -93,7 +93,8 @@ def _refuse_loose(assembly: Assembly, near: list[tuple[int, int, float]]) -> Non
         neighbours.setdefault(b, []).append(a)
     front = list(reached)
     while front:
-        front = [n for block in front for n in neighbours.get(block, []) if n not in reached and not reached.add(n)]
+        front = list({n for block in front for n in neighbours.get(block, [])} - reached)
+        reached.update(front)
     loose = [i for i in range(len(assembly.mass)) if i not in reached]
     if not loose:
         return

@@ -13,7 +13,7 @@ from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.boxes import SAME, Box, contacts, openings_within, outline
 from extrados.building.places import Opening
-from extrados.building.structure import Structure
+from extrados.building.structure import RocksAs, Structure
 from extrados.building.templates.masonry import stones_and_joints
 from extrados.building.templates.piers import make_piers
 from extrados.schema.quantities import Length
@@ -40,7 +40,7 @@ class Bond:
 
 
 @dataclass
-class _Wall:
+class _Units:
     """Stones as boxes with their names, course by course; a lintel has no course."""
 
     boxes: list[Box] = field(default_factory=list)
@@ -70,7 +70,7 @@ def make_brickwork(
     holes = openings_within(length, height, openings, small)
     beams = _lintels(bond, length, height, holes) if bond.lintels else {}
     taken = [*holes, *beams.values()]
-    wall = _Wall()
+    wall = _Units()
     levels = _levels(bond, height, taken)
     for course, (low, high) in enumerate(itertools.pairwise(levels)):
         for number, box in enumerate(_course(bond, length, course, low, high, taken), start=1):
@@ -158,7 +158,7 @@ def _course(bond: Bond, length: float, course: int, low: float, high: float, hol
     return found
 
 
-def _joints(wall: _Wall, size: float) -> list[tuple[str, np.ndarray, np.ndarray, int, int]]:
+def _joints(wall: _Units, size: float) -> list[tuple[str, np.ndarray, np.ndarray, int, int]]:
     """Joints of each stone with those to its left and below it, and with the ground."""
     joints = []
     for i, k, p, q in contacts(wall.boxes, size):
@@ -202,7 +202,7 @@ class Laid(Table):
     @property
     def holes(self) -> list[Box]:
         """The openings [m]."""
-        return [(*o.x, *o.y) for o in self.openings]
+        return [(o.x[0], o.x[1], o.y[0], o.y[1]) for o in self.openings]
 
     def check_openings(self, length: float, height: float) -> None:
         """ValueError names an opening that lies beside the wall [m]."""
@@ -215,6 +215,7 @@ class Brickwork(Laid, Structure):
     """Wall of equal units in running bond on the ground, loaded in its plane; half units close every other course."""
 
     kind: Literal["brickwork"]
+    rocks_as: ClassVar[RocksAs] = "piers"
     starter: ClassVar = {"unit_length": '"40 cm"', "unit_height": '"20 cm"', "units": "5", "courses": "8"}
     unit_length: Length = key(about="length of a unit", gt=0)
     unit_height: Length = key(about="height of a unit", gt=0)

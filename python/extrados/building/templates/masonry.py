@@ -9,7 +9,7 @@ from pydantic import model_validator
 
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.polygons import properties
-from extrados.building.structure import Structure
+from extrados.building.structure import RocksAs, Structure
 from extrados.schema.quantities import Length
 from extrados.schema.table import key
 
@@ -57,6 +57,7 @@ class Column(Structure):
     """Blocks or drums stacked on the ground, tapered where asked for; dry joints between them."""
 
     kind: Literal["column"]
+    rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"height": "4.0"}
     width: Length = key(about="width at the base", gt=0)
     height: Length | None = key(None, "total height, shared equally by the drums", gt=0)
@@ -76,5 +77,5 @@ class Column(Structure):
         return self
 
     def assembly(self, density: float, folder: Path) -> Assembly:
-        heights = self.heights or [self.height / self.drums] * self.drums
+        heights = [self.height / self.drums] * self.drums if self.height is not None else self.heights
         return make_column(self.width, heights, self.top_width, density, self.depth)

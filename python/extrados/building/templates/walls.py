@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -11,11 +11,16 @@ from pydantic import Field, model_validator
 from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.places import Placed
-from extrados.building.structure import Structure
+from extrados.building.structure import RocksAs, Structure
 from extrados.building.templates.brickwork import Laid, make_brickwork
 from extrados.building.templates.piers import make_piers
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+    from extrados.building.mesh.mesh import Mesh
+    from extrados.building.mesh.options import MeshOptions
 
 
 class Region(Placed):
@@ -53,8 +58,8 @@ class Bar(Table):
     material: str = key(about="a name of [materials]")
 
 
-class Wall(Structure):
-    """What all finite-element walls share."""
+class MeshedWall(Structure):
+    """What walls share that finite elements see whole."""
 
     thickness: Length = key(about="thickness out of plane", gt=0)
     regions: list[Region] = key([], "parts that differ; a later one overrides an earlier", max_length=1000)
@@ -62,13 +67,14 @@ class Wall(Structure):
     bars: list[Bar] = key([], "bars between two places", max_length=1000)
 
 
-class Panel(Laid, Wall):
+class Panel(Laid, MeshedWall):
     """A rectangular wall or beam with rectangular openings and notches; x from left, y from bottom.
 
     Finite elements see it whole. Of a given unit it is also laid in running bond, for all that looks at stones.
     """
 
     kind: Literal["panel"]
+    rocks_as: ClassVar[RocksAs] = "piers"
     starter_analysis: ClassVar = "sla"
     starter: ClassVar = {
         "thickness": '"30 cm"',
@@ -101,7 +107,9 @@ class Panel(Laid, Wall):
 
     @property
     def size(self) -> tuple[float, float]:
-        """Length and height of the wall [m]."""
+        """Length and height of the wall [m]; NoView where it is an outline."""
+        if self.width is None or self.height is None:
+            raise NoView("a panel of an outline is no rectangle")
         return self.width, self.height
 
     def piers(self, density: float) -> Assembly:
@@ -116,7 +124,7 @@ class Panel(Laid, Wall):
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.outline:
             raise NoView("a panel of an outline has no stones: draw them and read the drawing as kind `blocks`")
-        if self.unit_length is None:
+        if self.unit_length is None or self.unit_height is None:
             raise NoView("the stones of the panel are not known: give unit_length and unit_height")
         bond = self.bond(self.unit_length, self.unit_height)
         return make_brickwork(bond, *self.size, self.holes, density, self.thickness)
@@ -134,8 +142,13 @@ class Panel(Laid, Wall):
             ratio[region.holds(made.centroid)] = densities[region.material] / density
         return replace(made, mass=made.mass * ratio, inertia=made.inertia * ratio)
 
+    def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
+        from extrados.building.mesh.panel import make_panel
 
-class MeshFile(Wall):
+        return make_panel(self, building, options, seed)
+
+
+class MeshFile(MeshedWall):
     """A wall from a mesh file (gmsh, Abaqus and others; needs the extra `extrados[mesh]`)."""
 
     kind: Literal["mesh"]
@@ -146,3 +159,8 @@ class MeshFile(Wall):
     )
     file: str = key(about="mesh file of triangles or quadrilaterals in the x, y plane", min_length=1, max_length=1000)
     scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)
+
+    def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
+        from extrados.building.mesh.file import read_mesh
+
+        return read_mesh(self, building, options)

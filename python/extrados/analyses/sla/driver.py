@@ -1,0 +1,83 @@
+"""sla: sequentially linear analysis of a wall or of stones (thesis 4.2, 4.3)."""
+
+from typing import Any
+
+from extrados.analyses.batches import Chain
+from extrados.analyses.context import Context
+from extrados.analyses.sla.events import Curve, run_curves
+from extrados.analyses.sla.measures import joint_openings, numbers_of, tooth_counts
+from extrados.analyses.sla.model import SlaModel, build, strength_factors
+from extrados.analyses.sla.repetitions import repeat
+from extrados.analyses.sla.resume import carry_on, start_of
+from extrados.analyses.sla.stored import curve_arrays, field_files, mesh_arrays, sections
+from extrados.analyses.sla.tables import Sla
+from extrados.analyses.sla.words import answer_of_stones, answer_of_wall
+from extrados.core.calls import interruptible
+from extrados.results import sla as out
+from extrados.results.model import Result
+from extrados.results.sla import PREFIXES
+
+
+def run(context: Context, options: Sla) -> Result:
+    """All curves: both senses of the load, and the repetitions with other seeds."""
+    with interruptible():  # Ctrl-C between two batches too only ends the events: what was found is kept
+        return _run(context, options)
+
+
+def _run(context: Context, options: Sla) -> Result:
+    mesh = context.building.mesh(options.mesh)
+    result = Result("sla")
+    context.warnings += mesh.warnings
+    model = build(mesh, options, strength_factors(mesh, options, options.strength_seed))
+    damage, earlier = start_of(context, options, model)
+
+    def chain(sign: int) -> Chain:
+        mesh_of = [model.mesh.xy, [group.connect for group in model.mesh.groups], model.constant, model.reference]
+        return Chain(context, "sla", [options, sign, damage, model.freedoms, *mesh_of])
+
+    curves = run_curves(model, options, context.threads, context.progress, damage, chain)
+    for curve in curves:
+        carry_on(curve, earlier, model.unit)
+    numbers = _describe(result, model, options, curves)
+    if options.seeds and not curves[-1].events.interrupted:
+        numbers |= repeat(context, options, result)
+    result.results = out.Sla(**numbers)
+    if any(c.events.interrupted for c in curves):
+        again = "; --resume goes on from them" if context.checkpoint is not None else ""
+        result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
+    return result
+
+
+def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]) -> dict[str, Any]:
+    """Arrays, tables, files and words of all curves into `result`; their numbers."""
+    first = curves[0]
+    numbers = {
+        **numbers_of(model, options, first),
+        "reference_load_N": model.unit,
+        "teeth": tooth_counts(model),
+        "nodes": len(model.mesh.xy),
+        "elements": model.mesh.elements(),
+        "equations": first.equations,
+        "points": first.points,
+    }
+    for curve in curves[1:]:
+        numbers["minus"] = numbers_of(model, options, curve)
+    for curve in curves:
+        result.warnings += curve.warnings
+        events, sense = curve.events, f" (load to {curve.sense})"
+        if len(events) and events.load[0] < 0.0:
+            result.warnings.append(
+                f"the first event{sense} has a negative load, {events.load[0] * model.unit:.4g} N: the constant loads "
+                "alone are beyond the strength somewhere"
+            )
+    result.arrays = mesh_arrays(model)
+    for curve, prefix in zip(curves, PREFIXES, strict=False):
+        curve_arrays(result, model, curve, prefix)
+    sections(result, model, options, first)
+    field_files(result, model, curves)
+    if model.mesh.has_joints:
+        numbers["hinges"] = joint_openings(result, model, first)
+        result.answer = answer_of_stones(numbers, len(curves) > 1)
+    else:
+        result.answer = answer_of_wall(numbers, len(curves) > 1)
+    return numbers

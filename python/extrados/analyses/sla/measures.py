@@ -1,0 +1,122 @@
+"""What is read off a curve: loads, displacements, counts and energies, the teeth of its laws, the openings of joints."""
+
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.sla.curve import bilinear
+from extrados.analyses.sla.events import Curve
+from extrados.analyses.sla.model import SlaModel
+from extrados.analyses.sla.stored import point_fields, points_of_groups
+from extrados.analyses.sla.tables import Sla
+from extrados.core.sla import EVENT, teeth
+from extrados.results.model import Result, TableData
+from extrados.schema.constants import GRAVITY
+
+#: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
+HINGE, WIDE = 0.95, 0.1
+
+
+def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
+    """Results of one curve; keys end in their unit."""
+    events, peak, unit = curve.events, curve.peak, model.unit
+    lost = np.flatnonzero(~events.equilibrium)
+
+    def kinds(*names: str) -> np.ndarray:
+        return np.isin(events.code, [EVENT[name] for name in names])
+
+    numbers: dict[str, Any] = {
+        "sense": curve.sense,
+        "peak_load_N": float(events.load[peak] * unit) if peak >= 0 else None,
+        **_acceleration(model, float(events.load[peak]) if peak >= 0 else None),
+        "peak_displacement_m": float(events.monitors[peak, 0]) if peak >= 0 else None,
+        "displacement_of_constant_loads_m": curve.before,
+        "peak_event": peak + 1 if peak >= 0 else None,
+        "first_event_load_N": float(events.load[0] * unit) if len(events) else None,
+        "events": len(events),
+        "events_before_resume": curve.events_before,
+        "events_without_equilibrium": len(lost),
+        "first_event_without_equilibrium": int(lost[0]) + 1 if len(lost) else None,
+        "stop": events.reason or ("interrupted" if events.interrupted else "number of events"),
+        "secondary_cracks": int(kinds("tension_s").sum()),
+        "damaged_points": len(np.unique(events.point[kinds("tension", "tension_s")])),
+        "closings": int(kinds("close", "close_s").sum()),
+        "crushing_events": int(kinds("compression", "compression_s").sum()),
+        "last_load_N": float(events.load[-1] * unit) if len(events) else None,
+        "last_displacement_m": float(events.monitors[-1, 0]) if len(events) else None,
+        "energy_residual_ratio": events.ledger_error,
+        "external_work_J": float(events.external[-1]) if len(events) else None,
+        "stored_energy_J": float(events.stored[-1]) if len(events) else None,
+        "dissipated_energy_J": float(events.dissipated[-1]) if len(events) else None,
+        "crack_energy_J": events.crack_total,
+        "residual_ratio": _residual(curve),
+        "guard_checks": events.guard[0],
+        "guard_resolutions": events.guard[1],
+        "guard_new_factors": events.guard[2],
+        "seconds_per_event": curve.seconds / max(len(events), 1),
+        "events_of_constant_loads": len(curve.stage_a) - 1 if curve.stage_a is not None and len(curve.stage_a) else 0,
+    }
+    d, p = curve.envelope(unit)
+    if options.probes:
+        reached = [float(np.interp(x, d, p)) if x <= d[-1] else None for x in options.probes]
+        numbers["probe_loads_N"] = reached
+    if len(events):
+        numbers["initial_stiffness_N_m"] = float(unit**2 / events.compliance[0])
+    idea = bilinear(d - d[0], p)  # from the state under the constant loads
+    if idea is not None:
+        numbers["bilinear"] = {
+            "stiffness_N_m": idea.stiffness, "yield_load_N": idea.yield_load,
+            "yield_displacement_m": idea.yield_displacement, "ultimate_displacement_m": idea.ultimate_displacement,
+            "ductility": idea.ductility,
+        }  # fmt: skip
+    return numbers
+
+
+def _acceleration(model: SlaModel, peak: float | None) -> dict[str, float | None]:
+    """The peak multiplier as an acceleration, where the reference load is one of masses alone."""
+    if model.acceleration is None:
+        return {}
+    return {"peak_acceleration_g": None if peak is None else peak * model.acceleration / GRAVITY}
+
+
+def _residual(curve: Curve) -> float | None:
+    """The greatest residual that was measured, by the guard or at the end; None where none was."""
+    measured = [curve.residual] if curve.residual is not None else []
+    if curve.events.guard[0]:
+        measured.append(float(curve.events.residual.max()))
+    return max(measured, default=None)
+
+
+def tooth_counts(model: SlaModel) -> list[int]:
+    """Least and greatest number of teeth of the cracking elements (of the widest and narrowest bands)."""
+    laws = {}
+    for group, meshed in zip(model.planes, model.mesh.groups, strict=True):
+        if group.tension is not None:
+            for k, law in enumerate(group.tension):
+                if law is not None and (meshed.dry is None or not meshed.dry[k]):
+                    band = float(group.band[k])
+                    low, high = laws.get((law, float(group.young[k])), (band, band))
+                    laws[law, float(group.young[k])] = (min(low, band), max(high, band))
+    counts = [len(teeth(law, young, h)[0]) for (law, young), ends in list(laws.items())[:50] for h in ends]
+    return [min(counts), max(counts)] if counts else [0, 0]
+
+
+def joint_openings(result: Result, model: SlaModel, curve: Curve) -> list[str]:
+    """Openings of the joints at the peak as a table; the names of the hinges: open but for an edge, and wide among them."""
+    state = next((s for s in curve.states if s.event == curve.peak), None)
+    if state is None:
+        return []
+    groups = zip(model.mesh.groups, points_of_groups(model, len(model.point_xy)), strict=True)
+    joint_of, rows = next((group.joint, points) for group, points in groups if group.joint is not None)
+    joint = np.repeat(joint_of, len(rows) // len(joint_of))
+    width = point_fields(model, state, result.arrays["point_band"].data)["width_n"][rows]
+    area = state.report["volume"][rows]
+    count = len(model.mesh.joint_names)
+    share = np.bincount(joint, np.where(width > 0.0, area, 0.0), count) / np.bincount(joint, area, count)
+    most = np.zeros(count)
+    np.maximum.at(most, joint, width)
+    result.tables["joints"] = TableData(
+        {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}, {"greatest_opening": "m"}
+    )
+    hinges = np.flatnonzero((share > HINGE) & (most > WIDE * most.max()))
+    return [model.mesh.joint_names[j] for j in hinges]

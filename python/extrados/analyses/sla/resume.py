@@ -1,0 +1,82 @@
+"""Going on from the stored events of an earlier run: the damage at one of them, and what had been counted by then."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.sla.events import Curve, damage_before
+from extrados.analyses.sla.model import SlaModel
+from extrados.analyses.sla.tables import Sla
+from extrados.results.store import StoreError, read
+
+LEDGER = ("external", "dissipated", "crack")
+
+
+@dataclass(frozen=True)
+class Earlier:
+    """The event of an earlier run at which a resumed one begins: its sense, the events before it, its load [N] and
+    point, and the ledger [J] at it."""
+
+    sense: str
+    events: int
+    load: float
+    point: int
+    totals: list[float]
+
+
+def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarray | None, Earlier | None]:
+    """The damage stored by an earlier run before the event asked for, and what had been counted at that event."""
+    if options.resume_from is None:
+        return None, None
+    folder = Path(options.resume_from)
+    folder = folder if folder.is_absolute() else context.deck.folder / folder
+    try:
+        stored = read(folder)
+        get = {name: array.data for name, array in stored.arrays["sla"].items()}
+        there, here = get["point_xy"], model.point_xy
+        if len(there) != len(here):
+            raise Refused(
+                f"resume_from: that wall has {len(there)} points, this one {len(here)}; the mesh must be the same"
+            )
+        apart = float(np.abs(there - here).max())
+        if apart > 1e-6 * model.mesh.size:
+            raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one")
+        event = len(get["event_point"]) if options.resume_event is None else options.resume_event
+        if event > len(get["event_point"]):
+            raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events")
+        earlier = None
+        if event >= 1:
+            totals = [float(get[f"event_{name}"][event - 1]) for name in LEDGER]
+            numbers = stored["sla"]
+            before = numbers.get("events_before_resume", 0) + event - 1
+            earlier = Earlier(
+                numbers["sense"],
+                before,
+                float(get["event_load"][event - 1]),
+                int(get["event_point"][event - 1]),
+                totals,
+            )
+        damage = damage_before(
+            get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
+        )
+        return damage, earlier
+    except (StoreError, KeyError) as error:
+        raise Refused(f"resume_from: {error}") from None
+
+
+def carry_on(curve: Curve, earlier: Earlier | None, unit: float) -> None:
+    """Let the counts of a resumed curve go on, where its first event is the stored one: other loads or another sense
+    begin anew."""
+    events = curve.events
+    if earlier is None or not len(events) or curve.sense != earlier.sense or events.point[0] != earlier.point:
+        return
+    if abs(events.load[0] * unit - earlier.load) > 1e-6 * abs(earlier.load):
+        return
+    curve.events_before = earlier.events
+    for name, total in zip(LEDGER, earlier.totals, strict=True):
+        shift = total - float(getattr(events, name)[0])
+        getattr(events, name)[:] += shift
+        if name == "crack":
+            events.crack_total += shift
