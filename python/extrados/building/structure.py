@@ -12,12 +12,14 @@ if TYPE_CHECKING:
 
 
 class Structure(Table):
-    """Base of the structure kinds. `lacks`: views that the kind cannot have, with the reason in words.
+    """Base of the structure kinds. `word`: what answers call it, after "the"; `lacks`: views that the kind cannot
+    have, with the reason in words.
 
     starter_analysis: the analysis of the deck that `new` writes.
     """
 
     kind: str
+    word: ClassVar[str] = "structure"
     lacks: ClassVar[Mapping[str, str]] = {}
     starter_analysis: ClassVar[str] = "tilt"
 

@@ -88,7 +88,7 @@ class Sla(SlaCurve, KindResults):
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
         borne = [c.peak_acceleration_g for c in (self, self.minus) if c is not None]
         if all(a is not None for a in borne):
-            return acceleration("The building", min(abs(a) for a in borne), demand)
+            return acceleration(min(abs(a) for a in borne), demand)
         peaks = [c.peak_load_N for c in (self, self.minus) if c is not None and c.peak_load_N is not None]
         if not peaks:
             return judge(f"No greatest load was found; the run ended by: {self.stop}.", None, None, "N")

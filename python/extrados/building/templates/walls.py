@@ -68,6 +68,7 @@ class Panel(Laid, Wall):
     Finite elements see it whole. Of a given unit it is also laid in running bond, for all that looks at stones.
     """
 
+    word: ClassVar = "panel"
     kind: Literal["panel"]
     starter_analysis: ClassVar = "sla"
     starter: ClassVar = {
