@@ -17,13 +17,15 @@ RocksAs = Literal["mechanism", "block", "piers"]
 
 
 class Structure(Table):
-    """Base of the structure kinds. `lacks`: views that the kind cannot have, with the reason in words.
+    """Base of the structure kinds. `word`: what answers call it, after "the"; `lacks`: views that the kind cannot
+    have, with the reason in words.
 
     rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, or its piers.
     starter_analysis: the analysis of the deck that `new` writes.
     """
 
     kind: str
+    word: ClassVar[str] = "structure"
     lacks: ClassVar[Mapping[str, str]] = {}
     rocks_as: ClassVar[RocksAs] = "mechanism"
     starter_analysis: ClassVar[str] = "tilt"

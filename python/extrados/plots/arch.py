@@ -1,4 +1,4 @@
-"""Figures of the arch: rocking, failure domain, assessment."""
+"""Figures of what rocks: history, failure domain, assessment."""
 
 import itertools
 from pathlib import Path
@@ -23,7 +23,7 @@ def moved(outline: np.ndarray, centroid: np.ndarray, pose: np.ndarray) -> np.nda
 
 
 def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """History of rotation, ground acceleration, energies and friction; deformed arch with its thrust line."""
+    """History of rotation, ground acceleration, energies and friction; shapes, of an arch with its thrust line."""
     r = run[name]
     t = run.array(name, "time")
     found = []
@@ -36,7 +36,8 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         rotation.plot(t, 1e3 * run.array(name, "rotation"), color=style.THRUST)
         for sign in (1, -1):
             rotation.axhline(1e3 * sign * r.critical_rotation_rad, color=style.EDGE, linestyle=":", linewidth=0.8)
-        limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=1e-9)
+        limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=0.0)
+        limit = limit or 1.15e3 * r.critical_rotation_rad  # it has not rocked
         rotation.set_ylim(-limit, limit)
         rotation.plot(
             run.array(name, "impact_time"),
@@ -90,19 +91,18 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 ax.set_ylim(high[0] - 0.05 * span, high[1] + 0.15 * span)
                 ax.set_title(f"{when:.3f} s")
                 style.section_axes(ax)
-                ax.locator_params(axis="x", nbins=3 if span > high[0] and low[1] - low[0] < span else 9)
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),
-                    "The structure (true scale) at the greatest rotations"
-                    + ("." if lines is None else ", with its dynamic thrust line."),
+                    "True scale, at the greatest rotations"
+                    + ("." if lines is None else ", with the dynamic thrust line."),
                 )
             )
     return found
 
 
 def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: np.ndarray) -> tuple[str, str]:
-    """Friction needed along the arch over time, and its greatest value at each joint."""
+    """Friction needed at the joints over time, and its greatest value at each."""
     friction = run.array(name, "required_friction")
     first, last = np.flatnonzero(moving)[[0, -1]]
     part = slice(max(first - 1, 0), last + 2)
@@ -114,14 +114,16 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
         )
         fig.colorbar(mesh, ax=over_time, label="coefficient of friction needed (1 and above)")
         over_time.set_xlabel("time [s]")
-        over_time.set_ylabel("joint, 0 at the left springing")
+        over_time.set_ylabel("joint")
         over_time.grid(False)
         along.plot(np.minimum(friction[moving].max(axis=0), 2.0), joints, "o-", color=style.HINGE, markersize=3)
         along.set_xlabel("greatest friction needed")
         along.set_ylabel("joint")
+        for ax in (over_time, along):
+            style.numbers(ax.yaxis)
         return style.save(
             fig, folder, f"{name}-friction"
-        ), "Friction needed along the arch while it rocks (white: at rest)."
+        ), "Friction needed at the joints while it rocks (white: at rest)."
 
 
 def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -147,7 +149,7 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         ax.plot(d, run.array(name, "mode_II")[order], f"k--{mark}", label="Mode II")
         ax.axhline(r.uplift_acceleration_g, color=style.EDGE, linewidth=0.8, linestyle=":")
         for code, text in enumerate(
-            ("no hinging", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
+            ("no rocking", "recovery", "collapse after impact (Mode I)", "collapse without impact (Mode II)")
         ):
             ax.plot([], [], "s", color=style.MODES[code], markeredgecolor=style.EDGE, label=text)
         ax.set_xlabel(
@@ -172,13 +174,9 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
     with style.figure(8.5, 4.0, columns=2, width_ratios=[1.1, 1]) as (fig, (curve, record)):
         period = run.array(name, "period")
         curve.plot(period, run.array(name, "failing_amplitude"), "k-", label=f"Eq. 5.8, {r.coefficients_source}")
-        curve.plot(
-            period,
-            run.array(name, "failing_amplitude_own"),
-            "--",
-            color=style.EDGE,
-            label="Eq. 5.8, fitted to this structure",
-        )
+        own = run.array(name, "failing_amplitude_own")
+        if np.any(own != run.array(name, "failing_amplitude")):
+            curve.plot(period, own, "--", color=style.EDGE, label="Eq. 5.8, fitted to this one")
         curve.plot(
             run.array(name, "computed_period"),
             run.array(name, "computed_amplitude"),

@@ -201,7 +201,10 @@ def _hinge_map(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             time, np.arange(hinge.shape[1]), hinge.T, cmap=colours, norm=norm, shading="nearest", rasterized=True
         )
         bar = fig.colorbar(mesh, ax=ax, ticks=[-1, 0, 1, 2])
-        bar.ax.set_yticklabels(["hinge, first end\n(intrados)", "closed", "hinge, second end\n(extrados)", "open"])
+        bar.ax.set_yticklabels(
+            ["hinge, first end\n(of a ring: intrados)", "closed", "hinge, second end\n(of a ring: extrados)", "open"]
+        )
+        style.numbers(ax.yaxis)
         ax.set_xlabel("time [s]")
         ax.set_ylabel("joint")
         ax.grid(False)
@@ -254,7 +257,7 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
-    return [(saved, "Shortest failing pulses; to the right of a curve the structure comes down.")]
+    return [(saved, "Shortest failing pulses; to the right of a curve it comes down.")]
 
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

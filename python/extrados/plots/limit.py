@@ -155,7 +155,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             thrust_lines(
                 axes[0], paths(run, name, "collapse_funicular"), style.EDGE, "funicular", linewidth=0.6, linestyle="--"
             )
-            axes[0].legend(loc="upper center", bbox_to_anchor=(0.5, -0.24), ncols=2)
+            style.legend_below(fig, axes[0])
         else:
             compression(axes[0], run, name, "collapse", "compression")
         hinge_marks(axes[0], r.hinges)
@@ -180,7 +180,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             thrust_lines(
                 ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}"
             )
-            ax.legend(loc="lower center")
+            style.legend_below(fig, ax)
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
             first = next(iter(r.thrusts))
@@ -261,7 +261,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             else:
                 compression(ax, run, name, which, f"{which} state: compression")
         overall_dimensions(ax, blocks)
-        ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=3)
+        style.legend_below(fig, ax)
         safety = r.geometric_safety_factor
         told = f", safety factor {safety:.2f}" if safety is not None and np.isfinite(safety) else ""
         ax.set_title(f"{'Thrust lines' if arched else 'Compression'} at {r['gamma_g']:g} g{told}")
@@ -277,6 +277,8 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
             ax.plot(run.array(name, f"{which}_friction"), color=colour, marker=".", markersize=3, label=which)
+        ax.set_ylim(bottom=0.0)
+        style.numbers(ax.xaxis)
         ax.set_xlabel("joint")
         ax.set_ylabel("friction needed")
         ax.legend()
@@ -434,6 +436,4 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         curve.set_ylim(0.0, min(float(np.nanmax(capacity)) / 1e3 * 1.05, 8.0 * low))
         curve.set_xlabel("x of the first axle [m]")
         curve.set_ylabel("load at collapse [kN]")
-        return [
-            (style.save(fig, folder, name), "Load that brings the structure down, over the place of the first axle.")
-        ]
+        return [(style.save(fig, folder, name), "Load that brings it down, over the place of the first axle.")]

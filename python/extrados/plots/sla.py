@@ -97,9 +97,10 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
-    """The states to draw: at the greatest load and the last."""
+    """The states to draw: at the greatest load and the last that is in equilibrium."""
     events = run.array(name, f"{prefix}state_event")
-    return sorted({_peak(run, name, prefix), len(events) - 1})
+    held = np.flatnonzero(run.array(name, f"{prefix}event_equilibrium")[events - 1] > 0)
+    return sorted({_peak(run, name, prefix), *held[-1:].tolist()})
 
 
 def _peak(run: Stored, name: str, prefix: str) -> int:
@@ -144,7 +145,7 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
             style.section_axes(ax)
             ax.set_title(f"event {event}, {load / 1e3:.4g} kN, displacements x {factor:g}")
         title = style.save(fig, folder, f"{name}{SENSES[prefix]}-cracks")
-    return title, "Cracks on the deformed wall, at the peak and at the end; colour and thickness give the width."
+    return title, "Cracks on the deformed shape, at the peak and at the end; colour and thickness give the width."
 
 
 def _at_points(run: Stored, name: str, moved: np.ndarray) -> np.ndarray:
@@ -230,9 +231,10 @@ def _energy(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             number, get("external")[upto], color=style.EDGE, linewidth=0.9, linestyle="--", label="work of the loads"
         )
         ax.plot(number, get("crack")[upto], color=style.THRUST, linewidth=0.9, label="area of the teeth")
+        style.numbers(ax.xaxis)
         ax.set_xlabel("event")
         ax.set_ylabel("energy [J]")
-        ax.legend(loc="upper left")
+        style.legend_below(fig, ax)
         title = style.save(fig, folder, f"{name}-energy")
     return title, (
         f"Energy ledger: stored and dissipated energy make up the work of the loads to "

@@ -7,10 +7,12 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
+from matplotlib.ticker import MaxNLocator
 
 STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
 MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d")
@@ -46,9 +48,23 @@ def save(fig: Figure, folder: Path, name: str) -> str:
     return name
 
 
+def legend_below(fig: Figure, ax: Axes) -> None:
+    """The legend of `ax` below the whole figure, where a drawing has no room for it."""
+    handles, labels = ax.get_legend_handles_labels()
+    fig.legend(handles, labels, loc="outside lower center", ncols=len(labels))
+
+
+def numbers(axis: Axis) -> None:
+    """Ticks at whole numbers only: joints, events."""
+    axis.set_major_locator(MaxNLocator(integer=True))
+
+
 def section_axes(ax: Axes) -> None:
-    """Axes for a drawing of a structure: equal scales, metres."""
+    """Axes for a drawing of a structure that is already in them: equal scales, metres."""
     ax.set_aspect("equal")
+    slender = np.ptp(ax.get_xlim()) / np.ptp(ax.get_ylim())
+    if slender < 0.5:  # the labels below a narrow drawing must not run into each other
+        ax.xaxis.set_major_locator(MaxNLocator(nbins=2 if slender < 0.3 else 3))
     ax.grid(False)
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")

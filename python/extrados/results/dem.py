@@ -105,7 +105,7 @@ class DemTilt(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return acceleration("The structure", least, demand)
+        return acceleration(least, demand)
 
 
 Dem = DemRun | DemTilt

@@ -97,7 +97,7 @@ class Tilt(KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
         least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g)
-        return acceleration("The structure", least, demand)
+        return acceleration(least, demand)
 
 
 class ThrustLine(ResultModel):
@@ -153,7 +153,7 @@ class MovingLoad(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The deck's load against the least collapse load [N]."""
-        text = f"The {self.chain} bears {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
+        text = f"It bears {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
         if self.load_N is None:
             return judge(f"{text}; the deck gives no load to compare with.", None, self.collapse_load_N, "N")
         return judge(

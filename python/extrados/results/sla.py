@@ -89,7 +89,7 @@ class Sla(SlaCurve, KindResults):
         curves = [c for c in (self, self.minus) if c is not None]
         borne = [abs(c.peak_acceleration_g) for c in curves if c.peak_acceleration_g is not None]
         if len(borne) == len(curves):
-            return acceleration("The building", min(borne), demand)
+            return acceleration(min(borne), demand)
         peaks = [c.peak_load_N for c in curves if c.peak_load_N is not None]
         if not peaks:
             return judge(f"No greatest load was found; the run ended by: {self.stop}.", None, None, "N")

@@ -67,13 +67,10 @@ def judge(
     )  # fmt: skip
 
 
-def acceleration(what: str, capacity: float, demand: Demand) -> Verdict:
-    """A constant acceleration that is borne [g] against the peak of the motion, if there is one.
-
-    `what` begins the sentence, for instance "The arch".
-    """
+def acceleration(capacity: float, demand: Demand) -> Verdict:
+    """A constant acceleration that is borne [g] against the peak of the motion, if there is one."""
     peak = demand.peak_g
-    bears = f"{what} bears a constant horizontal acceleration of {capacity:.3g} g"
+    bears = f"It bears a constant horizontal acceleration of {capacity:.3g} g"
     if peak is None:
         return judge(f"{bears}; the deck holds no single motion to compare with.", None, capacity, "g")
     word = "below" if peak < capacity else "at or above"

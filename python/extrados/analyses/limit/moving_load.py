@@ -104,7 +104,9 @@ def run(context: Context, options: MovingLoad) -> Result:
     capacity, mechanisms, gap = swept["capacity"], swept["mechanism"].tolist(), float(swept["gap"].max())
     k = int(capacity.argmin())
     if not np.isfinite(capacity[k]):
-        raise Refused("no load of this kind brings the structure down: it only presses the joints together")
+        raise Refused(
+            f"no load of this kind brings the {context.building.structure.word} down: it only presses the joints together"
+        )
     state, mechanism = job.collapse(k)
     result = Result("moving-load")
     asked = {} if options.force is None else {"load_N": options.force, "safety_factor": capacity[k] / options.force}
@@ -135,8 +137,9 @@ def run(context: Context, options: MovingLoad) -> Result:
         )
     }
     result.answer = (
-        f"The load that brings the {chain or 'structure'} down is least, {capacity[k] / assembly.depth / 1e3:.4g} kN per metre of depth, when its "
-        f"first axle stands at x = {places[k]:.3g} m ({100 * (places[k] - low) / (high - low):.0f} % of the span)."
+        f"The load that brings the {chain or context.building.structure.word} down is least, "
+        f"{capacity[k] / assembly.depth / 1e3:.4g} kN per metre of depth, when its first axle stands at "
+        f"x = {places[k]:.2f} m ({100 * (places[k] - low) / (high - low):.0f} % of the span)."
     )
     if options.force is not None:
         result.answer += (

@@ -103,11 +103,13 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
         )
     else:
         least, most, middle = (line.horizontal_kN_per_m for line in (r.least, r.most, r.central))
-        where = "base" if is_stack(assembly, assembly.chains[r.chain]) else "left springing"
-        text = (
-            f"At {r.gamma_g:g} g the thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre of "
-            f"depth at its {where}; the most central line ({middle:.4g} kN/m) {needs}."
-        )
+        if is_stack(assembly, assembly.chains[r.chain]):  # statically determinate: all lines are one at its base
+            text = f"At {r.gamma_g:g} g the most central line of the stack ({middle:.4g} kN/m horizontally at its base) {needs}."
+        else:
+            text = (
+                f"At {r.gamma_g:g} g the thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre of "
+                f"depth at its left springing; the most central line ({middle:.4g} kN/m) {needs}."
+            )
     low, high = r.admissible_interval_g
     return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g."
 

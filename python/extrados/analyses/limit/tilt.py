@@ -82,7 +82,7 @@ def run(context: Context, options: Tilt) -> Result:
             about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
             result.arrays.update(state_arrays(assembly, word, state_of, about))
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
-    result.answer = _words(assembly, answer, found)
+    result.answer = _words(context.building.structure.word, assembly, answer, found)
     result.warnings += answer.warnings
     needed = found.required_friction or 0.0
     if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
@@ -165,11 +165,8 @@ def _some(names: list[str]) -> str:
     return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
 
 
-def _words(assembly: Assembly, answer: Answer, found: out.Tilt) -> str:
+def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> str:
     gamma, back = answer.gamma, -answer.back_state.gamma
-    what = {"arch": "arch", "vault": "vault on its buttresses", "nave": "church section"}.get(
-        next(iter(assembly.chains), ""), "structure"
-    )
     if assembly.chains:
         where = _some([f"{h.side} of {h.name}" for h in found.hinges])
     else:

@@ -7,7 +7,6 @@ from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.criterion import Fit, fit_own, interpolated
 from extrados.analyses.rocking.tables import Assessment
 from extrados.building.rockers.arch import ArchModel
-from extrados.building.rockers.rocker import Rocker
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
@@ -48,7 +47,7 @@ def run(context: Context, options: Assessment) -> Result:
         peak_ground_acceleration_g=context.motion.peak / GRAVITY,
         static_verdict="fails" if context.motion.peak > gamma * GRAVITY else "stands",
         coefficients=_coefficients(fit),
-        coefficients_source="Table 5.3, regenerated and interpolated" if table else f"fitted to this {_word(rocker)}",
+        coefficients_source="Table 5.3, regenerated and interpolated" if table else f"fitted to this {rocker.word}",
         coefficients_of_this_arch=_coefficients(own),
         restitution=rocker.restitution,
         impulses=rows,
@@ -74,18 +73,13 @@ def run(context: Context, options: Assessment) -> Result:
         "period": Array(periods, ("period",), "s"),
         "failing_amplitude": Array(fit.amplitude(periods, scale), ("period",), "g", "Eq. 5.8"),
         "failing_amplitude_own": Array(
-            own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 fitted to this {_word(rocker)}"
+            own.amplitude(periods, scale), ("period",), "g", f"Eq. 5.8 fitted to this {rocker.word}"
         ),
         "computed_period": Array(own_periods * np.sqrt(scale), ("computed",), "s"),
         "computed_amplitude": Array(own_curve, ("computed",), "g", "Mode I failure curve of its own, computed"),
     }
-    result.answer = _answer(r, worst, _word(rocker))
+    result.answer = _answer(r, worst, rocker.word)
     return result
-
-
-def _word(rocker: Rocker) -> str:
-    """What the building is called in answers."""
-    return rocker.what if rocker.what in ("arch", "block", "column", "vault") else "structure"
 
 
 def _row(rank: int, impulse: Impulse, fit: Fit, own: Fit, radius: float) -> out.AssessedImpulse:

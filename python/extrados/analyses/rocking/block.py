@@ -33,7 +33,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     result = rocking_result(
         context,
         response,
-        "the block",
+        f"the {rocker.word}",
         friction[:, None],
         restitution=c_v[0],
         restitution_to_left=c_v[1],
@@ -47,12 +47,12 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     if flying.any():
         first = response.time[flying.argmax()]
         result.warnings.append(
-            f"from {first:.3f} s on the block would leave the ground for a while: rocking without flight is assumed"
+            f"from {first:.3f} s on the {rocker.word} would leave the ground for a while: rocking without flight is assumed"
         )
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = (
-        answer(context, response, "The block", "overturns", float(model.uplift.min()))
+        answer(context, response, f"The {rocker.word}", "overturns", float(model.uplift.min()))
         + f" It slides instead where friction is below {needed:.2f}."
     )
     return result

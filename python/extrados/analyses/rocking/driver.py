@@ -68,7 +68,7 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
         "thrust_position": Array(thrust.position, ("time", "joint"), "", "thrust line: 0 intrados, 1 extrados"),
         **_snapshots(model, response, thrust, snapshot_index(response, options, result.warnings)),
     }
-    result.answer = answer(context, response, "The arch", "collapses", gamma)
+    result.answer = answer(context, response, f"The {rocker.word}", "collapses", gamma)
     return result
 
 

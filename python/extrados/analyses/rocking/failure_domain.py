@@ -282,7 +282,7 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
         options.pulse, f"{options.pulse} pulses"
     )
     if not np.isfinite(curves.mode_i).any():
-        return f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g brings the {model.what} down."
+        return f"None of the {shape} up to {options.max_amplitude / GRAVITY:g} g brings the {model.word} down."
     governing = np.nanmin(curves.mode_i) / GRAVITY
     shortest = durations[np.isfinite(curves.mode_i)].min()
     start = "hinge" if model.what == "arch" else "rock"
@@ -293,7 +293,7 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
         else "None of them collapses after an impact at a lower amplitude than without (Mode II)"
     )
     return (
-        f"Under {shape} the {model.what} starts to {start} at {model.uplift:.3f} g. It comes down from {shortest:.3f} s on "
+        f"Under {shape} the {model.word} starts to {start} at {model.uplift:.3f} g. It comes down from {shortest:.3f} s on "
         f"(at up to {options.max_amplitude / GRAVITY:g} g); over the durations tried the lowest failing amplitude is {governing:.3f} g. "
         f"{modes}; "
         f"{pockets} of {len(durations)} durations have safe pockets above the curve, not to be relied on."

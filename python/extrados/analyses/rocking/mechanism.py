@@ -55,7 +55,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
             "x, y, rotation of the stones",
         ),
     }  # fmt: skip
-    result.answer = answer(context, response, "The structure", "comes down", rocker.uplift)
+    result.answer = answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift)
     return result
 
 

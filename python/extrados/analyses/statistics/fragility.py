@@ -110,7 +110,7 @@ def sampled_models(context: Context, options: Fragility, base: Rocker, count: in
     known = UNCERTAIN.get(base.what, ())
     for name in options.uncertain:
         if name not in known or (name != "restitution" and getattr(structure, name) is None):
-            raise Refused(f"uncertain.{name} does not belong to this {base.what}; it has {', '.join(known) or 'none'}")
+            raise Refused(f"uncertain.{name} does not belong to this {base.word}; it has {', '.join(known) or 'none'}")
     names = sorted(options.uncertain)
     draws = qmc.Sobol(len(names), scramble=True, seed=options.seed or 0).random_base2(
         max(1, int(np.ceil(np.log2(count))))
@@ -271,7 +271,7 @@ def _describe(
     else:
         p, (low, high) = r["collapse_probability"], r["confidence_interval"]
         result.answer = (
-            f"Of {r['count']} motions {r['collapsed']} bring the {base.what} down: probability of collapse {100 * p:.1f} % "
+            f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down: probability of collapse {100 * p:.1f} % "
             f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
             f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
             f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
@@ -407,7 +407,7 @@ def _curves(
     result.answer = (
         f"{whose} at {n} levels of {name}: {said}. "
         f"Collapse runs from {100 * np.nanmin(table['collapse_probability']):.1f} % at the lowest to {100 * table['collapse_probability'][-1]:.1f} % at the "
-        f"highest level. {r['resurrections']} motions leave the {base.what} standing at a level above one that overturns it."
+        f"highest level. {r['resurrections']} motions leave the {base.word} standing at a level above one that overturns it."
     )
     return r
 

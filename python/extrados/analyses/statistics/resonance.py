@@ -162,7 +162,7 @@ def run(context: Context, options: Resonance) -> Result:
     )  # fmt: skip
     result.answer = (
         f"Pushed by +-{cap / GRAVITY:.3f} g ({cap / GRAVITY / model.uplift:.2f} of uplift) always against its motion, from "
-        f"{_start(context):g} of the critical rotation, the {model.what} is {fate}"
+        f"{_start(context):g} of the critical rotation, the {model.word} is {fate}"
         + (
             f"; between the changes of sign lie {spacing[0]:.2f} s at first and {spacing[-1]:.2f} s at last."
             if len(spacing) > 1

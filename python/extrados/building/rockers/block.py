@@ -62,9 +62,7 @@ class BlockModel:
     @property
     def warnings(self) -> list[str]:
         if self.energy_ratio is None and isinstance(self.rule, str) and self.housner.min() < 0.0:
-            return [
-                "the block is too stocky for Housner's impact (c_v below zero): it lands flat and stays, c_v = 0 is used"
-            ]
+            return ["it is too stocky for Housner's impact (c_v below zero): it lands flat and stays, c_v = 0 is used"]
         return []
 
     @cached_property

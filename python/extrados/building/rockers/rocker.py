@@ -21,12 +21,13 @@ if TYPE_CHECKING:
 class Rocker:
     """A building ready for the rocking core.
 
-    model: what it was made from. uplift: horizontal acceleration at which it starts to rock [g]; critical: rotation
+    what: its kind; word: what answers call it; model: what it was made from. uplift: horizontal acceleration at which it starts to rock [g]; critical: rotation
     of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
     arch [m]; start_rotation [rad], > 0 to +x.
     """
 
     what: str
+    word: str
     model: BlockModel | ArchModel | MechanismModel
     body: Body
     uplift: float
@@ -57,7 +58,7 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
         block = block_model(building, linear)
         alpha = block.alpha
         return Rocker(
-            structure.kind, block, block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])),
+            structure.kind, structure.word, block, block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])),
             float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
             ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
         )  # fmt: skip
@@ -70,13 +71,13 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
         unit = float(np.sqrt(limits.mass * limits.critical / limits.gravity_moment))
         return Rocker(
-            "arch", arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
+            "arch", structure.word, arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
             made.radius, ratio * limits.critical, tuple(arch.warnings),
         )  # fmt: skip
     rule = building.joints.restitution
     model = MechanismModel(made, "energy-safe" if rule == "thesis" else rule)
     critical = model.critical
     return Rocker(
-        structure.kind, model, model.body, min(model.uplift), critical, model.restitution[0], model.time_unit, model.length,
-        ratio * critical[0 if ratio >= 0.0 else 1], tuple(model.warnings),
+        structure.kind, structure.word, model, model.body, min(model.uplift), critical, model.restitution[0],
+        model.time_unit, model.length, ratio * critical[0 if ratio >= 0.0 else 1], tuple(model.warnings),
     )  # fmt: skip

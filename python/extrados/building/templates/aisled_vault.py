@@ -254,6 +254,7 @@ class AisledVault(PresetStructure):
         "buttress_width": "1.8",
         "buttress_top": "8.5",
     }
+    word: ClassVar = "church section"
     kind: Literal["aisled-vault"]
     preset: Literal["vezelay-like", "colombier-like"] | None = key(
         None, "guessed sizes of a church in the manner of thesis 3.5; other keys overrule it"

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
@@ -89,6 +89,7 @@ def make_arch(
 class Arch(Structure):
     """Part-circular arch of equal voussoirs on rigid springings."""
 
+    word: ClassVar = "arch"
     kind: Literal["arch"]
     radius: Length = key(about="radius of the centre line, R_A", ge=1e-3, le=1e4)
     thickness: Length = key(about="thickness of the ring, t_A", gt=0, le=1e4)

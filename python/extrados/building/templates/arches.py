@@ -101,6 +101,7 @@ class PointedArch(Structure):
         "thickness": "0.5",
         "voussoirs": "24",
     }
+    word: ClassVar = "pointed arch"
     kind: Literal["pointed-arch"]
     span: Length = key(about="clear span", gt=0)
     radius: Length = key(about="radius of the intrados: half the span is round, the span equilateral", gt=0)
@@ -121,6 +122,7 @@ class EllipticalArch(Structure):
         "thickness": "0.6",
         "voussoirs": "24",
     }
+    word: ClassVar = "elliptical arch"
     kind: Literal["elliptical-arch"]
     span: Length = key(about="clear span", gt=0)
     rise: Length = key(about="rise of the intrados", gt=0)

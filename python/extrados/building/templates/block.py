@@ -113,6 +113,7 @@ def make_block(
 class Block(Structure):
     """Rigid block that rocks on its two toes: a rectangle, or a body given by mass, inertia, centre and toes."""
 
+    word: ClassVar = "block"
     kind: Literal["block"]
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"width": "1.0", "height": "4.0"}

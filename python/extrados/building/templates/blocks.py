@@ -121,6 +121,7 @@ class Blocks(Structure):
     """Any plane assembly of polygons; edges that lie on each other are the joints."""
 
     starter: ClassVar = {"block": '[{ name = "pier", points = [[0, 0], [1, 0], [1, 3], [0, 3]] }]'}
+    word: ClassVar = "assembly of blocks"
     kind: Literal["blocks"]
     file: str | None = key(None, "JSON or DXF file with the blocks, beside the deck", max_length=500)
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(

@@ -214,6 +214,7 @@ class Laid(Table):
 class Brickwork(Laid, Structure):
     """Wall of equal units in running bond on the ground, loaded in its plane; half units close every other course."""
 
+    word: ClassVar = "wall"
     kind: Literal["brickwork"]
     rocks_as: ClassVar[RocksAs] = "piers"
     starter: ClassVar = {"unit_length": '"40 cm"', "unit_height": '"20 cm"', "units": "5", "courses": "8"}

@@ -56,6 +56,7 @@ def make_column(
 class Column(Structure):
     """Blocks or drums stacked on the ground, tapered where asked for; dry joints between them."""
 
+    word: ClassVar = "column"
     kind: Literal["column"]
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"height": "4.0"}

@@ -86,6 +86,7 @@ class Vault(PresetStructure):
         "buttress_width": "2.0",
         "height": "9.0",
     }
+    word: ClassVar = "vault on its buttresses"
     kind: Literal["vault"]
     preset: Literal["dejong-a", "dejong-b"] | None = key(
         None, "all sizes of a reading of the vault of thesis 3.4, inferred from its results; other keys overrule it"

@@ -73,6 +73,7 @@ class Panel(Laid, MeshedWall):
     Finite elements see it whole. Of a given unit it is also laid in running bond, for all that looks at stones.
     """
 
+    word: ClassVar = "panel"
     kind: Literal["panel"]
     rocks_as: ClassVar[RocksAs] = "piers"
     starter_analysis: ClassVar = "sla"
