@@ -32,12 +32,8 @@ EXTRADOS_API int extrados_handle_count(void);
 EXTRADOS_API void extrados_cancel_set(int value);
 EXTRADOS_API int extrados_cancel_get(void);
 
-/* random.c: `count` independent uniform phases in [0, 2 pi) from one seed. */
-EXTRADOS_API int extrados_random_phases(int64_t seed, int64_t count, double *phase);
+/* random.c: GSL returns errors instead of ending the process. */
 EXTRADOS_API void extrados_library_init(void);
-
-/* version.c: the linked CHOLMOD as major*10000 + minor*100 + patch. */
-EXTRADOS_API int extrados_cholmod_version(void);
 
 /* ldl.c: a symmetric sparse system, lower triangle by columns, 0-based. `order` gives the fill-reducing
  * order (ordering 0 AMD, 1 METIS; order[new] = old); everything after it expects equations in that order. */

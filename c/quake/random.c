@@ -35,8 +35,3 @@ int extrados_motion_phases(int64_t seed, int64_t index, int count, double *phase
   gsl_rng_free(rng);
   return EXTRADOS_ok;
 }
-
-int extrados_random_phases(int64_t seed, int64_t count, double *phase) {
-  if (count < 0 || count > INT32_MAX) return EXTRADOS_invalid_argument;
-  return extrados_motion_phases(seed, 0, (int)count, phase);
-}

@@ -1,9 +1,9 @@
-!> Lists of names and numbers, handles, cancel flag, library versions.
+!> Lists of names and numbers, handles, cancel flag.
 module api_support
-   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: list_entry, close_handle, handle_count, set_cancel, init_libraries, cholmod_version, random_phases
+   public :: list_entry, close_handle, handle_count, set_cancel, init_libraries
 
 contains
 
@@ -49,24 +49,5 @@ contains
       use common_c_bindings, only : extrados_library_init
       call extrados_library_init()
    end subroutine init_libraries
-
-   !> The linked CHOLMOD as major*10000 + minor*100 + patch
-   subroutine cholmod_version(version)
-      use common_c_bindings, only : extrados_cholmod_version
-      integer(c_int), intent(out) :: version
-      version = extrados_cholmod_version()
-   end subroutine cholmod_version
-
-   !> Independent uniform phases in [0, 2 pi) from one seed
-   subroutine random_phases(seed, n, phase, status)
-      use common_c_bindings, only : extrados_random_phases
-      integer(c_int64_t), intent(in) :: seed
-      integer(c_int), intent(in) :: n
-      real(c_double), intent(out) :: phase(n)   !! [rad]
-      integer(c_int), intent(out) :: status
-      !f2py threadsafe
-      phase = 0.0_c_double
-      status = extrados_random_phases(seed, int(n, c_int64_t), phase)
-   end subroutine random_phases
 
 end module api_support

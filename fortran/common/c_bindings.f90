@@ -1,9 +1,9 @@
 !> Interfaces of the C part, one for each function of c/include/extrados.h.
 module common_c_bindings
-   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t, c_char, c_funptr, c_ptr
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_char, c_funptr, c_ptr
    implicit none
    private
-   public :: extrados_list_entry, extrados_library_init, extrados_cholmod_version, extrados_random_phases
+   public :: extrados_list_entry, extrados_library_init
    public :: extrados_cancel_set, extrados_cancel_get
    public :: extrados_handle_new, extrados_handle_take, extrados_handle_leave, extrados_handle_close
    public :: extrados_handle_count
@@ -72,20 +72,6 @@ module common_c_bindings
       subroutine extrados_library_init() bind(c)
          implicit none (type, external)
       end subroutine extrados_library_init
-
-      function extrados_cholmod_version() bind(c) result(version)
-         import :: c_int
-         implicit none (type, external)
-         integer(c_int) :: version
-      end function extrados_cholmod_version
-
-      function extrados_random_phases(seed, count, phase) bind(c) result(status)
-         import :: c_int, c_int64_t, c_double
-         implicit none (type, external)
-         integer(c_int64_t), value, intent(in) :: seed, count
-         real(c_double), intent(out) :: phase(*)
-         integer(c_int) :: status
-      end function extrados_random_phases
    end interface
 
 end module common_c_bindings

@@ -1,5 +1,6 @@
 """dem under a motion: from rest under the own weight to the end, to rest or to collapse."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,100 +24,44 @@ from extrados.results import dem as out
 from extrados.results.model import Array, Result, TableData
 
 
+@dataclass(frozen=True)
+class Seen:
+    """What is read off a run: openings and slip of the joints (time, joint) [m] and what these do (results.dem), rotations
+    of the blocks (time, block) [rad] and those followed, the farthest displacement of any block (time) [m], the greatest
+    slip of joints that touch [m], and the ground's acceleration (time) [m/s^2]."""
+
+    gap_p: np.ndarray
+    gap_q: np.ndarray
+    slip: np.ndarray
+    state: np.ndarray
+    rotation: np.ndarray
+    tracked: list[int]
+    far: np.ndarray
+    sliding: float
+    ground: np.ndarray
+
+    @property
+    def farthest(self) -> float:
+        """Greatest displacement of any block at any time [m]."""
+        return float(self.far.max(initial=0.0))
+
+
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The run, and with it what else the deck asks: variations, the least friction."""
     trial = Trial(context, options, model)
     context.progress(0, 1, "discrete elements")
-    single = model.rigid.count == 1
     # The rates after and before impacts of a single block need a fine history.
-    job = trial.job([model.values], output_step=min(options.output_step, 0.002) if single else options.output_step)
+    step = min(options.output_step, 0.002) if model.rigid.count == 1 else options.output_step
+    job = trial.job([model.values], output_step=step)
     found = dem_model.checked(_kept(context, job) if _asks_more(options) else job.one(0, context.threads), model)
-    gap_p, gap_q, slip = measures.openings(model, found)
-    state = measures.hinges(model, gap_p, gap_q, slip)
     ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
-    body = model.rigid.body_of_block
-    tracked = measures.tracked(model, options, found)
-    rotation = -(found.place[:, body, 2] - found.settled[body, 2])
-    peak = np.abs(rotation).argmax(axis=0)
-    mobile = slice(0, model.rigid.count)
-    far = measures.displacements(model, found).max(axis=1, initial=0.0)
-    farthest = float(far.max(initial=0.0))
-    sliding = measures.peak_slip(state, slip)
+    seen = _look(options, model, found, ground)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     result.reason = f"interrupted at {found.stop_time:.3f} s" if found.interrupted else ""
-    names = model.assembly.block_names
-    numbers = {
-        "outcome": measures.outcome(found, state, farthest, trial.limit),
-        "collapse_time_s": measures.collapse_time(found, far, trial.limit),
-        "stopped": found.reason,
-        "stopped_by": [model.rigid.names[k] for k in found.blamed],
-        "stop_time_s": found.stop_time,
-        "still_moving": found.reason == "end" and measures.moving(found, model),
-        "peak_rotation_rad": {names[i]: float(rotation[peak[i], i]) for i in tracked},
-        "collapse_displacement_m": trial.limit,
-        "peak_displacement_m": farthest,
-        "peak_slip_m": sliding,
-        "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
-        "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
-        "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
-        "energy_residual_ratio": found.residual,
-        "restitution_measured": measures.restitution(found, state, ground) if single else None,
-        "restitution_housner": 1.0 - 1.5 * float(np.sin(model.assembly.alpha[0]) ** 2)
-        if isinstance(model.assembly, BlockAssembly)
-        else None,
-        "bounces": int(found.bounces[mobile].sum()),
-        "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
-        "joint_stiffness_min_Pa_per_m": float(model.values.stiffness.min()),
-        "joint_stiffness_max_Pa_per_m": float(model.values.stiffness.max()),
-        "beta_s": model.values.beta,
-        **{f"damping_ratio_{name}": ratio for name, ratio in model.values.ratios().items()},
-        "steps": found.steps,
-        "settling_steps": found.settling_steps,
-        "time_step_s": found.step,
-        "critical_step_s": found.critical_step,
-        "contact_searches": found.searches,
-        "animation": options.animation,
-    }
-    result.tables["dem"] = TableData(
-        {
-            "time": found.time,
-            **{f"rotation of {names[i]}": rotation[:, i] for i in tracked},
-            **{f"{name}_energy": values for name, values in found.energy.items() if name != "leapfrog"},
-        },
-        {
-            "time": "s",
-            **{f"rotation of {names[i]}": "rad" for i in tracked},
-            **{f"{name}_energy": "J" for name in found.energy},
-        },
-    )
-    result.tables["dem_hinges"] = measures.hinge_table(model, found.time, state)
-    result.arrays = {
-        **geometry_arrays(model.assembly),
-        "time": Array(found.time, ("time",), "s", "output times"),
-        "place": Array(
-            measures.block_places(model, found.place),
-            ("time", "block", "component"),
-            "m, m, rad",
-            "centroid and rotation of the blocks",
-        ),
-        "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
-        "rotation": Array(rotation, ("time", "block"), "rad", "from the settled state, positive to +x"),
-        "tracked": Array(np.array(tracked), ("tracked",), "", "blocks whose rotation is reported"),
-        "hinge": Array(state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"),
-        "opening_p": Array(gap_p, ("time", "joint"), "m", "gap at the first ends of the joints"),
-        "opening_q": Array(gap_q, ("time", "joint"), "m", "gap at the second ends"),
-        "slip": Array(slip, ("time", "joint"), "m", "slip at the closed ends"),
-        **{
-            f"{name}_energy": Array(values, ("time",), "J")
-            for name, values in found.energy.items()
-            if name != "leapfrog"
-        },
-        "ground": Array(ground, ("time",), "m/s^2"),
-        "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
-        **measures.support_arrays(model),
-    }
-    if sliding > measures.SLIDES * float(model.assembly.length.min()):
-        result.warnings.append(f"joints slide by up to {1e3 * sliding:.3g} mm")
+    numbers = _numbers(trial, found, seen) | {"animation": options.animation}
+    _store(options, model, found, seen, result)
+    if seen.sliding > measures.SLIDES * float(model.assembly.length.min()):
+        result.warnings.append(f"joints slide by up to {1e3 * seen.sliding:.3g} mm")
     if found.residual > 0.01:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
@@ -133,6 +78,102 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     result.files |= dem_files.files(model, found, options)
     result.answer = motion_answer(result.results, model, trial.idle)
     return result
+
+
+def _look(options: Dem, model: Model, found: dem.Run, ground: np.ndarray) -> Seen:
+    gap_p, gap_q, slip = measures.openings(model, found)
+    state = measures.hinges(model, gap_p, gap_q, slip)
+    body = model.rigid.body_of_block
+    return Seen(
+        gap_p, gap_q, slip, state, -(found.place[:, body, 2] - found.settled[body, 2]),
+        measures.tracked(model, options, found), measures.displacements(model, found).max(axis=1, initial=0.0),
+        measures.peak_slip(state, slip), ground,
+    )  # fmt: skip
+
+
+def _numbers(trial: Trial, found: dem.Run, seen: Seen) -> dict[str, Any]:
+    """The results of the run itself."""
+    model, names = trial.model, trial.model.assembly.block_names
+    peak = np.abs(seen.rotation).argmax(axis=0)
+    mobile = slice(0, model.rigid.count)
+    return {
+        "outcome": measures.outcome(found, seen.state, seen.farthest, trial.limit),
+        "collapse_time_s": measures.collapse_time(found, seen.far, trial.limit),
+        "stopped": found.reason,
+        "stopped_by": [model.rigid.names[k] for k in found.blamed],
+        "stop_time_s": found.stop_time,
+        "still_moving": found.reason == "end" and measures.moving(found, model),
+        "peak_rotation_rad": {names[i]: float(seen.rotation[peak[i], i]) for i in seen.tracked},
+        "collapse_displacement_m": trial.limit,
+        "peak_displacement_m": seen.farthest,
+        "peak_slip_m": seen.sliding,
+        "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
+        "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,
+        "damping_loss_J": float(found.energy["damping"][-1]) if len(found.time) else 0.0,
+        "energy_residual_ratio": found.residual,
+        "restitution_measured": measures.restitution(found, seen.state, seen.ground)
+        if model.rigid.count == 1
+        else None,
+        "restitution_housner": 1.0 - 1.5 * float(np.sin(model.assembly.alpha[0]) ** 2)
+        if isinstance(model.assembly, BlockAssembly)
+        else None,
+        "bounces": int(found.bounces[mobile].sum()),
+        "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
+        "joint_stiffness_min_Pa_per_m": float(model.values.stiffness.min()),
+        "joint_stiffness_max_Pa_per_m": float(model.values.stiffness.max()),
+        "beta_s": model.values.beta,
+        **{f"damping_ratio_{name}": ratio for name, ratio in model.values.ratios().items()},
+        "steps": found.steps,
+        "settling_steps": found.settling_steps,
+        "time_step_s": found.step,
+        "critical_step_s": found.critical_step,
+        "contact_searches": found.searches,
+    }
+
+
+def _store(options: Dem, model: Model, found: dem.Run, seen: Seen, result: Result) -> None:
+    """Arrays and tables of the run into `result`."""
+    names = model.assembly.block_names
+    result.tables["dem"] = TableData(
+        {
+            "time": found.time,
+            **{f"rotation of {names[i]}": seen.rotation[:, i] for i in seen.tracked},
+            **{f"{name}_energy": values for name, values in found.energy.items() if name != "leapfrog"},
+        },
+        {
+            "time": "s",
+            **{f"rotation of {names[i]}": "rad" for i in seen.tracked},
+            **{f"{name}_energy": "J" for name in found.energy},
+        },
+    )
+    result.tables["dem_hinges"] = measures.hinge_table(model, found.time, seen.state)
+    result.arrays = {
+        **geometry_arrays(model.assembly),
+        "time": Array(found.time, ("time",), "s", "output times"),
+        "place": Array(
+            measures.block_places(model, found.place),
+            ("time", "block", "component"),
+            "m, m, rad",
+            "centroid and rotation of the blocks",
+        ),
+        "rate": Array(measures.block_rates(model, found), ("time", "block", "component"), "m/s, m/s, rad/s"),
+        "rotation": Array(seen.rotation, ("time", "block"), "rad", "from the settled state, positive to +x"),
+        "tracked": Array(np.array(seen.tracked), ("tracked",), "", "blocks whose rotation is reported"),
+        "hinge": Array(
+            seen.state, ("time", "joint"), "", "0 closed, -1 hinged at the first end, 1 at the second, 2 open"
+        ),
+        "opening_p": Array(seen.gap_p, ("time", "joint"), "m", "gap at the first ends of the joints"),
+        "opening_q": Array(seen.gap_q, ("time", "joint"), "m", "gap at the second ends"),
+        "slip": Array(seen.slip, ("time", "joint"), "m", "slip at the closed ends"),
+        **{
+            f"{name}_energy": Array(values, ("time",), "J")
+            for name, values in found.energy.items()
+            if name != "leapfrog"
+        },
+        "ground": Array(seen.ground, ("time",), "m/s^2"),
+        "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
+        **measures.support_arrays(model),
+    }
 
 
 def _asks_more(options: Dem) -> bool:
