@@ -89,7 +89,7 @@ def _mehrotra(
 
         def newton(
             complement: np.ndarray,
-            solver: SuperLU = solver, along: np.ndarray = along, primal: np.ndarray = primal, dual: np.ndarray = dual,
+            solver: "SuperLU" = solver, along: np.ndarray = along, primal: np.ndarray = primal, dual: np.ndarray = dual,
             free: np.floating | np.ndarray = free, x: np.ndarray = x, z: np.ndarray = z,
         ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:  # fmt: skip
             part = solver.solve(primal + a @ ((x * dual - complement) / z))

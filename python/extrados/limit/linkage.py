@@ -104,7 +104,8 @@ def linkage(assembly: Assembly, mechanism: Mechanism, side: int) -> Linkage:
     mass, centroid, inertia = _mass(assembly, part, count)
     spin = np.array([mechanism.velocity[part == k + 1, 2].mean() for k in range(count)])
     driver = _driver(assembly, joint, joined, point, spin, side)
-    row = _independent(centroid, joined, point, assembly.size, driver)
+    parted = f", for it parts all along {_listed(names, mechanism.sliding)}" if mechanism.sliding else ""
+    row = _independent(centroid, joined, point, assembly.size, driver, parted)
     made = Linkage(
         side, part, mass, centroid, inertia, joint, joined, point, row, driver, 1 if spin[driver - 1] > 0.0 else -1
     )
@@ -171,8 +172,13 @@ def _jacobian(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size:
     return rows.reshape(2 * len(joined), -1)
 
 
-def _independent(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float, driver: int) -> np.ndarray:
-    """Hinge and axis, from 1, of the equations that with the prescribed rotation of the driver fix the motion."""
+def _independent(
+    centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, size: float, driver: int, parted: str
+) -> np.ndarray:
+    """Hinge and axis, from 1, of the equations that with the prescribed rotation of the driver fix the motion.
+
+    CannotRock where they do not; `parted` ends the sentence.
+    """
     rows = _jacobian(centroid, joined, point, size)
     first = np.zeros(rows.shape[1])
     first[3 * driver - 1] = 1.0
@@ -190,6 +196,7 @@ def _independent(centroid: np.ndarray, joined: np.ndarray, point: np.ndarray, si
         free = rows.shape[1] - len(basis) + 1
         raise CannotRock(
             f"its {len(centroid)} moving parts on {len(joined)} hinges have {free} degrees of freedom: they do not move as one"
+            f"{parted}"
         )
     kept_rows = np.array(kept)
     return np.column_stack([kept_rows // 2 + 1, kept_rows % 2 + 1])

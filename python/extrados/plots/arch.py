@@ -78,7 +78,9 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         count = len(times.data)
         columns = min(3, count)
         rows = -(-count // columns)
-        with style.figure(3.2 * columns, 2.5 * rows, rows=rows, columns=columns) as (fig, axes):
+        wide, high = np.ptp(np.concatenate(blocks), axis=0)
+        tall = 4.0 if high > 2.0 * wide else 2.5
+        with style.figure(3.2 * columns, tall * rows, rows=rows, columns=columns) as (fig, axes):
             for ax in axes[count:]:
                 ax.set_axis_off()
             for k, (ax, when, pose) in enumerate(zip(axes, times.data, poses, strict=False)):

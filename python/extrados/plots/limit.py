@@ -205,7 +205,10 @@ def _per_metre(r: Tilt, force: float) -> str:
 
 
 def _caption(r: Tilt) -> str:
-    letters = "; ".join(f"{chr(65 + i)} {h.side} of {h.name}" for i, h in enumerate(r.hinges[:26]))
+    rings = [name for name in r.thrusts or {} if not name.startswith("stack")]  # only they have an intrados
+    letters = "; ".join(
+        f"{chr(65 + i)} {f'{h.side} of ' if rings else ''}{h.name}" for i, h in enumerate(r.hinges[:26])
+    )
     free = (
         " Where the line is not fixed by the mechanism its most central course is drawn."
         if len(r.thrusts or {}) > 1

@@ -22,7 +22,8 @@ def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
     elif r.outcome == "no-hinging":
         first = "No joint opens"
     else:
-        first = f"It rocks and stands: greatest displacement {r.peak_displacement_m:.3g} m"
+        fate = f"rocks and still moves at {r.stop_time_s:.2f} s" if r.still_moving else "rocks and stands"
+        first = f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m"
     return (
         f"{first}; {turn[0]} turns by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, "
         f"{r.bounces} bounces; {audit}, {damping}."

@@ -15,6 +15,7 @@ from extrados.analyses.limit.common import (
 from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_of
@@ -167,7 +168,7 @@ def _some(names: list[str]) -> str:
 
 def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> str:
     gamma, back = answer.gamma, -answer.back_state.gamma
-    if assembly.chains:
+    if not all(is_stack(assembly, joints) for joints in assembly.chains.values()):
         where = _some([f"{h.side} of {h.name}" for h in found.hinges])
     else:
         where = _some([f"{h.name} (x = {h.x_m:.2f}, y = {h.y_m:.2f} m)" for h in found.hinges])

@@ -28,8 +28,9 @@ def answer_of_wall(r: dict[str, Any], both: bool) -> str:
         return "The load is not limited: nothing in the wall cracks or crushes under it, however large it grows."
     if r["peak_load_N"] is None:
         return f"No state of equilibrium was found in {r['events']} events; the run ended by: {r['stop']}."
+    rises = r["stop"] == "number of events" and r["peak_event"] == r["events"]
     text = (
-        f"The load peaks at {r['peak_load_N'] / 1e3:.4g} kN with a displacement of {r['peak_displacement_m'] * 1e3:.4g} mm "
+        f"The load {'still rises: it has reached' if rises else 'peaks at'} {r['peak_load_N'] / 1e3:.4g} kN with a displacement of {r['peak_displacement_m'] * 1e3:.4g} mm "
         f"(event {r['peak_event']} of {r['events']}; the run ended by: {r['stop']})."
     )
     if both and r.get("minus", {}).get("peak_load_N") is not None:
