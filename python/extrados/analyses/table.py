@@ -19,7 +19,7 @@ class Analysis(Table):
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
-    starter_motion: their kinds in the deck that `new` writes.
+    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed.
     """
 
     kind: str
@@ -29,7 +29,7 @@ class Analysis(Table):
     method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
     starter_structure: ClassVar[str] = "arch"
-    starter_motion: ClassVar[str] = "step-pulse"
+    starter_motion: ClassVar[str] = ""
 
 
 class BuildingAnalysis(Analysis):

@@ -230,8 +230,8 @@ def starter(kind: str) -> str:
                 model = PLAIN[name]
                 used = {key: value for key, value in model.starter.items() if f"{name}.{key}" in analysis.uses}
                 lines += _section(model, f"[{name}]", starter=used)
-    if analysis.needs_motion or section == "motion":
-        motion = kind if section == "motion" else analysis.starter_motion
+    motion = kind if section == "motion" else analysis.starter_motion or ("step-pulse" if analysis.needs_motion else "")
+    if motion:
         lines += _section(kinds.table("motion", motion), "[motion]", motion)
     lines += _section(analysis, "[[analysis]]", asked)
     return "\n".join(lines)

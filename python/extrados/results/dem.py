@@ -22,7 +22,7 @@ class Variation(ResultModel):
     damping_ratio_rotation: float = fact(
         "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
     )
-    damping_ratio_edge: float = fact("the same at edge impact", source="thesis Eq. 7.9")
+    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact", source="thesis Eq. 7.9")
     outcome: str = fact("no-hinging, recovery or collapse, or why the run is not to be trusted")
     peak_rotation_rad: float = fact("greatest rotation of any block", "rad")
     bounces: int = fact("times that blocks left the ground or each other")
@@ -58,8 +58,8 @@ class DemRun(KindResults):
     damping_ratio_rotation: float = fact(
         "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
     )
-    damping_ratio_corner: float = fact("the same at corner impact")
-    damping_ratio_edge: float = fact("the same at edge impact", source="thesis Eq. 7.9")
+    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
+    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact", source="thesis Eq. 7.9")
     steps: int = fact("time steps")
     settling_steps: int = fact("time steps until it had settled under its weight")
     time_step_s: float = fact("time step", "s")
@@ -89,9 +89,9 @@ class DemTilt(KindResults):
     test: Literal["tilt"] = fact("the test")
     outcome: RockingOutcome = fact("it comes down, at these accelerations")
     collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed to +x", "g")
-    collapse_acceleration_opposite_g: float = fact("the same, pushed to -x", "g")
+    collapse_acceleration_opposite_g: float = fact("constant acceleration that brings it down, pushed to -x", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg")
-    tilt_angle_opposite_deg: float = fact("the same, to -x", "deg")
+    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, to -x", "deg")
     load_direction: Literal["+x"] = fact("sense of the push that the hinges belong to")
     hinges: list[NamedHinge] = fact("hinges as it goes")
     hinges_opposite: list[NamedHinge] = fact("hinges as it goes to -x")
@@ -119,8 +119,8 @@ class DemCurve(ResultModel):
     stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
     damping_ratio_rotation: float = fact("least fraction of critical damping at rotational impact")
-    damping_ratio_corner: float = fact("the same at corner impact")
-    damping_ratio_edge: float = fact("the same at edge impact")
+    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
+    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
 
 
@@ -130,13 +130,15 @@ class DemDomain(KindResults):
     pulse: Literal["step", "sine"] = fact("shape of the pulses")
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
-    curves: list[DemCurve] = fact("the same with other damping, stiffness or friction; the first is as given")
+    curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")
     energy_residual_ratio: float = fact("greatest error of the energy ledgers over the energy that went round")
     steps: int = fact("time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(
-        "of an arch: by the four-hinge mechanism, either mode", "s"
+        "of an arch: shortest failing durations by the four-hinge mechanism, either mode", "s"
     )
-    four_hinge_mode_II_durations_s: list[float | None] = maybe("the same without an impact", "s")
+    four_hinge_mode_II_durations_s: list[float | None] = maybe(
+        "of an arch: shortest failing durations by the four-hinge mechanism, without an impact", "s"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """A motion that is such a pulse [s] against the curve between its amplitudes; without one the shortest failing
@@ -174,8 +176,8 @@ class DemParameters(KindResults):
     critical_beta_edge_s: float = fact("damping that is critical at edge impact", "s", source="thesis Eq. 7.17")
     beta_s: float = fact("stiffness-proportional damping in use", "s")
     damping_ratio_rotation: float = fact("least fraction of critical damping at rotational impact")
-    damping_ratio_corner: float = fact("the same at corner impact")
-    damping_ratio_edge: float = fact("the same at edge impact")
+    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
+    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact")
     convention: Literal["consistent", "thesis"] = fact("rule of the default stiffness")
 
     def judged(self, demand: Demand) -> Verdict:

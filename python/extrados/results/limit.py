@@ -51,10 +51,12 @@ class Fracture(ResultModel):
     cracks: bool = maybe("whether the buttress cracks before the structure falls")
     buttress: str = maybe("name of the cracked buttress")
     collapse_acceleration_g: float = maybe("collapse acceleration with the crack", "g")
-    tilt_angle_deg: float = maybe("the same as a tilt of the ground", "deg", source="thesis Eq. 3.1")
+    tilt_angle_deg: float = maybe("tilt of the ground that pushes alike", "deg", source="thesis Eq. 3.1")
     ratio: float = maybe("over the collapse acceleration of the whole structure")
     crack_height_m: float = maybe("height above the base at which the crack starts", "m")
-    crack_height_ratio: float = maybe("the same over the height of the buttress")
+    crack_height_ratio: float = maybe(
+        "height above the base at which the crack starts, over the height of the buttress"
+    )
     resultant_from_outer_face_ratio: float = maybe("distance of the resultant from the outer face over the width there")
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
 
@@ -63,9 +65,9 @@ class Tilt(KindResults):
     """tilt: the constant horizontal acceleration at which a structure becomes a mechanism."""
 
     collapse_acceleration_g: float = fact("greatest constant acceleration that is borne, pushed to +x", "g")
-    collapse_acceleration_opposite_g: float = fact("the same, pushed to -x", "g")
+    collapse_acceleration_opposite_g: float = fact("greatest constant acceleration that is borne, pushed to -x", "g")
     tilt_angle_deg: float = fact("tilt of the ground that pushes alike, to +x", "deg", source="thesis Eq. 3.1")
-    tilt_angle_opposite_deg: float = fact("the same, to -x", "deg")
+    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, to -x", "deg")
     admissible_interval_g: list[float] = fact("accelerations between which a thrust line is admissible", "g")
     load_direction: Literal["+x"] = fact("sense of the push that hinges and friction belong to")
     hinges: list[Hinge] = fact("hinges of the mechanism")
@@ -104,8 +106,8 @@ class ThrustLine(ResultModel):
     """One admissible thrust line."""
 
     horizontal_N: float = maybe("horizontal thrust of the chain at its left springing, or its base", "N")
-    horizontal_kN_per_m: float = maybe("the same per metre of depth", "kN/m")
-    over_weight: float = maybe("the same over the weight of the structure")
+    horizontal_kN_per_m: float = maybe("horizontal thrust per metre of depth", "kN/m")
+    over_weight: float = maybe("horizontal thrust over the weight of the structure")
     required_friction: float | None = fact("greatest coefficient of friction it needs")
     required_friction_joint: str = fact("the joint that needs it")
     greatest_eccentricity_ratio: float = fact("greatest distance from the middle of a joint over its length")
@@ -142,9 +144,9 @@ class MovingLoad(KindResults):
 
     chain: str | None = fact("the arch that the load crosses; null where it crosses the whole top")
     collapse_load_N: float = fact("least load that brings it down", "N")
-    collapse_load_kN_per_m: float = fact("the same per metre of depth", "kN/m")
+    collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle where that is", "m")
-    worst_place_over_span: float = fact("the same from the left springing, over the span")
+    worst_place_over_span: float = fact("x of the first axle where that is, from the left springing, over the span")
     hinges: list[NamedHinge] = fact("hinges of the mechanism there")
     places_without_limit: int = fact("places where no load of the kind brings it down")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
@@ -173,7 +175,7 @@ class Supports(KindResults):
     """supports: an arch whose right support spreads or settles until it falls."""
 
     movement_at_fall_m: float = fact("movement of the support at which the arch falls", "m")
-    movement_at_fall_over_span: float = fact("the same over the span")
+    movement_at_fall_over_span: float = fact("movement at the fall over the span")
     span_change_at_fall_ratio: float = fact("growth of the span at the fall, over the span")
     thrust_at_rest_N: float = fact("horizontal thrust at the start", "N")
     thrust_at_fall_N: float = fact("horizontal thrust at the fall", "N")
@@ -205,7 +207,7 @@ class Change(ResultModel):
     before: int | Literal["locked"] = fact(
         "number of the mechanism below it; 0 where it cannot stand, locked where nothing brings it down", name="from"
     )
-    after: int | Literal["locked"] = fact("the same above it", name="to")
+    after: int | Literal["locked"] = fact("number of the mechanism above it; 0 or locked as below", name="to")
     collapse_acceleration_g: float | None = fact("collapse acceleration there", "g")
 
 
@@ -227,13 +229,15 @@ class Sweep(KindResults):
     locked_limits: list[float] = fact("values past which no load of the kind brings it down")
     optimum_value: float = fact("value of the greatest capacity, in the unit of the key")
     optimum_collapse_acceleration_g: float = fact("the greatest capacity", "g")
-    optimum_tilt_angle_deg: float = fact("the same as a tilt of the ground", "deg")
+    optimum_tilt_angle_deg: float = fact("tilt of the ground that pushes alike", "deg")
     optimum_inside: bool = fact("whether it lies inside the range")
     values: list[float] = fact("the values, in the unit of the key")
     collapse_accelerations_g: list[float | None] = fact("capacity at each value; null where it cannot stand", "g")
     gaps: list[Gap] = fact("values without a structure that stands")
     duality_gap: float = fact("greatest difference between the bounds", "g")
-    fractured_collapse_accelerations_g: list[float | None] = maybe("the same with the leeward buttress cracked", "g")
+    fractured_collapse_accelerations_g: list[float | None] = maybe(
+        "collapse accelerations with the leeward buttress cracked", "g"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest capacity [g]; a sweep compares, it asks for no demand."""

@@ -32,7 +32,7 @@ class Rocking(KindResults):
     impacts: int = fact("number of impacts")
     impact_times_s: list[float] = fact("when they happen", "s")
     peak_rotation_rad: float = fact("greatest rotation, positive to +x", "rad")
-    peak_rotation_ratio: float = fact("the same over the critical rotation, from which gravity takes it down")
+    peak_rotation_ratio: float = fact("greatest rotation over the critical one, from which gravity takes it down")
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
@@ -45,7 +45,7 @@ class Rocking(KindResults):
     restitution_to_left: float = maybe("of a block or a mechanism: that after which it rocks to -x")
     energy_ratio: float = maybe("of a block: kinetic energy after over before an impact", source="thesis Eq. 6.2")
     critical_rotation_rad: float = fact("rotation to +x from which gravity takes it down", "rad")
-    critical_rotation_left_rad: float = maybe("of a block or a mechanism: the same to -x", "rad")
+    critical_rotation_left_rad: float = maybe("of a block or a mechanism: the critical rotation to -x", "rad")
     frequency_parameter_rad_s: float = maybe("of a block: p", "rad/s", source="Housner 1963")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     required_friction: float | None = fact(
@@ -74,7 +74,7 @@ class ModeCurve(ResultModel):
 
     durations_s: list[float] = fact("durations or periods of the pulses", "s")
     amplitudes_g: list[float | None] = fact("lowest failing amplitude at each; null where none below the cap", "g")
-    amplitude_ratios: list[float | None] = maybe("of a block: the same over the uplift acceleration")
+    amplitude_ratios: list[float | None] = maybe("of a block: failing amplitudes over the uplift acceleration")
 
 
 class AtAmplitudes(ResultModel):
@@ -156,7 +156,7 @@ class AssessedImpulse(PrimaryImpulse):
     rank: int = fact("1 for the primary impulse")
     explained: float = fact("share of the squared acceleration of the whole motion that it explains")
     failing_amplitude_g: float | None = fact("failing amplitude at its period; null: too short to do harm", "g")
-    failing_amplitude_own_g: float | None = fact("the same by the curve fitted to this structure", "g")
+    failing_amplitude_own_g: float | None = fact("failing amplitude by the curve fitted to this structure", "g")
     margin: float | None = fact("failing amplitude over its amplitude; null: too short to do harm")
     verdict: Literal["stands", "fails"] = fact("whether it brings the structure down by the criterion")
 

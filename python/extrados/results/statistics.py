@@ -17,8 +17,8 @@ class Ensemble(KindResults):
     uplift_probability: float | None = fact("share of the runs that rock")
     uplift_confidence_interval: list[float] = fact("its score interval", source="Wilson 1927")
     mean_peak_rotation_ratio: float | None = fact("mean of the greatest rotation over the critical one; collapse is 1")
-    deviation_peak_rotation_ratio: float | None = fact("standard deviation of the same")
-    median_peak_rotation_ratio: float | None = fact("median of the same")
+    deviation_peak_rotation_ratio: float | None = fact("standard deviation of that ratio")
+    median_peak_rotation_ratio: float | None = fact("median of that ratio")
     confidence: float = fact("level of all intervals")
     restitution: float = fact("rate after over before an impact")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
@@ -31,7 +31,9 @@ class Ensemble(KindResults):
     expected_pga_g: float = maybe(
         "of generated motions: median observed at their intensity", "g", source="Worden et al. 2012"
     )
-    expected_pgv_m_s: float = maybe("the same of the peak velocity", "m/s", source="Worden et al. 2012")
+    expected_pgv_m_s: float = maybe(
+        "of generated motions: median peak velocity observed at their intensity", "m/s", source="Worden et al. 2012"
+    )
     intensity: str = maybe("with levels: the measure to which motions are scaled; levels and medians are in its unit")
     intensity_unit: str = maybe("with levels: unit of the levels and medians")
     median: float | None = maybe("median of the fitted lognormal curve of collapse", source="Baker 2015")
@@ -39,22 +41,28 @@ class Ensemble(KindResults):
     deviance: float = maybe("deviance of the fit")
     degrees_of_freedom: int = maybe("its degrees of freedom")
     goodness_p_value: float | None = maybe("probability of a worse deviance were the curve true")
-    uplift_median: float | None = maybe("the same for uplift")
-    uplift_dispersion: float | None = maybe("the same for uplift")
-    uplift_deviance: float = maybe("the same for uplift")
-    uplift_degrees_of_freedom: int = maybe("the same for uplift")
-    uplift_goodness_p_value: float | None = maybe("the same for uplift")
-    overturning_given_uplift_median: float | None = maybe("the same for collapse of those that rock")
-    overturning_given_uplift_dispersion: float | None = maybe("the same for collapse of those that rock")
-    overturning_given_uplift_deviance: float = maybe("the same for collapse of those that rock")
-    overturning_given_uplift_degrees_of_freedom: int = maybe("the same for collapse of those that rock")
-    overturning_given_uplift_goodness_p_value: float | None = maybe("the same for collapse of those that rock")
+    uplift_median: float | None = maybe("median of the curve, for uplift")
+    uplift_dispersion: float | None = maybe("dispersion of the curve, for uplift")
+    uplift_deviance: float = maybe("deviance of the curve, for uplift")
+    uplift_degrees_of_freedom: int = maybe("degrees of freedom of that fit, for uplift")
+    uplift_goodness_p_value: float | None = maybe("probability of a worse deviance were the curve true, for uplift")
+    overturning_given_uplift_median: float | None = maybe("median of the curve, for collapse of those that rock")
+    overturning_given_uplift_dispersion: float | None = maybe(
+        "dispersion of the curve, for collapse of those that rock"
+    )
+    overturning_given_uplift_deviance: float = maybe("deviance of the curve, for collapse of those that rock")
+    overturning_given_uplift_degrees_of_freedom: int = maybe(
+        "degrees of freedom of that fit, for collapse of those that rock"
+    )
+    overturning_given_uplift_goodness_p_value: float | None = maybe(
+        "probability of a worse deviance were the curve true, for collapse of those that rock"
+    )
     median_interval: list[float | None] = maybe("bootstrap interval of the median")
     dispersion_interval: list[float | None] = maybe("bootstrap interval of the dispersion")
     motions_that_collapse: int = maybe("motions that bring it down at some level")
     resurrections: int = maybe("motions that leave it standing at a level above one that brings it down")
     first_collapse_median: float | None = maybe("median of the first level that brings it down")
-    first_collapse_dispersion: float | None = maybe("dispersion of the same")
+    first_collapse_dispersion: float | None = maybe("dispersion of the first level that brings it down")
 
     def judged(self, demand: Demand) -> Verdict:
         """The share of runs that come down; open unless all runs agree. With levels the fitted median is the capacity."""
@@ -78,7 +86,7 @@ class OverDurations(KindResults):
 
     durations_s: list[float] = fact("durations of the motions", "s")
     mean_peak_rotation_ratio: list[float | None] = fact("mean of the greatest rotation over the critical one, at each")
-    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of the same")
+    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio")
     collapse_probability: list[float | None] = fact("share of the runs that come down, at each")
     uplift_probability: list[float | None] = fact("share of the runs that rock, at each")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
@@ -109,7 +117,7 @@ class Resonance(KindResults):
 
     outcome: RockingOutcome = fact("what it does under that motion")
     cap_g: float = fact("cap of the ground acceleration", "g")
-    cap_ratio: float = fact("the same over the uplift acceleration")
+    cap_ratio: float = fact("cap over the uplift acceleration")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     half_cycles: int = fact("changes of sign of the motion")
@@ -124,9 +132,9 @@ class Resonance(KindResults):
         "of a block: least cap over uplift that brings it down within so many half cycles"
     )
     least_cap_g: float | None = maybe("of a block: cap above which the rotation grows; null where its toes differ", "g")
-    least_cap_ratio: float | None = maybe("the same over the uplift acceleration")
+    least_cap_ratio: float | None = maybe("least cap over the uplift acceleration")
     least_cap_ratios: list[list[float]] = maybe(
-        "the same over aspects (rows) and initial ratios", source="thesis Fig. 6-3"
+        "least caps over the uplift acceleration, by aspects (rows) and initial ratios", source="thesis Fig. 6-3"
     )
     aspects: list[float] = maybe("their B/H", source="thesis Fig. 6-3")
     initial_ratios: list[float] = maybe("their initial rotations over the critical one", source="thesis Fig. 6-3")

@@ -30,6 +30,7 @@ class DemTable(BuildingAnalysis):
 class Dem(DemTable):
     """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
 
+    starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
     test: Literal["motion", "tilt"] = key(
         "motion", "follow the motion, or find the constant acceleration that brings it down"
