@@ -166,6 +166,7 @@ def test_least_cap_is_where_the_optimal_motion_grows() -> None:
     block = BlockModel(make_block(0.5, 1.0))
     model = Rocker(
         "block",
+        "block",
         block,
         block.body,
         0.5,
