@@ -155,6 +155,15 @@ tolerance = 0.2
 kind = "motion"
 count = 3
 """,
+    "generated motions": """
+[motion]
+kind = "generated"
+mmi = 6
+duration = 3.0
+[[analysis]]
+kind = "motion"
+count = 200
+""",
     "survey": ARCH
     + """
 [[analysis]]
@@ -187,7 +196,12 @@ main()
 """
 #: Batches after which a run is killed, where two are too few to come to what is tried: the second curve, the last
 #: searches of a sweep, the shortest durations after the rounds of the map
-KEEPS = {"sla, one curve of each sense": 3, "sweep, its changes and optimum": 3, "failure-domain at amplitudes": 5}
+KEEPS = {
+    "sla, one curve of each sense": 3,
+    "sweep, its changes and optimum": 3,
+    "failure-domain at amplitudes": 5,
+    "generated motions": 4,
+}
 MEASURED = ("seconds_per_event", "sections_per_second")
 
 
@@ -250,7 +264,7 @@ def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     assert not folder_of(one).exists()
 
 
-@pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds"])
+@pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds", "generated motions"])
 def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """After Ctrl-C the finished members are there, and are not computed again."""
     deck = make_deck(tomllib.loads(DECKS[kind]))
