@@ -120,6 +120,7 @@ def _spread(fig: Figure) -> None:
         texts = [t for t in ax.texts if t.get_gid() == LETTER]
         if not texts:
             continue
+        ax.apply_aspect()  # as the drawing will, after the layout
         places = ax.transData.transform(np.array([t.xy for t in texts]))
         drawn = [
             _sampled(line.get_transform().transform(line.get_xydata()), 3.0 * pixel)

@@ -1,4 +1,4 @@
-"""Analysis kinds of limit analysis: tilt, thrust, sweep, survey, supports, moving load."""
+"""Analysis kinds of limit analysis: tilt, thrust, sweep, survey, imperfections, supports, moving load."""
 
 from typing import ClassVar, Literal
 
@@ -75,6 +75,21 @@ class Survey(LimitAnalysisTable):
     starter: ClassVar = {"file": '"extrados:example-sections"'}
     file: str = key(about="CSV beside the deck; a header of [structure] keys (lengths in m), one section a row")
     fracture: bool = key(False, "also with the leeward buttress cracked")
+
+
+class Imperfections(LimitAnalysisTable):
+    """Random surveys of the same stones, each point within the deviation of the survey: a band on the capacity."""
+
+    kind: Literal["imperfections"]
+    starter: ClassVar = {"deviation": '"5 mm"'}
+    deviation: Length | None = key(
+        None,
+        "how far a measured point may lie from its true place; default the contact_tolerance of `blocks`",
+        gt=0,
+        le=1,
+    )
+    count: int = key(200, "number of random surveys", ge=10, le=100000)
+    seed: int = key(1, "seed of the random numbers", ge=0)
 
 
 class Supports(BuildingAnalysis):
