@@ -1,6 +1,7 @@
 """Surveys as they come: drawings of loose lines, blocks and layers, assemblies of COMPAS, gaps and overlaps."""
 
 import csv
+import itertools
 import json
 import sys
 from pathlib import Path
@@ -8,22 +9,27 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from typer.testing import CliRunner
 
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.building.building import Building
+from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.contacts import find_contacts
 from extrados.building.geometry.drawing import Drawing, Polygon
 from extrados.building.geometry.inspection import inspect
 from extrados.building.geometry.linework import net_of
-from extrados.building.geometry.polygons import signed_area
+from extrados.building.geometry.polygons import inside, signed_area
 from extrados.building.properties import Joints, Material
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Blocks, assemble, make_blocks
 from extrados.cli import app
 from extrados.decks.reader import DeckError, make_deck
+from extrados.limit.answer import assess
+from extrados.limit.places import place_of
 from extrados.limit.programme import LimitAnalysis
+from extrados.plots import style
 from extrados.results.model import Result
 
 ezdxf = pytest.importorskip("ezdxf")
@@ -389,3 +395,122 @@ def test_joint_types_of_layers_reach_every_strategy() -> None:
     assert {name: [made.joint_names[j] for j in joints] for name, joints in made.groups.items()} == {"L": ["a on b"]}
     assert make_blocks(blocks, None).groups == made.groups
     assert isinstance(Building(None, Material(), joints=Joints()), Building)
+
+
+# --- the thrust line through every stone, places in words, letters
+
+
+def test_the_line_runs_through_every_stone(church: Result) -> None:
+    """Every stone of the church has a piece of it, or is a voussoir of a chain that has; all of it lies in the stones."""
+    start, of, points = (church[f"collapse_line{end}"] for end in ("_start", "_of", ""))
+    outline, edge = church["outline"], church["outline_start"]
+    stones = [outline[a:b] for a, b in itertools.pairwise(edge)]
+    grown = [o + 0.02 * (o - o.mean(axis=0)) / np.hypot(*(o - o.mean(axis=0)).T)[:, None] for o in stones]
+    assert all(any(inside(o, p[None])[0] for o in grown) for p in points)
+    through = set()
+    for a, b, _ in zip(start[:-1], start[1:], of, strict=True):
+        middles = 0.5 * (points[a : b - 1] + points[a + 1 : b])
+        through |= {k for k, o in enumerate(grown) for m in middles if inside(o, m[None])[0]}
+    assert len(through) == 125
+    assert len(church["collapse_line_force"]) == len(of) and church["collapse_line_force"].min() > 0.0
+
+
+def test_lines_of_two_arches_meet_on_their_pier() -> None:
+    answer = assess(make_aisled("vezelay-like"))
+    state = answer.collapse_state
+    pieces = [p for p in answer.lines(state) if p.name == "right pier"]
+    trunk = max(pieces, key=lambda p: p.force)
+    branch = next(p for p in pieces if p is not trunk)
+    assert len(trunk.points) > 10 and (np.hypot(*(trunk.points - branch.points[-1]).T) < 1e-9).any()
+    # Below the meeting the trunk carries both arches and the pier: at its foot it meets the base where the state says.
+    block = answer.assembly.block_names.index("right pier")
+    base = next(j for j in answer.assembly.joints_of(block) if GROUND in (answer.assembly.a[j], answer.assembly.b[j]))
+    assert trunk.points[-1] == pytest.approx(state.points(answer.assembly)[base])
+
+
+def make_aisled(preset: str):
+    return make_deck(
+        {"structure": {"kind": "aisled-vault", "preset": preset}, "analysis": {"kind": "tilt"}}
+    ).building.blocks()
+
+
+def test_a_stone_with_several_joints_shares_its_line() -> None:
+    """A lintel stone on two others: the branches meet at the mean of their forces, and these balance the stone."""
+    made = make_blocks([box("a", 0, 0), box("b", 2, 0), box("c", 0, 1, 3, 0.5), box("d", 1, 1.5, 1, 1)], None)
+    answer = assess(made, 0.7)
+    lines = {}
+    for piece in answer.lines(answer.central):
+        lines.setdefault(piece.name, []).append(piece)
+    ends = {tuple(p.points[-1].round(9)) for p in lines["c"]}
+    assert len(lines["c"]) == 3 and len(ends) == 1
+    assert lines["d"][0].points[0] == pytest.approx([1.5, 2.0])  # the load of the topmost comes from its centroid
+    assert lines["d"][0].force == pytest.approx(2000.0 * 9.80665)
+
+
+def test_hinges_are_named_by_their_place(church: Result) -> None:
+    places = [h.place for h in church["hinges"]]
+    assert places[1] == "crown of chain 3, extrados"
+    assert places[0].startswith("left haunch of chain 3 at ") and places[0].endswith("intrados")
+    assert any(p.startswith("bed joint under ASHLAR #") and p.endswith("right edge") for p in places)
+    assert "crown of chain 3, extrados" in church.answer and "right edge (x = 4." in church.answer
+    one = run({"block": rows(box("pier", 0, 0, 1, 4))})
+    assert [h.place for h in one["hinges"]] == ["foot of pier, right edge"]
+    assert [h.place for h in one["hinges_opposite"]] == ["foot of pier, left edge"]
+    arch = make_arch(10.0, 1.5, 157.5, 7)
+    assert place_of(arch, 0, arch.p[0]) == "left springing of the arch, intrados"
+    assert place_of(arch, 7, arch.q[7]) == "right springing of the arch, extrados"
+    assert place_of(arch, 2, arch.p[2]).startswith("left haunch of the arch at ")
+
+
+def test_letters_do_not_collide(tmp_path: Path) -> None:
+    """Twelve hinges within a few millimetres of paper: no letter hides another, or the place of another."""
+    random = np.random.default_rng(3)
+    points = random.uniform(0.0, 0.3, (12, 2))
+    with style.figure(5.0, 4.0) as (fig, (ax,)):
+        ax.plot([-5, 5], [-5, 5])
+        style.draw_hinges(ax, points, [chr(65 + k) for k in range(12)])
+        style.save(fig, tmp_path, "letters")
+        boxes = [t.get_window_extent(FigureCanvasAgg(fig).get_renderer()) for t in ax.texts]
+        places = ax.transData.transform(points)
+    for k, one in enumerate(boxes):
+        assert not any(one.overlaps(other) for other in boxes[k + 1 :])
+        assert not any(one.contains(*place) for place in places)
+
+
+# --- imperfect geometry
+
+
+def test_random_surveys_give_a_band() -> None:
+    """A block bears width over height; surveys within d of it differ by at most what the corners can do."""
+    block = rows(box("block", 0, 0, 1.0, 4.0))
+    found = run({"block": block}, kind="imperfections", deviation="10 mm", count=300)
+    assert found["given_collapse_acceleration_g"] == pytest.approx(0.25)
+    low, median, high = (found[f"{word}_collapse_acceleration_g"] for word in ("low", "median", "high"))
+    assert 0.25 - 0.0075 < found["least_collapse_acceleration_g"] < low < median < high < 0.25 + 0.0025
+    assert high - low > 0.001 and found["cannot_stand"] == 0 and found["gamma"].shape == (300, 2)
+    again = run({"block": block}, kind="imperfections", deviation="10 mm", count=300)
+    other = run({"block": block}, kind="imperfections", deviation="10 mm", count=300, seed=2)
+    assert (found["gamma"] == again["gamma"]).all() and (found["gamma"] != other["gamma"]).all()
+    small = run({"block": block}, kind="imperfections", deviation="0.1 mm", count=50)
+    assert small["high_collapse_acceleration_g"] - small["low_collapse_acceleration_g"] < 0.02 * (high - low)
+    # Without one given it is the contact tolerance; other structures must be told.
+    assert run({"block": block}, kind="imperfections", count=10)["deviation_m"] == 1e-4
+    arch = make_deck({
+        "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 9},
+        "analysis": {"kind": "imperfections"},
+    })  # fmt: skip
+    assert "give the deviation" in run_analyses(Context(arch, threads=1))[0].reason
+    assert (
+        "a quarter of the shortest joint" in run({"block": block}, kind="imperfections", deviation=0.3, count=10).reason
+    )
+
+
+def test_surveys_that_cannot_stand_belong_to_the_band() -> None:
+    """An arch near its least thickness: some surveys fall, and count as nothing borne."""
+    arch = make_deck({
+        "structure": {"kind": "arch", "radius": 10.0, "thickness": 1.09, "embrace": 180.0, "voussoirs": 36},
+        "joints": {"friction": "no-sliding"}, "analysis": {"kind": "imperfections", "deviation": "60 mm", "count": 60},
+    })  # fmt: skip
+    found = run_analyses(Context(arch, threads=1))[0]
+    assert 0 < found["cannot_stand"] < 60 and found["least_collapse_acceleration_g"] == 0.0
+    assert found["cannot_stand"] == int(np.isnan(found["gamma"]).any(axis=1).sum())

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from extrados.analyses.table import BuildingAnalysis
-from extrados.schema.quantities import Force, Length
+from extrados.schema.quantities import Force, Gravities, Length
 from extrados.schema.table import Table, key
 
 ARCHES = ("arch", "pointed-arch", "elliptical-arch")
@@ -41,7 +41,7 @@ class Thrust(LimitAnalysisTable):
     """Thrust lines at a given horizontal acceleration: least, greatest and most central thrust, safety, reactions."""
 
     kind: Literal["thrust"]
-    gamma: float = key(0.0, "horizontal acceleration to +x, in g, at which the lines are drawn", ge=-5, le=5)
+    gamma: Gravities = key(0.0, "horizontal acceleration to +x at which the lines are drawn", ge=-5, le=5)
     chain: str | None = key(None, "whose thrust is least and greatest; default the first: arch, vault or nave")
 
 
@@ -54,10 +54,12 @@ class Sweep(LimitAnalysisTable):
         about="key to vary: of [structure], for instance buttress_width or right.buttress_width, or of another table, for "
         "instance joints.friction or material.compressive_strength"
     )
-    start: float | None = key(None, "first value, in the unit of the key")
-    stop: float | None = key(None, "last value")
+    start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
+    stop: float | str | None = key(None, "last value")
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
-    values: list[float] | None = key(None, "the values, in place of start and stop", min_length=2, max_length=2000)
+    values: list[float | str] | None = key(
+        None, "the values, in place of start and stop", min_length=2, max_length=2000
+    )
     fracture: bool = key(False, "also with the leeward buttress cracked")
     locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
 
