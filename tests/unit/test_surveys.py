@@ -4,6 +4,7 @@ import csv
 import itertools
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ from typer.testing import CliRunner
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.contacts import find_contacts
 from extrados.building.geometry.drawing import Drawing, Polygon
@@ -29,6 +31,7 @@ from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.answer import assess
 from extrados.limit.places import place_of
 from extrados.limit.programme import LimitAnalysis
+from extrados.limit.supports import support_movement
 from extrados.plots import style
 from extrados.results.model import Result
 
@@ -218,6 +221,11 @@ def test_layers_for_material_friction_and_supports(tmp_path: Path) -> None:
     assert sorted(names.values()) == [0.3, 0.6, 0.8]
     assert names[next(n for n in names if n.endswith("the ground"))] == 0.8
     assert run_analyses(Context(deck, threads=1))[0]["collapse_acceleration_g"] == pytest.approx(0.3, abs=1e-6)
+    stiff = make_deck({**data, "materials": {"brick": {"density": 1000.0, "young": 5e9}}}, tmp_path).building
+    for view in (stiff.rigid, stiff.mesh):
+        with pytest.raises(BadGeometry, match=r"\[materials.brick\] gives stones another young"):
+            view()
+    assert deck.building.rigid().mass.sum() == pytest.approx(4500.0)
     with pytest.raises(DeckError, match="unknown material 'brick'"):
         make_deck({**data, "materials": {}}, tmp_path)
     for change, words in (
@@ -514,3 +522,25 @@ def test_surveys_that_cannot_stand_belong_to_the_band() -> None:
     found = run_analyses(Context(arch, threads=1))[0]
     assert 0 < found["cannot_stand"] < 60 and found["least_collapse_acceleration_g"] == 0.0
     assert found["cannot_stand"] == int(np.isnan(found["gamma"]).any(axis=1).sum())
+
+
+def test_supports_of_free_blocks_move() -> None:
+    """Voussoirs as polygons in any order and sense follow their support as the arch of the same stones does."""
+    arch = make_arch(10.0, 1.5, 157.5, 7)
+    stones = [Polygon(f"s{i}", np.array([arch.p[i], arch.q[i], arch.q[i + 1], arch.p[i + 1]])) for i in range(7)]
+    ground = [[*arch.p[0], *arch.q[0]], [*arch.q[7], *arch.p[7]]]
+    found = run({"block": rows(*stones), "ground": ground}, kind="supports")
+    shuffled = [stones[i] for i in (3, 6, 0, 5, 1, 4, 2)]
+    again = run(
+        {"block": rows(*(Polygon(s.name, s.points[::-1]) for s in shuffled)), "ground": ground}, kind="supports"
+    )
+    assert again["movement_at_fall_m"] == pytest.approx(found["movement_at_fall_m"], rel=1e-6)
+    assert [h.joint for h in again["hinges_at_rest"]] == [h.joint for h in found["hinges_at_rest"]]
+    made = make_blocks(stones, np.array(ground))
+    exact = support_movement(
+        replace(arch, mass=made.mass, centroid=made.centroid, inertia=made.inertia), (1.0, 0.0), 200
+    )  # fmt: skip
+    assert found["movement_at_fall_m"] == pytest.approx(exact[-1].movement, rel=1e-6)
+    assert "left haunch of the chain at 8 % of the span, intrados; crown of the chain, extrados" in found.answer
+    pier = run({"block": rows(box("a", 0, 0), box("b", 0, 1))}, kind="supports")
+    assert pier.status == "refused" and "expected a single arch between two supports" in pier.reason

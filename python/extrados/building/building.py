@@ -86,6 +86,7 @@ class Building:
     def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
         """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches
         what falls."""
+        self.refuse_mixture()
         worn = self.joints.worn_corners
         return self._view(
             "rigid", (self.structure, self.material.density, *self.materials.items(), worn, groups, floor),
@@ -98,6 +99,17 @@ class Building:
 
         tables = (self.structure, self.material, self.joints, self.initial.rotation_ratio, linear)
         return self._view("rocker", tables, lambda: make_rocker(self, linear))
+
+    def refuse_mixture(self) -> None:
+        """BadGeometry where stones are of a named material that gives more than a density: what looks at their elastic
+        constants and strengths takes those of [material] for all stones."""
+        for name in sorted({m for m in self.blocks().materials if m}):
+            more = sorted(self.materials[name].model_fields_set - {"density"})
+            if more:
+                raise BadGeometry(
+                    f"[materials.{name}] gives stones another {more[0]}; discrete and finite elements know one elastic "
+                    "material for all stones, that of [material]: leave it out, or give the joints their stiffness"
+                )
 
     def friction(self) -> float | np.ndarray | None:
         """Coefficient of friction of the joints, one for each where they differ; None excludes sliding."""

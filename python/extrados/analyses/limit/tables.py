@@ -95,10 +95,10 @@ class Imperfections(LimitAnalysisTable):
 
 
 class Supports(BuildingAnalysis):
-    """An arch whose supports spread or settle: three-hinge states on the way, until it falls."""
+    """An arch whose supports spread or settle, also one of free blocks: three-hinge states on the way, until it falls."""
 
     kind: Literal["supports"]
-    structures: ClassVar = ARCHES
+    structures: ClassVar = (*ARCHES, "blocks")
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     steps: int = key(200, "steps from rest to the fall", ge=10, le=5000)
