@@ -1,5 +1,6 @@
 """A survey looked at before it is computed: outlines, joints, and one list of all gaps, overlaps and near misses."""
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Literal
 
@@ -161,7 +162,7 @@ def inspect(
         raise BadGeometry("there are no blocks")
     names = [p.name for p in polygons]
     if len(set(names)) < len(names):
-        twice = next(n for n in names if names.count(n) > 1)
+        twice = next(n for n, count in Counter(names).items() if count > 1)
         raise BadGeometry(f"two blocks are called '{twice}'")
     shift = np.zeros(2) if origin is None else np.asarray(origin, dtype=float)
     outlines = [_outline(p, tolerance, shift) for p in polygons]
@@ -195,7 +196,7 @@ def _outline(polygon: Polygon, tolerance: float, shift: np.ndarray) -> np.ndarra
         raise BadGeometry(f"block '{polygon.name}': a vertex lies farther than {FARTHEST:g} m from the origin{hint}")
     # Vertices this near are one; a survey's tolerance is no reason to lose the corners of its stones.
     least = min(tolerance, 1e-4)
-    if len(points) > 1 and np.allclose(points[0], points[-1], atol=least, rtol=0.0):
+    if len(points) > 1 and np.abs(points[0] - points[-1]).max() <= least:
         points = points[:-1]
     apart = np.hypot(*(following(points) - points).T) > least if len(points) else np.array([], bool)
     points = points[apart]

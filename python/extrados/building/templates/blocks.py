@@ -1,5 +1,6 @@
 """Free polygons as a structure: from a deck, a JSON file, an assembly of COMPAS or a drawing."""
 
+from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -44,12 +45,12 @@ def assemble(inspection: Inspection, density: float, depth: float) -> Assembly:
     joint_names = [
         f"{names[a]} on {'the ground' if b < 0 else names[b]}" for a, b in zip(contacts.a, contacts.b, strict=True)
     ]
-    for name in {n for n in joint_names if joint_names.count(n) > 1}:  # two blocks may meet along several faces
-        number = 0
-        for j, other in enumerate(joint_names):
-            if other == name:
-                number += 1
-                joint_names[j] = f"{name} ({number})"
+    several = {name for name, count in Counter(joint_names).items() if count > 1}
+    seen: Counter[str] = Counter()
+    for j, name in enumerate(joint_names):
+        if name in several:  # two blocks may meet along several faces
+            seen[name] += 1
+            joint_names[j] = f"{name} ({seen[name]})"
     assembly = Assembly(
         outlines=inspection.outlines,
         mass=area * rho,
