@@ -42,6 +42,10 @@ class Structure(Table):
         """Gaps, overlaps and near misses of a surveyed structure; None where its geometry is exact by its making."""
         return None
 
+    def mended(self, folder: Path) -> "Structure | None":
+        """The structure with the tolerance that closes its open gaps; None where there are none that one closes."""
+        return None
+
     def weighed(self, made: "Assembly", density: float, densities: Mapping[str, float]) -> "Assembly":
         """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""
         return made

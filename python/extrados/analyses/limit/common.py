@@ -7,6 +7,7 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
@@ -16,7 +17,7 @@ from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.places import place_of
-from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.results.limit import Hinge, Reaction
 from extrados.results.model import Array
 
@@ -106,6 +107,22 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
         )
     except NoCrack as error:
         raise Refused(f"fracture: {error}") from None
+
+
+def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: float) -> str | None:
+    """What a survey with open gaps would bear to +x if they were closed, in words beside its capacity gamma [g]; None
+    where none is open."""
+    if not building.told()[0] or building.structure is None:
+        return None
+    mended = building.structure.mended(building.folder)
+    if mended is None:
+        return None
+    told = f'with all gaps closed (contact_tolerance = "{1e3 * mended.contact_tolerance:.3g} mm")'
+    try:
+        closed = limit_of(building.apart().having(structure=mended), options).collapse(1)[0].gamma
+    except (BadGeometry, Refused, NoEquilibrium, NoAnswer, Immovable) as error:
+        return f"{told} there is no capacity: {error}"
+    return f"{told} it bears {closed:.4f} g to +x, {closed / gamma:.2f} times the {gamma:.4f} g told here"
 
 
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:

@@ -9,6 +9,7 @@ from extrados.analyses.limit.common import (
     geometry_arrays,
     graphic_arrays,
     hinge_rows,
+    mended_capacity,
     reaction_rows,
     state_arrays,
 )  # fmt: skip
@@ -84,6 +85,8 @@ def run(context: Context, options: Tilt) -> Result:
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
     result.answer = _words(context.building.structure.word, assembly, answer, found)
     result.warnings += answer.warnings
+    if closed := mended_capacity(context.building, options, answer.gamma):
+        result.warnings.append(closed)
     needed = found.required_friction or 0.0
     if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(

@@ -96,6 +96,11 @@ class Inspection:
             )
         return found
 
+    def closing(self) -> float | None:
+        """The tolerance [m] that would close all gaps that are open now; None where none is, or one has to be redrawn."""
+        mends = [self.mends(flaw) for flaw in self.of("open")]
+        return None if not mends or any(m is None for m in mends) else max(m for m in mends if m is not None)
+
     def remarks(self) -> list[str]:
         """What an answer must tell: gaps that stay open, soles that nothing bears."""
         found = []
@@ -273,7 +278,8 @@ def _loose(contacts: Contacts, count: int) -> list[int]:
 def refuse(inspection: Inspection) -> None:
     """Overlap or BadGeometry with all complaints, where there are any."""
     if found := inspection.complaints():
-        raise (Overlap if inspection.of("overlap") else BadGeometry)("; ".join(found))
+        hint = " (`extrados check` lists and draws all)" if inspection.flaws else ""
+        raise (Overlap if inspection.of("overlap") else BadGeometry)("; ".join(found) + hint)
 
 
 def areas(inspection: Inspection) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

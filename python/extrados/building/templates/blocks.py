@@ -209,6 +209,10 @@ class Blocks(Structure):
     def inspection(self, folder: Path) -> Inspection:
         return self._inspected(folder)[0]
 
+    def mended(self, folder: Path) -> "Blocks | None":
+        tolerance = self.inspection(folder).closing()
+        return None if tolerance is None else self.model_copy(update={"contact_tolerance": tolerance})
+
     def assembly(self, density: float, folder: Path) -> Assembly:
         inspection, depth = self._inspected(folder)
         return assemble(inspection, density, depth)
