@@ -33,7 +33,8 @@ def thrust_paths(assembly: Assembly, loads: Loads, state: State, sway: float = 1
 
     Along a chain it joins the points of pressure. In a stone of two joints it leads from one to the other; down a tall one
     it is found on level sections, and what presses on its side meets it there: the lines of several arches meet on
-    their pier. In any other stone the lines from all its joints meet where their forces do in the mean. sway: the part
+    their pier. In any other stone the lines from all its joints meet where their forces do in the mean, and in one that
+    nothing presses on they begin at its centroid. sway: the part
     of gamma that accelerates the stones' own weight to +x.
     """
     points, force = state.points(assembly), np.hypot(*state.force(assembly).T)
@@ -67,13 +68,12 @@ def _through(
     """Lines through one stone and their forces, from its loaded joints."""
     if not joints:
         return []
-    if len(joints) == 1:  # a stone that rests on one joint: its load comes from where the stone is
-        j = joints[0]
-        return [(np.array([assembly.centroid[block], points[j]]), float(force[j]))]
     into = np.where(assembly.a[joints] == block, 1.0, -1.0)[:, None]
     bearing = (into * assembly.normal[joints])[:, 1] > BEARS
     base = [j for j, bears in zip(joints, bearing.tolist(), strict=True) if bears]
     above = [j for j in joints if j not in base]
+    if not above or len(joints) == 1:  # nothing presses on it: its load comes from where the stone is
+        return [(np.array([assembly.centroid[block], points[j]]), float(force[j])) for j in joints]
     if len(base) == 1 and above:
         top = max(above, key=lambda j: float(points[j, 1]))
         if points[top, 1] - points[base[0], 1] > TALL * assembly.length[base[0]]:
