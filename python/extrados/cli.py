@@ -247,7 +247,8 @@ def check(
         checked = check_building(deck)
         complaints += checked.complaints
         if checked.inspection is not None:
-            _tell_survey(checked, out or default_out(deck).with_name(f"{default_out(deck).name}-check"))
+            folder = out or default_out(deck).with_name(f"{default_out(deck).name}-check")
+            _tell_survey(checked, folder, asked=out is not None)
     for line in complaints:
         err_console.print(line, markup=False)
     if complaints:
@@ -258,8 +259,9 @@ def check(
 MOST_PLACES = 40
 
 
-def _tell_survey(checked: "Checked", folder: Path) -> None:
-    """How the stones of a survey fit: its list on the terminal, all of it and its picture in a folder."""
+def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
+    """How the stones of a survey fit: its list on the terminal, all of it and its picture in a folder where there is
+    anything to list, or the folder is asked for."""
     from rich.table import Table
 
     from extrados.running.check import write_check
@@ -283,6 +285,8 @@ def _tell_survey(checked: "Checked", folder: Path) -> None:
         f"{len(inspection.outlines)} stones, {len(inspection.contacts.a)} joints, {grounded} of them on the ground; "
         f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance", markup=False,
     )  # fmt: skip
+    if not checked.places and not asked:
+        return
     try:
         picture, table = write_check(checked, folder)
     except OSError as error:

@@ -218,6 +218,8 @@ def test_layers_for_material_friction_and_supports(tmp_path: Path) -> None:
     deck = make_deck(data, tmp_path)
     assembly = deck.building.blocks()
     assert assembly.mass.tolist() == [2500.0, 1000.0, 1000.0]
+    light = make_deck({**data, "material": {"density": 0.0}}, tmp_path).building.blocks()
+    assert light.mass.tolist() == [0.0, 1000.0, 1000.0] and light.inertia[1] == pytest.approx(1000.0 / 6.0)
     names = dict(zip(assembly.joint_names, deck.building.friction().tolist(), strict=True))
     assert sorted(names.values()) == [0.3, 0.6, 0.8]
     assert names[next(n for n in names if n.endswith("the ground"))] == 0.8

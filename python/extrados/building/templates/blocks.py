@@ -18,6 +18,7 @@ from extrados.building.geometry.contacts import shortest_joint
 from extrados.building.geometry.drawing import Drawing, Layer, Polygon, parsed, read_json
 from extrados.building.geometry.dxf import SAGITTA, read_dxf
 from extrados.building.geometry.inspection import Inspection, areas, inspect, refuse
+from extrados.building.geometry.polygons import properties
 from extrados.building.structure import Structure
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
@@ -218,9 +219,9 @@ class Blocks(Structure):
         return assemble(inspection, density, depth)
 
     def weighed(self, made: Assembly, density: float, densities: Mapping[str, float]) -> Assembly:
-        own = np.array([density if name is None else densities[name] for name in made.materials])
-        given = np.array([b.density is not None for b in self.block]) if self.block else np.zeros(len(own), bool)
-        if (own == density).all():
-            return made
-        share = np.where(given, 1.0, own / density)
-        return replace(made, mass=made.mass * share, inertia=made.inertia * share)
+        mass, inertia = made.mass.copy(), made.inertia.copy()
+        for i, name in enumerate(made.materials):
+            if name is not None:
+                area, _, polar = properties(made.outlines[i])
+                mass[i], inertia[i] = area * densities[name] * made.depth, polar * densities[name] * made.depth
+        return replace(made, mass=mass, inertia=inertia)
