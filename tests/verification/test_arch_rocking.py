@@ -115,7 +115,7 @@ def test_hinges_that_do_not_reflect(ratio, embrace, n, signed) -> None:
     """For stocky arches the mirrored mechanism would have to close further: no c_v is made up."""
     for rule in ("thesis", "energy-safe"):
         model = ArchModel(make_arch(1.0, ratio, embrace, n), rule)
-        assert model.restitutions[1] == pytest.approx(signed, abs=1e-3)
+        assert model.impacts.energy_safe == pytest.approx(signed, abs=1e-3)
         with pytest.raises(NoView, match="do not reflect"):
             _ = model.restitution
     assert ArchModel(make_arch(1.0, ratio, embrace, n), 0.4).restitution == 0.4
@@ -160,10 +160,10 @@ def test_stopping_when_safe_changes_no_outcome(oppenheim) -> None:
 )  # fmt: skip
 def test_impact_where_hinge_a_is_above_the_springing(ratio, embrace, value) -> None:
     model = ArchModel(make_arch(1.0, ratio, embrace, embrace // 5))
-    assert model.restitutions[0] == pytest.approx(value, abs=6e-4)
-    assert model.restitution == min(model.restitutions[0], 1.0)
+    assert model.impacts.thesis == pytest.approx(value, abs=6e-4)
+    assert model.restitution == min(model.impacts.thesis, 1.0)
     assert bool(model.warnings) == (value > 1.0)
-    assert model.restitutions[1] < 1.0
+    assert model.impacts.energy_safe < 1.0
 
 
 @pytest.mark.parametrize(
@@ -171,7 +171,7 @@ def test_impact_where_hinge_a_is_above_the_springing(ratio, embrace, value) -> N
     [(0.12, 140, 0.724), (0.15, 160, 0.731), (0.18, 150, 0.633), (0.21, 180, 0.618), (0.18, 180, 0.645)],
 )  # fmt: skip
 def test_energy_safe_impact(ratio, embrace, value) -> None:
-    assert ArchModel(make_arch(1.0, ratio, embrace, embrace // 5)).restitutions[1] == pytest.approx(value, abs=6e-4)
+    assert ArchModel(make_arch(1.0, ratio, embrace, embrace // 5)).impacts.energy_safe == pytest.approx(value, abs=6e-4)
 
 
 @pytest.mark.parametrize(("n", "value"), [(27, 0.10678), (36, 0.10746), (180, 0.10746), (1000, 0.10748)])
