@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.templates.arch import make_arch
 from extrados.decks.reader import DeckError, make_deck
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
@@ -348,12 +351,31 @@ def test_every_structure_of_stones(name: str, tmp_path: Path) -> None:
 
 
 def test_a_start_that_it_cannot_take_is_refused() -> None:
-    """Only a block starts rotated; elsewhere the deck may say so for the other strategies alone."""
+    """Glued voussoirs are not the blocks of the mechanism; the deck may start rotated for the other strategies alone."""
     deck = {"structure": ARCH, "motion": PULSE, "initial": {"rotation_ratio": 0.2}}
-    short = {"kind": "dem", "end_time": 0.1}
-    refused, ran = answers({**deck, "analysis": [short, {**short, "initial": {"rotation_ratio": 0.0}}]})
-    assert refused.status == "refused" and "rotation_ratio" in refused.reason
+    glued = {"kind": "dem", "end_time": 0.1, "merge": "three-bars"}
+    refused, ran = answers({**deck, "analysis": [glued, {**glued, "initial": {"rotation_ratio": 0.0}}]})
+    assert refused.status == "refused" and "glued" in refused.reason
     assert ran.status == "ok"
+
+
+def test_an_arch_starts_in_the_pose_of_its_mechanism() -> None:
+    """What it stores at the start is the potential of the mechanism at that rotation, mirrored to the other side."""
+    stored = []
+    for ratio in (0.2, -0.2):
+        run = extrados.run(
+            {
+                "structure": ARCH, "initial": {"rotation_ratio": ratio},
+                "analysis": [{"kind": "dem", "end_time": 0.3, "output_step": 0.001, "joints": {"normal_stiffness": 1e12}}],
+            }
+        )  # fmt: skip
+        potential = np.array(run.array("dem", "potential_energy"))
+        stored.append(potential[0] - potential.min())
+    model = MechanismModel(make_arch(**{k: v for k, v in ARCH.items() if k != "kind"}))
+    q = 0.2 * model.critical[0]
+    rest, start = model.coefficients(1, [0.0, q]).potential
+    assert stored[0] == pytest.approx(stored[1], rel=0.02)
+    assert 0.8 < stored[0] / (start - rest) < 1.02  # it passes rest in motion: not all joints close at once
 
 
 def test_the_domain_starts_as_the_deck_says() -> None:
