@@ -223,7 +223,7 @@ def square(softening=None, behaviour=None, nu=0.0, **options):
     return model, force
 
 
-@pytest.mark.parametrize("behaviour", [Behaviour(), Behaviour(isotropic=True), Behaviour(retention=0.2)])
+@pytest.mark.parametrize("behaviour", [Behaviour(), Behaviour(cracking="isotropic"), Behaviour(cracking="rotating"), Behaviour(retention=0.2)])
 def test_square_in_tension_dissipates_gf(behaviour) -> None:
     """Two triangles of one band: with nu = 0 both lose Gf times the crack area, whatever the cracking model."""
     from dataclasses import replace

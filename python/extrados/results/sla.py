@@ -75,6 +75,7 @@ class Sla(SlaCurve, KindResults):
     """sla: cracks event by event under constant loads and growing ones; the curve of the first sense, and of both."""
 
     reference_load_N: float = fact("the reference loads, to which the multiplier 1 belongs", "N")
+    cracking: Literal["rotating", "orthotropic", "isotropic"] = fact("how cracked material behaved")
     teeth: list[int] = fact("least and greatest number of teeth of the saw-tooth laws")
     nodes: int = fact("nodes of the mesh")
     elements: int = fact("elements of the mesh")

@@ -54,6 +54,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     numbers = {
         **numbers_of(model, options, first),
         "reference_load_N": model.unit,
+        "cracking": options.cracking,
         "teeth": tooth_counts(model),
         "nodes": len(model.mesh.xy),
         "elements": model.mesh.elements(),
