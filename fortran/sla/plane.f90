@@ -41,7 +41,7 @@ module sla_plane
    !> A crack that lies nearer to the principal strain than this stays where it is: one vector less in an event [rad]
    real(wp), parameter :: least_turn = 0.01_wp
 
-   !> Stiffness along a rotating crack over that across it, at most
+   !> Stiffness along a rotating crack over that across it, at most; not where it is pressed by more than its strength
    real(wp), parameter :: most_contrast = 10.0_wp
 
    type, extends(point_group) :: plane_group
@@ -456,7 +456,7 @@ contains
       type(event_vectors), intent(out) :: event
       integer, intent(out) :: tooth
       real(wp), parameter :: right_angle = 0.5_wp * acos(-1.0_wp)
-      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), s(3), v(3), old(4), phi, delta
+      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), s(3), v(3), old(4), phi, delta, pressed
       real(wp) :: before, after, alpha, change
       logical :: turns, follows
       integer :: e, k, p, sense
@@ -508,7 +508,13 @@ contains
          group%crush(2, p) = group%crush(1, p)
       end if
       follows = .false.
-      if (turns) call follow(group, e, p, k, follows)
+      if (turns) then
+         call group%refresh(p)
+         s = stress_at(group, p, strain_at(group, e, p, la))
+         pressed = 0.0_wp
+         if (.not. group%options%closure) pressed = group%teeth%strength_of(group%table_of(e, p), 1_c_int, 1.0_wp)
+         if (s(3 - k) > -pressed) call follow(group, e, p, k, follows)
+      end if
       after = direction_modulus(group, e, p, k)
       call group%refresh(p)
 
