@@ -144,8 +144,8 @@ contains
          allocate (new_plane, stat=info)
          if (info /= 0) return
          call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
-            property(3, :), choice([1, 4, 5], :), choice(2, :), property(4, :), choice(3, :), property(5, :), model%teeth, &
-            model%options, new_plane, bad, fate)
+            property(3, :), choice([1, 4, 5], :), choice(2, :), property(4, :), choice(3, :), property(5, :), &
+            model%teeth, model%options, new_plane, bad, fate)
          if (fate /= status_ok) return
          call move_alloc(new_plane, group)
          call both_directions(connect, node, direction, fate)

@@ -83,8 +83,8 @@ module sla_group
       class(element_group), allocatable :: group
    end type group_holder
 
-   !> Rows of a point's stored damage: cosine, sine, cracked (or which crack band, see plane), tension teeth (2), compression teeth (2),
-   !> shut (2), changes (2)
+   !> Rows of a point's stored damage: cosine, sine, cracked (and which crack band, see sla_plane), tension teeth (2),
+   !> compression teeth (2), shut (2), changes (2)
    integer, parameter :: state_rows = 11
 
    abstract interface

@@ -61,7 +61,7 @@ module sla_plane
       integer(c_int), allocatable :: axis(:)             !! axis_free, 1 one crack direction given, axis_joint
       ! The damage: everything else below follows from it.
       real(wp), allocatable :: turn(:, :)                !! (2, points) cosine and sine of the crack normal
-      integer(c_int), allocatable :: cracked(:)          !! 0 while there are no crack axes, else 1 + step on the ladder
+      integer(c_int), allocatable :: cracked(:)          !! 0 without crack axes, else 1 + step on the ladder
       integer(c_int), allocatable :: tooth(:, :)         !! (2, points), 1 virgin
       integer(c_int), allocatable :: crush(:, :)         !! (2, points), 1 virgin
       integer(c_int), allocatable :: shut(:, :)          !! (2, points), 1 closed
@@ -588,7 +588,7 @@ contains
       real(wp), intent(in) :: old(4)       !! stiffness in the old axes [Pa]
       real(wp), intent(in) :: delta        !! angle from the old axes to the new ones [rad]
       type(event_vectors), intent(inout) :: event
-      real(wp) :: c, s, r(3, 3), d(3, 3), vectors(3, 3)
+      real(wp) :: c, s, r(3, 3), d(3, 3), vectors(3, 3), least
       integer :: i
 
       c = cos(delta)
@@ -601,8 +601,12 @@ contains
       d = matmul(transpose(r), d)
       d = d - stiffness_matrix(group%stiff(:, p))
       call principal(d, vectors)
+      least = 1.0e-14_wp * maxval(old)
+      do i = 1, 3    ! stiffening first: the small system of the event then has no small pivot, see sla_events
+         if (d(i, i) < -least) call add_vector(group, e, p, vectors(:, i), d(i, i) * group%weight(p), event)
+      end do
       do i = 1, 3
-         if (abs(d(i, i)) > 1.0e-14_wp * maxval(old)) call add_vector(group, e, p, vectors(:, i), d(i, i) * group%weight(p), event)
+         if (d(i, i) > least) call add_vector(group, e, p, vectors(:, i), d(i, i) * group%weight(p), event)
       end do
    end subroutine add_change
 
@@ -733,7 +737,8 @@ contains
 
    !> Rows: 1-3 strain and 4-6 stress in the crack axes, 7-8 cosine and sine of the first crack's normal,
    !> 9-10 moduli over the initial one, 11-12 tension teeth, 13-14 admitted range of lambda, 15 volume,
-   !> 16-17 compression teeth, 18 shut (1 first, 2 second direction, 3 both), 19 crack band [m]
+   !> 16-17 compression teeth, 18 shut (1 first, 2 second direction, 3 both),
+   !> 19 crack band [m]
    pure subroutine report(group, ua, ub, lambda, noise, values)
       class(plane_group), intent(in) :: group
       real(wp), intent(in) :: ua(0:)

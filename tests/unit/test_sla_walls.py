@@ -188,7 +188,7 @@ def test_interrupt_keeps_the_events_so_far() -> None:
             timers.append(threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)))
             timers[0].start()
 
-    data = wall(0.03, events=1_000_000, mechanism_ratio=1e12)
+    data = wall(0.03, events=1_000_000, mechanism_ratio=1e5)
     result = run_analyses(Context(make_deck(data), progress=progress))[0]
     timers[0].join()
     assert result.status == "interrupted"
@@ -220,3 +220,43 @@ def test_the_starter_deck_runs(tmp_path) -> None:
     assert result.status == "ok", result.reason
     assert result.results["stop"] == "target displacement"
     assert read_text(starter("mesh").encode()).structure.file == "extrados:example-wall"
+
+
+def test_a_force_between_nodes_is_shared() -> None:
+    """The resultant and its moment are those of the force; at a node it is that node's alone."""
+    from extrados.analyses.sla.model import nodal_forces
+    from extrados.analyses.sla.tables import Load
+
+    deck = make_deck(wall(events=5))
+    mesh = Context(deck).building.mesh(deck.analyses[0].mesh)
+    corner = mesh.xy.max(axis=0)
+    place = corner - [0.37 * mesh.size, 0.0]
+    force = nodal_forces(mesh, [Load(kind="point", x=place[0], y=place[1], fy=-1.0)], "reference")
+    assert np.count_nonzero(force) == 2
+    assert force.sum(axis=0) == pytest.approx([0.0, -1.0])
+    assert (mesh.xy[:, 0] * force[:, 1]).sum() == pytest.approx(-place[0])
+    alone = nodal_forces(mesh, [Load(kind="point", x=corner[0], y=corner[1], fy=-1.0)], "reference")
+    assert np.count_nonzero(alone) == 1
+
+
+def test_a_node_that_is_not_where_it_was_asked_for_is_told() -> None:
+    data = wall(events=5, control=[{"x": 0.0123, "y": 0.0, "direction": "x"}])
+    assert any("no node lies at x 0.0123 m" in w for w in run_deck(data).warnings)
+
+
+def test_what_cracks_keep_is_never_the_peak() -> None:
+    reason = run_deck(wall(events=5, mechanism_ratio=1e8)).reason
+    assert "what they keep would carry the load; at most 100000" in reason
+
+
+def test_nodes_that_stand_twice_are_named(tmp_path) -> None:
+    """Two halves of a wall that only touch: the lower one is held, the upper one flies."""
+    meshio = pytest.importorskip("meshio")
+    x, y = np.meshgrid([0.0, 400.0, 800.0], [0.0, 300.0], indexing="ij")
+    below = np.column_stack([x.ravel(), y.ravel(), np.zeros(6)])
+    quads = np.array([[0, 2, 3, 1], [2, 4, 5, 3]])
+    points = np.concatenate([below, below + np.array([0.0, 300.0, 0.0])])
+    meshio.write(tmp_path / "halves.vtu", meshio.Mesh(points, [("quad", np.concatenate([quads, quads + 6]))]))
+    reason = from_file("halves.vtu", tmp_path).reason
+    assert "lie at the same place" in reason
+    assert "(3 such pairs)" in reason

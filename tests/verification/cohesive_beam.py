@@ -10,6 +10,7 @@ closed; load and openings follow by Newton's method, past every snap-back.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -89,7 +90,7 @@ def _graded(marks: list[float], first: float, most: float) -> np.ndarray:
     """Distances from the crack through all marks, in steps that grow from `first` to `most`."""
     lines = [np.zeros(1)]
     step = first
-    for start, end in zip(marks, marks[1:], strict=False):
+    for start, end in pairwise(marks):
         steps = []
         while sum(steps) < end - start:
             steps.append(step)
@@ -105,7 +106,9 @@ def cohesive_path(
     """The path of a beam with so many elements over its ligament; young, strength [Pa], energy [N/m]."""
     step = (beam.depth - beam.notch) / elements
     below = round(beam.notch / step)
-    y = np.concatenate([np.linspace(0.0, beam.notch, below + 1)[:-1], np.linspace(beam.notch, beam.depth, elements + 1)])
+    y = np.concatenate(
+        [np.linspace(0.0, beam.notch, below + 1)[:-1], np.linspace(beam.notch, beam.depth, elements + 1)]
+    )
     x = _graded([0.0, beam.slot / 2, beam.gauge / 2, beam.span / 2, beam.length / 2], step, beam.depth / 12)
     number = np.arange(len(x) * len(y)).reshape(len(x), len(y))
     i, j = (a.ravel() for a in np.meshgrid(np.arange(len(x) - 1), np.arange(len(y) - 1), indexing="ij"))
@@ -118,7 +121,9 @@ def cohesive_path(
     )
     values = beam.thickness * np.stack([_rectangle(a, b, young, nu) for a, b in sizes])[which.ravel()]
     n = 2 * number.size
-    k = coo_matrix((values.ravel(), (np.repeat(freedoms, 8, axis=1).ravel(), np.tile(freedoms, 8).ravel())), (n, n)).tocsc()
+    k = coo_matrix(
+        (values.ravel(), (np.repeat(freedoms, 8, axis=1).ravel(), np.tile(freedoms, 8).ravel())), (n, n)
+    ).tocsc()
 
     crack = 2 * number[0, below:]
     at = lambda place: int(np.abs(x - place).argmin())  # noqa: E731
@@ -150,7 +155,10 @@ def cohesive_path(
             change = np.linalg.solve(tangent, -gap)
             u[:tip] += change[:-1]
             force += change[-1]
-            if np.abs(change[:-1]).max(initial=0.0) <= 1e-12 * energy / strength and np.abs(gap).max() < 1e-9 * strength * share[1]:
+            if (
+                np.abs(change[:-1]).max(initial=0.0) <= 1e-12 * energy / strength
+                and np.abs(gap).max() < 1e-9 * strength * share[1]
+            ):
                 break
         else:
             raise ArithmeticError(f"no equilibrium with the crack at node {tip}")

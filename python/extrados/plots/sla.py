@@ -59,6 +59,18 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             grid, rows = get("scatter_displacement") * 1e3, get("scatter_load") / 1e3
             ax.fill_between(grid, rows.min(axis=0), rows.max(axis=0), color="#dfe7ef", label=f"{len(rows)} repetitions")
             ax.plot(grid, rows.mean(axis=0), color="#7b93ab", linestyle=":", label="their mean")
+        if "measured_displacement" in run.arrays[name]:
+            test = get("measured_displacement") * 1e3
+            least, greatest = get("measured_least") / 1e3, get("measured_greatest") / 1e3
+            if (greatest > least).any():
+                ax.fill_between(test, least, greatest, color="#d9d9d9", linewidth=0, label="tests, least to greatest")
+            ax.plot(
+                test,
+                0.5 * (least + greatest),
+                color="#8c8c8c",
+                linewidth=1.2,
+                label="tests, mean" if (greatest > least).any() else "test",
+            )
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
             if numbers is None:
                 continue
@@ -85,6 +97,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
         ax.set_xlim(1.05e3 * min(far.min(), 0.0), 1.05e3 * max(far.max(), 1e-12))
         if len(loads):
+            if "measured_greatest" in run.arrays[name]:
+                loads = np.append(loads, get("measured_greatest"))
             low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
             ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
         ax.axhline(0.0, color="#999", linewidth=0.5)

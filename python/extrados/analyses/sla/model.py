@@ -17,6 +17,8 @@ AXES = {"x": 0, "y": 1}
 POINTS_PER_THREAD = 20_000
 #: Growth of the compliance that counts as a mechanism: of walls, and of stones, which may be slender
 MECHANISM, MECHANISM_OF_STONES = 1e4, 1e5
+#: Growth of the compliance times the stiffness left in cracks, at most: beyond, that stiffness would carry a load
+MOST_OF_FLOOR = 0.1
 #: Openings and closings of a joint's point before it is left open: they change no stress, so that many do no harm
 MOST_CHANGES_OF_JOINTS = 1000
 #: Stiffness left in an open joint: its row is so thin that the millionth left in a cracked wall would hold the stones
@@ -58,10 +60,25 @@ class SlaModel:
             x, y = self.mesh.xy[error.node]
             raise Refused(
                 f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
-                f"{error.direction}; add supports"
+                f"{error.direction}; {_coincident(self.mesh) or 'add supports'}"
             ) from None
         except core.BadElement as error:
             raise Refused(str(error)) from None
+
+
+def _coincident(mesh: Mesh) -> str:
+    """Names two nodes at one place, at which the mesh falls apart; empty where there are none."""
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(mesh.xy).query_pairs(1e-6 * mesh.size, output_type="ndarray")
+    if not len(pairs):
+        return ""
+    one, two = pairs[np.lexsort(pairs.T[::-1])[0]]
+    x, y = mesh.xy[one]
+    return (
+        f"nodes {one + 1} and {two + 1} lie at the same place, x {x:g} m, y {y:g} m ({len(pairs)} such pairs), and the "
+        "mesh is in pieces there: merge them"
+    )
 
 
 def build(mesh: Mesh, options: Sla, strength: np.ndarray | None = None) -> SlaModel:
@@ -153,6 +170,13 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     closure = mesh.has_joints if options.crack_closure is None else options.crack_closure
     if mesh.has_joints and not closure:
         raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
+    floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor
+    ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
+    if ratio > MOST_OF_FLOOR / floor:
+        raise BadGeometry(
+            f"mechanism_ratio: {ratio:g} is beyond what cracks that keep {floor:g} of their stiffness can show: what they "
+            f"keep would carry the load; at most {MOST_OF_FLOOR / floor:g}"
+        )
     acceleration = None
     if all(load.kind == "gravity" for load in reference_loads):
         acceleration = float(np.hypot(*np.sum([[load.ax, load.ay] for load in reference_loads], axis=0)))
@@ -161,10 +185,10 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         core.Behaviour(
             options.cracking, options.shear_retention, closure,
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
-            FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor,
+            floor,
         ),
         constant, reference, unit, _control(mesh, options, reference, unit), bands, np.concatenate(points),
-        options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM), acceleration,
+        ratio, acceleration,
     )  # fmt: skip
 
 
@@ -291,8 +315,8 @@ def nodal_forces(mesh: Mesh, loads: Sequence[Load], word: str) -> np.ndarray:
             if not heavy:
                 raise BadGeometry(f"{what}: gravity without weight: give the material a density")
         elif load.kind == "point":
-            nodes = mesh.nodes_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
-            force[nodes] += np.array([load.fx, load.fy]) / len(nodes)
+            nodes, share = mesh.shares_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
+            force[nodes] += share[:, None] * [load.fx, load.fy]
         elif load.kind != "displacement":
             force += _edge_load(mesh, load, what)
     return force

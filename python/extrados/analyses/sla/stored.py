@@ -83,7 +83,6 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
     if curve.states:
         states = curve.states
         dims = (f"{prefix}states",)
-        n = len(model.point_xy)
         result.arrays[f"{prefix}state_event"] = Array(
             np.array([s.event + 1 for s in states]), dims, "", "event, from 1"
         )

@@ -143,6 +143,11 @@ class Sla(BuildingAnalysis):
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
     )
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
+    measured: str | None = key(
+        None,
+        "CSV of a test to draw behind the curve and to compare with: columns 'displacement (mm)' and 'load (N)', or "
+        "'least (N)' and 'greatest (N)' of several tests; lines that begin with # are its source",
+    )
     section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections", max_length=10)
     seeds: list[int] = key([], "repeat with these seeds of random mesh and strength: a scatter band", max_length=200)
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
