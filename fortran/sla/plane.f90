@@ -54,7 +54,7 @@ module sla_plane
       real(wp), allocatable :: nu(:)
       integer(c_int), allocatable :: table(:)            !! tension teeth, 0 none
       integer(c_int), allocatable :: ladder(:, :)        !! (2, elements) tables of narrowest and widest band, 0 none
-      real(wp), allocatable :: diagonal(:, :, :)         !! (2, 2, elements) of quadrilaterals, two sides of triangles [m]
+      real(wp), allocatable :: diagonal(:, :, :)         !! (2, 2, elements), two sides of triangles [m]
       integer(c_int), allocatable :: crush_table(:)      !! compression teeth, 0 none
       real(wp), allocatable :: lateral(:)                !! compressive strength that reduces ft, 0 none [Pa]
       type(tooth_tables) :: teeth
@@ -748,7 +748,7 @@ contains
       real(wp), intent(out) :: values(:, :)     !! (report_rows, points)
       real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), ea(3), eb(3)
       type(scan_result) :: found
-      integer :: e, p
+      integer :: e, p, k
 
       do e = 1, group%elements
          call group%gather(e, ua, la)
@@ -760,7 +760,8 @@ contains
             values(4:6, p) = stress_at(group, p, ea + lambda * eb)
             values(7:8, p) = group%turn(:, p)
             values(9, p) = direction_modulus(group, e, p, 1) / group%young(e)
-            values(10, p) = direction_modulus(group, e, p, merge(1, 2, group%options%cracking == isotropic)) / group%young(e)
+            k = merge(1, 2, group%options%cracking == isotropic)
+            values(10, p) = direction_modulus(group, e, p, k) / group%young(e)
             values(11:12, p) = real(group%tooth(:, p), wp)
             found = scan_result()
             call scan_point(group, e, p, stress_at(group, p, ea), stress_at(group, p, eb), lambda, noise, found)

@@ -161,14 +161,14 @@ def test_fixed_cracks_do_not_meet_it() -> None:
 #: Near a quarter of the peak one or two elements carry the load, and a tooth of p ft is a large part of it.
 HELD = {
     "structured": {
-        6: (0.05, 0.06, 0.06, 0.15, 0.05),
+        6: (0.05, 0.07, 0.09, 0.16, 0.05),
         12: (0.04, 0.05, 0.06, 0.13, 0.02),
         24: (0.03, 0.03, 0.04, 0.12, 0.02),
     },
     "random": {
-        6: (0.15, 0.13, 0.20, 0.30, 0.10),
-        12: (0.06, 0.06, 0.12, 0.20, 0.04),
-        24: (0.05, 0.05, 0.08, 0.12, 0.03),
+        6: (0.16, 0.15, 0.26, 0.35, 0.11),
+        12: (0.07, 0.07, 0.13, 0.20, 0.04),
+        24: (0.06, 0.06, 0.09, 0.13, 0.03),
     },
 }
 
@@ -182,8 +182,9 @@ def test_laws_sizes_and_meshes(pattern, elements) -> None:
         (law, depth, seed): errors(depth, law, elements, pattern, seed)
         for law in LAWS for depth in DEPTHS for seed in ((1,) if pattern == "structured" else (1, 2))
     }  # fmt: skip
-    held = HELD[pattern][elements]
+    held, wrong = HELD[pattern][elements], []
     for case, found in rows.items():
         values = [found.peak, *found.tail, found.work]
         print(pattern, elements, *case, " ".join(f"{100 * v:+.1f}" for v in values))
-        assert all(abs(v) < most for v, most in zip(values, held, strict=True)), case
+        wrong += [(case, v, most) for v, most in zip(values, held, strict=True) if not abs(v) < most]
+    assert not wrong

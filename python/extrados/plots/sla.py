@@ -5,13 +5,15 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from extrados.plots import style
 from extrados.results.model import Array
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 
+#: Of crack widths: its lightest colour stands out from white
+CRACKS = LinearSegmentedColormap.from_list("cracks", ["#f4a261", "#d1495b", "#7b2d8b", "#10002b"])
 LOST, ENVELOPE = "#d9822b", "#1f4e79"
 CORNERS = {3: 3, 6: 3, 4: 4, 8: 4}
 #: What the names of the figures of each sense of the load have in them
@@ -38,6 +40,18 @@ def _wall(ax: Axes, polygons: list[np.ndarray], **options) -> PolyCollection:
     ax.add_collection(drawn)
     ax.autoscale_view()
     return drawn
+
+
+def _outline(run: Stored, name: str) -> np.ndarray:
+    """Edges (edges, 2) of the outline and of openings, by nodes: those of one element alone."""
+    sides = []
+    for array in run.series(name, "elements"):
+        corners = array.data[:, : CORNERS[array.data.shape[1]]]
+        sides += [
+            np.stack([corners[:, k], np.roll(corners, -1, axis=1)[:, k]], axis=1) for k in range(corners.shape[1])
+        ]
+    edges, count = np.unique(np.sort(np.concatenate(sides), axis=1), axis=0, return_counts=True)
+    return edges[count == 1]
 
 
 def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -78,7 +92,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             fine = get(f"{prefix}event_equilibrium") > 0
             color = style.THRUST if not prefix else style.SAFE
             begin = 1e3 * numbers.displacement_of_constant_loads_m
-            ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.35, alpha=0.55)
+            ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.25, alpha=0.4)
             if (~fine).any():
                 ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
@@ -129,16 +143,21 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
     xy, at, reach = (run.array(name, n) for n in ("node", "point_xy", reach))
     states = _peak_state(run, name, prefix)
     span = np.ptp(xy, axis=0)
+    # One magnification and one scale of widths for the series
+    all_moved = run.array(name, f"{prefix}state_displacement")[states]
+    factor = _scale(span, all_moved.reshape(-1, 2))
+    most = max(float(run.array(name, f"{prefix}state_width_{d}")[states].max()) for d in "ns")
+    edges = _outline(run, name)
     with _panels(span, len(states)) as (fig, axes):
         for ax, s in zip(axes, states, strict=True):
             moved = run.array(name, f"{prefix}state_displacement")[s]
             event = run.array(name, f"{prefix}state_event")[s]
             load = run.array(name, f"{prefix}state_load")[s]
-            factor = _scale(span, moved)
-            _wall(ax, _polygons(run, name, xy + factor * moved), facecolors="#f6f2ea")
+            shape = xy + factor * moved
+            _wall(ax, _polygons(run, name, shape), facecolors="white", edgecolors="#e4e4e4")
+            ax.add_collection(LineCollection(shape[edges], colors=style.EDGE, linewidths=0.7))
             angle = run.array(name, f"{prefix}state_angle")[s]
             widths = [run.array(name, f"{prefix}state_width_{d}")[s] for d in "ns"]
-            most = max(w.max() for w in widths)
             place = at + factor * _at_points(run, name, moved)
             for width, turn in zip(widths, (0.5 * np.pi, 0.0), strict=True):
                 # A crack runs across its normal; those too fine to matter are left out
@@ -148,13 +167,13 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
                 along = angle[shown] + turn
                 half = 0.42 * reach[shown][:, None] * np.column_stack([np.cos(along), np.sin(along)])
                 lines = LineCollection(
-                    np.stack([place[shown] - half, place[shown] + half], axis=1), cmap="inferno_r",
+                    np.stack([place[shown] - half, place[shown] + half], axis=1), cmap=CRACKS,
                     norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * width[shown] / most,
                 )  # fmt: skip
                 lines.set_array(1e3 * width[shown])
                 ax.add_collection(lines)
                 drawn = lines
-            if most > 1e-9:
+            if most > 1e-9 and len(ax.collections) > 2:
                 fig.colorbar(drawn, ax=ax, shrink=0.7, label="crack width [mm]")
             style.section_axes(ax)
             ax.set_title(f"event {event}, {load / 1e3:.4g} kN, displacements x {factor:g}")
