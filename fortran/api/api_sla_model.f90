@@ -105,8 +105,8 @@ contains
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: connect(per, elements)
       !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
-      !> angle of the only crack normal allowed [rad]
-      real(c_double), intent(in) :: property(5, elements)
+      !> angle of the only crack normal allowed [rad], growth of the compressive strength per lateral pressure
+      real(c_double), intent(in) :: property(6, elements)
       !> Table of tension teeth, of compression teeth (0 none); 1: the crack normal is given, 2: also the shear is kept;
       !> first and last table of tension teeth where the crack band follows the crack's direction (0 it does not)
       integer(c_int), intent(in) :: choice(5, elements)
@@ -144,7 +144,8 @@ contains
          allocate (new_plane, stat=info)
          if (info /= 0) return
          call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
-            property(3, :), choice([1, 4, 5], :), choice(2, :), property(4, :), choice(3, :), property(5, :), &
+            property(3, :), choice([1, 4, 5], :), choice(2, :), property(4, :), property(6, :), &
+            choice(3, :), property(5, :), &
             model%teeth, model%options, new_plane, bad, fate)
          if (fate /= status_ok) return
          call move_alloc(new_plane, group)

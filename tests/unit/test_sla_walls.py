@@ -260,3 +260,45 @@ def test_nodes_that_stand_twice_are_named(tmp_path) -> None:
     reason = from_file("halves.vtu", tmp_path).reason
     assert "lie at the same place" in reason
     assert "(3 such pairs)" in reason
+
+
+TEST = "# somebody (1999)\ndisplacement (mm),least (kN),greatest (kN)\n0.01,1,3\n0.1,18,22\n0.3,9,11\n0.5,4,6\n"
+
+
+def with_test(tmp_path, text: str, **more):
+    (tmp_path / "test.csv").write_text(text)
+    return run_analyses(Context(make_deck(wall(events=60, measured="test.csv", **more), tmp_path)))[0]
+
+
+def test_a_measured_curve_is_compared() -> None:
+    """Mean 3, 20, 10, 5 kN at 0.01, 0.1, 0.3, 0.5 mm against a curve of 30 kN at 0.1 mm that stays there."""
+    from extrados.analyses.sla.measured import Measured, compare
+
+    test = Measured(np.array([1e-5, 1e-4, 3e-4, 5e-4]), *(1e3 * np.array(x) for x in ([1, 18, 9, 4], [5, 22, 11, 6])))
+    found = compare(test, np.array([0.0, 1e-4, 4e-4]), np.array([0.0, 30e3, 30e3]))
+    assert found.peak_ratio == pytest.approx(1.5)
+    assert found.tail_ratios == [pytest.approx(30 / 15), pytest.approx(30 / 10), None]
+    assert found.inside_ratio == pytest.approx(1 / 3)  # 3 kN at the first point alone
+    assert found.half_band_ratio == pytest.approx((2 / 3 + 0.1 + 0.1) / 3)
+
+
+def test_a_measured_curve_is_drawn(tmp_path) -> None:
+    (tmp_path / "test.csv").write_text(TEST)
+    run = run_to(Context(make_deck(wall(events=60, measured="test.csv"), tmp_path)), tmp_path / "run")
+    assert run.results[0].results["measured"]["peak_ratio"] > 0.0
+    assert read(run.folder).array("sla", "measured_greatest").max() == 22e3
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        (TEST.replace("0.3,9,11", "0.05,9,11"), "must rise"),
+        (TEST.replace("(kN)", "(psi)"), "expected a unit"),
+        (TEST.replace("least", "lowest"), "expected displacement with load"),
+        (TEST.replace("9,11", "9,eleven"), "test.csv:5: expected 3 numbers"),
+        (TEST.replace("18,22", "22,18"), "least load is above"),
+        ("", "at least two of numbers"),
+    ],
+)
+def test_bad_measured_curves(tmp_path, text, complaint) -> None:
+    assert complaint in with_test(tmp_path, text).reason

@@ -237,6 +237,7 @@ class Model(Owner):
             properties = _rows(
                 _each("thickness", group.thickness, count), young, _each("nu", group.nu, count),
                 _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
+                _each("confinement", group.confinement, count),
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,

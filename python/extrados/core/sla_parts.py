@@ -72,7 +72,7 @@ class Plane:
     connect (elements, nodes) 0-based; thickness [m], young [Pa], nu, band [m], `reach` (elements, 2) narrowest and
     widest tension band where it follows from the direction of the crack, None where it is `band`; tension and compression
     softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
-    strength that reduces the tensile one (0 none); `axis` angle of the only crack normal allowed [rad], NaN
+    strength that reduces the tensile one (0 none); `confinement` growth of the compressive strength per lateral pressure; `axis` angle of the only crack normal allowed [rad], NaN
     where cracks choose theirs; `joint`: cracks there keep the shear stiffness, so that the joint opens but does not
     slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
     """
@@ -91,6 +91,7 @@ class Plane:
     selective: bool = False
     joint: bool = False
     reach: np.ndarray | None = None
+    confinement: float | np.ndarray = 0.0
 
     @property
     def points_each(self) -> int:

@@ -269,6 +269,7 @@ def _plane(
         crushing if any(c is not None for c in crushing) else None,
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
         group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None, reach,
+        np.array([m.confinement for m in materials]),
     )  # fmt: skip
 
 
