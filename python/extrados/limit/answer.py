@@ -83,8 +83,19 @@ class Answer:
         return {name: force_polygon(self.assembly, state, joints) for name, joints in self.assembly.chains.items()}
 
     def funiculars(self, state: State) -> dict[str, np.ndarray]:
-        """Funicular polygon of each chain [m]."""
-        return {name: funicular(self.assembly, self.loads, state, j) for name, j in self.assembly.chains.items()}
+        """Funicular polygon [m] of each chain whose stones bear nothing but their loads and each other."""
+        return {
+            name: funicular(self.assembly, self.loads, state, joints)
+            for name, joints in self.assembly.chains.items()
+            if self._plain(joints)
+        }
+
+    def _plain(self, joints: list[int]) -> bool:
+        """Do the stones of a chain touch no stone beside it, and does nothing push back on them?"""
+        inner = self._inner(joints) - {GROUND}
+        resistance = self.loads.resistance
+        pushed = set() if resistance is None else set(resistance.block.tolist())
+        return not inner & pushed and all(len(self.assembly.joints_of(i)) == 2 for i in inner)
 
     def lines(self, state: State) -> dict[str, np.ndarray]:
         """Thrust lines (k, 2) [m]: along each chain, and down each block that stands on the ground."""

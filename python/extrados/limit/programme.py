@@ -177,14 +177,16 @@ class LimitAnalysis:
         return cost
 
     def _state(self, solution: Solution, corners: np.ndarray) -> State:
-        return read_state(float(solution.x[self.system.unknowns - 1]), corners, self.loads.scale)
+        x = solution.x
+        return read_state(float(x[self.system.unknowns - 1]), corners, self.loads.scale, x[self.system.shares])
 
     def collapse(self, direction: int = 1) -> tuple[State, Mechanism]:
         """Greatest gamma for the load gamma W to +x (direction 1) or -x (-1), and the mechanism.
 
         gamma is negative where the structure cannot stand upright and needs support from that side.
         """
-        if isinstance(self.system, Sparse) and self._cone is not None and self.associated and self._crush is None:
+        plain = self._crush is None and not self.loads.pushes
+        if isinstance(self.system, Sparse) and self._cone is not None and self.associated and plain:
             inner = collapse_load(self.system, self._mu, direction)
             if inner is not None:
                 return self._interior_answer(self.system, inner)
