@@ -215,6 +215,11 @@ class LimitAnalysis:
     def stands(self, gamma: float = 0.0) -> bool:
         """True where an admissible thrust line exists, upright or at a given gamma."""
         try:
+            if self._crush is not None:  # without a cost the tangent planes of crushing would be sought all around
+                most, least = (
+                    -d * self.optimise(self._gamma_cost(-d), (-BOUND, BOUND))[0].value for d in (1.0, -1.0)
+                )
+                return least <= gamma <= most
             self.optimise(np.zeros(self.system.unknowns), (gamma, gamma))
         except NoEquilibrium:
             return False

@@ -11,6 +11,7 @@ from extrados.analyses.limit.common import (
     block_under,
     chain_of,
     geometry_arrays,
+    limit_of,
     loads_of,
     push_arrays,
     zone_arrays,
@@ -200,7 +201,8 @@ def run(context: Context, options: MovingLoad) -> Result:
     assembly, structure = building.blocks(), building.structure
     whole = structure.crossed == "top" and options.chain is None
     chain = None if whole else chain_of(assembly, options.chain)
-    answer_of(building, options)  # refuses what cannot stand
+    if not limit_of(building, options).stands():
+        answer_of(building, options)  # refuses, and says why it cannot stand
     low, high = _way(assembly, chain)
     train = train_of(options, assembly.depth)
     if options.width is not None and options.width > assembly.depth:

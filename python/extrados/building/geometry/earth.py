@@ -112,6 +112,13 @@ class Earth:
         return x0, x1, np.maximum(self.road - y, 0.0), block[of]
 
 
+def passive_left_out(earth: Earth | None) -> list[str]:
+    """The warning of strategies that know the weight of fill, but not what it resists."""
+    if earth is None or earth.passive <= 0.0:
+        return []
+    return ["the fill weighs and sways with the stones; its passive pressure, which limit analysis counts, is left out"]
+
+
 def _columns(
     block: np.ndarray, count: int, x0: np.ndarray, x1: np.ndarray, y0: np.ndarray, y1: np.ndarray, top: np.ndarray
 ) -> np.ndarray:
