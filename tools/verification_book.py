@@ -1,5 +1,7 @@
 """Write docs/verification.md: every row of every case with what was found, grouped by kind of proof."""
 
+import math
+import statistics
 import sys
 from pathlib import Path
 
@@ -15,6 +17,10 @@ TITLES = {
     "experiment": "Validation: experiments",
     "regression": "Regression: unchanged numbers",
 }
+
+
+#: Measured numbers of one folder from which on bias and scatter are told
+ENOUGH = 5
 
 
 def shown(value: object) -> str:
@@ -34,9 +40,24 @@ def line(case: str, row: Row, found: object) -> str:
     )
 
 
+def bias(ratios: dict[str, list[float]]) -> list[str]:
+    """Bias and scatter of measured over computed, by folder of cases, where there are enough rows."""
+    rows = []
+    for folder, values in ratios.items():
+        if len(values) >= ENOUGH:
+            logs = [math.log(v) for v in values]
+            mean, spread = math.exp(statistics.mean(logs)), math.exp(statistics.stdev(logs))
+            rows.append(f"| {folder} | {len(values)} | {mean:.2f} | {spread:.2f} |")
+    if not rows:
+        return []
+    head = "| cases | rows | bias (geometric mean of measured over computed) | scatter (factor of one standard deviation) |"
+    return ["### Bias and scatter", "", f"{head}\n|---|---|---|---|", *rows, ""]
+
+
 def main() -> int:
     """Run all cases; the number of rows that differ."""
     tables: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    ratios: dict[str, list[float]] = {}
     wrong = 0
     for case in load_cases():
         for change in dict.fromkeys(row.change for row in case.rows):
@@ -44,6 +65,8 @@ def main() -> int:
             for row in (r for r in case.rows if r.change == change):
                 found = pick(results, row.quantity)
                 wrong += not row.fits(found)
+                if row.kind == "experiment" and isinstance(found, float) and row.value > 0.0 and found > 0.0:
+                    ratios.setdefault(case.name.split("/")[0], []).append(row.value / found)
                 tables[row.kind].append(line(case.name, row, found))
         print(case.name, flush=True)
     parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", ""]
@@ -51,6 +74,8 @@ def main() -> int:
         if tables[kind]:
             head = "| case | change | quantity | expected | found | source |\n|---|---|---|---|---|---|"
             parts += [f"## {title}", "", f"{len(tables[kind])} rows.", "", head, *tables[kind], ""]
+        if kind == "experiment":
+            parts += bias(ratios)
     (ROOT / "docs" / "verification.md").write_text("\n".join(parts), encoding="utf-8")
     print(f"docs/verification.md: {sum(map(len, tables.values()))} rows, {wrong} differ")
     return wrong

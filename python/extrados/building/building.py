@@ -72,7 +72,9 @@ class Building:
     def pier_blocks(self) -> Assembly:
         """A wall as few rigid bodies: piers between its openings, spandrels over them."""
         return self._view(
-            "piers", (self.structure, self.material.density), lambda: self._structure().pier_assembly(self.material.density)
+            "piers",
+            (self.structure, self.material.density),
+            lambda: self._structure().pier_assembly(self.material.density),
         )
 
     def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:

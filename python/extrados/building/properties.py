@@ -52,7 +52,9 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground, "rings" and "backing" those of a bridge', min_length=1, max_length=10000
+        about='names of joints; "ground" means all joints to the ground, "rings" and "backing" those of a bridge',
+        min_length=1,
+        max_length=10000,
     )
     friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] | None = key(None, "coefficient of friction")
     normal_stiffness: Stiffness | None = key(None, "normal stiffness per area", gt=0)

@@ -83,7 +83,7 @@ class Answer:
         return {name: force_polygon(self.assembly, state, joints) for name, joints in self.assembly.chains.items()}
 
     def funiculars(self, state: State) -> dict[str, np.ndarray]:
-        """Funicular polygon [m] of each chain whose stones bear nothing but their loads and each other."""
+        """Funicular polygon [m] of each arch whose stones bear nothing but their loads and each other."""
         return {
             name: funicular(self.assembly, self.loads, state, joints)
             for name, joints in self.assembly.chains.items()
@@ -91,7 +91,9 @@ class Answer:
         }
 
     def _plain(self, joints: list[int]) -> bool:
-        """Do the stones of a chain touch no stone beside it, and does nothing push back on them?"""
+        """Does a chain span, do its stones touch no stone beside it, and does nothing push back on them?"""
+        if np.ptp(self.assembly.middle[joints, 0]) < 0.5 * np.ptp(self.assembly.middle[joints, 1]):
+            return False  # upright: the loads meet the line far below
         inner = self._inner(joints) - {GROUND}
         resistance = self.loads.resistance
         pushed = set() if resistance is None else set(resistance.block.tolist())

@@ -89,6 +89,10 @@ class LimitAnalysis:
         self._cuts: Constraints | None = None
         self._programme: Programme | None = None
 
+    def crush_as(self, other: "LimitAnalysis") -> None:
+        """Begin with the tangent planes of crushing that another found: the same stones, strength and dead weight."""
+        self._cuts = other._cuts
+
     @staticmethod
     def _rows(joint: np.ndarray, coefficient: tuple[float, float, float]) -> Constraints:
         k = len(joint)
@@ -216,9 +220,7 @@ class LimitAnalysis:
         """True where an admissible thrust line exists, upright or at a given gamma."""
         try:
             if self._crush is not None:  # without a cost the tangent planes of crushing would be sought all around
-                most, least = (
-                    -d * self.optimise(self._gamma_cost(-d), (-BOUND, BOUND))[0].value for d in (1.0, -1.0)
-                )
+                most, least = (-d * self.optimise(self._gamma_cost(-d), (-BOUND, BOUND))[0].value for d in (1.0, -1.0))
                 return least <= gamma <= most
             self.optimise(np.zeros(self.system.unknowns), (gamma, gamma))
         except NoEquilibrium:

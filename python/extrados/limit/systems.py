@@ -116,10 +116,9 @@ class Sparse:
         column.append(np.full(len(moved), self.unknowns - 1))
         value.append(live[moved])
         if loads.resistance is not None:
-            one, wrench = loads.resistance.block, loads.resistance.wrench / unit
-            row.append((3 * one[:, None] + np.arange(3)).ravel())
+            row.append((3 * loads.resistance.block[:, None] + np.arange(3)).ravel())
             column.append(np.repeat(3 * m + np.arange(loads.pushes), 3))
-            value.append(wrench.ravel())
+            value.append((loads.resistance.wrench / unit).ravel())
         entries = np.concatenate(value), (np.concatenate(row), np.concatenate(column))
         self.matrix = sparse.csr_array(entries, shape=(self.equations, self.unknowns))
         self.right = -(loads.dead / unit).ravel()

@@ -13,6 +13,7 @@ from extrados.results.store import Stored
 
 MOST_FLOW = 3.0  # points: width of the greatest force between stones
 HATCH = "#cfc6b2"
+LONG = 0.5  # height over length: below it section and mechanism stand one over the other
 MOST_LETTERS = 8  # hinges of a moving load: letters of more would run into each other
 FILL, PAVED = "#f3ead6", "#b9b4aa"
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
@@ -442,7 +443,9 @@ def _load_marks(ax: Axes, run: Stored, name: str, road: float, size: float) -> N
             "", (x, road), (x, road + 0.12 * size), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}, zorder=6
         )
     for start, stop in run.array(name, "even_load"):
-        ax.fill_between([start, stop], road, road + 0.03 * size, color=style.THRUST, alpha=0.45, linewidth=0.0, zorder=4)
+        ax.fill_between(
+            [start, stop], road, road + 0.03 * size, color=style.THRUST, alpha=0.45, linewidth=0.0, zorder=4
+        )
 
 
 def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
@@ -467,7 +470,14 @@ def _zones(ax: Axes, run: Stored, name: str, links: list[np.ndarray]) -> None:
     inner, outer = run.array(name, "zone_inner"), run.array(name, "zone_outer")
     for i, joints in enumerate(links):
         band = np.concatenate([inner[joints], outer[joints][::-1]])
-        ax.fill(*band.T, color=style.THRUST, alpha=0.35, linewidth=0.0, zorder=2.5, label="zone of thrust" if i == 0 else "_")
+        ax.fill(
+            *band.T,
+            color=style.THRUST,
+            alpha=0.35,
+            linewidth=0.0,
+            zorder=2.5,
+            label="zone of thrust" if i == 0 else "_",
+        )
 
 
 def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -480,7 +490,9 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     links = [joints[a:b] for a, b in itertools.pairwise(start)]
     point, envelope = run.array(name, "collapse_point"), run.array(name, "envelope_point")
     tall = (road - min(float(o[:, 1].min()) for o in blocks)) / size + 0.15
-    with style.figure(11.5, float(np.clip(5.6 * tall + 1.3, 3.2, 8.0)), columns=2) as (fig, (ax, moved)):
+    long = tall < LONG
+    height = float(np.clip((19.0 if long else 5.6) * tall + 1.5, 3.2, 8.0))
+    with style.figure(9.0 if long else 11.5, height, rows=1 + long, columns=2 - long) as (fig, (ax, moved)):
         earth(ax, run, name)
         stone(ax, blocks)
         for i, link in enumerate(links):
@@ -514,13 +526,17 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             style.save(fig, folder, f"{name}-worst"),
             f"The most dangerous place: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
         )]  # fmt: skip
+    if len(place) == 1:
+        return found
     adequacy = "adequacy" in run.arrays[name]
     value = run.array(name, "adequacy") if adequacy else run.array(name, "capacity") / 1e3
     way = run.array(name, "way")
     with style.figure(7.5, 3.6) as (fig, (curve,)):
         for sense, colour, label in ((1, style.THRUST, "heading to +x"), (-1, style.HINGE, "heading to -x")):
             if (way == sense).any():
-                curve.plot(place[way == sense], value[way == sense], color=colour, marker=".", markersize=3, label=label)
+                curve.plot(
+                    place[way == sense], value[way == sense], color=colour, marker=".", markersize=3, label=label
+                )
         if (way < 0).any():
             curve.legend()
         if adequacy:
@@ -530,7 +546,9 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         curve.set_xlabel("x of the first axle [m]")
         curve.set_ylabel("adequacy factor" if adequacy else "load at collapse [kN]")
         curve.set_title("Adequacy over place" if adequacy else "Load at collapse over place")
-        found.append((style.save(fig, folder, f"{name}-places"), "What brings it down, over the place of the first axle."))
+        found.append(
+            (style.save(fig, folder, f"{name}-places"), "What brings it down, over the place of the first axle.")
+        )
     return found
 
 

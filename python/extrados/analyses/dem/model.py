@@ -10,8 +10,8 @@ from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.tables import DemTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.rigid import RigidBodies
 from extrados.building.geometry.earth import passive_left_out
+from extrados.building.geometry.rigid import RigidBodies
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.core import dem

@@ -78,11 +78,11 @@ class Places:
         axles, (force, x, block) = self._axles(k), self._even(k)
         every = np.ones(len(force), dtype=bool)
         starts = [every] if not self.adverse or not len(force) else [every, ~every] if axles.any() else [every]
-        best = None
+        best, limit = None, None
         for standing in starts:
             for _ in range(PATTERNS):
                 live = axles + pressed(np.where(standing, force, 0.0), x, block, len(axles))
-                found = self._under(live, standing)
+                found, limit = self.under(live, standing, limit)
                 if found is None or (best is not None and found.factor >= best.factor * (1.0 - 1e-9)):
                     break
                 best = found
@@ -95,20 +95,25 @@ class Places:
                 standing = downward
         return best
 
-    def _under(self, live: np.ndarray, standing: np.ndarray) -> Collapse | None:
+    def under(
+        self, live: np.ndarray, standing: np.ndarray, before: LimitAnalysis | None = None
+    ) -> tuple[Collapse | None, LimitAnalysis | None]:
+        """Collapse under given loads on the blocks, None where they bring nothing down; crushing goes on from `before`."""
         total = -float(live[:, 1].sum())
         if total <= 0.0:
-            return None
+            return None, before
         scale = self.dead.scale / total
         loads = Loads(self.dead.dead, live * scale, self.dead.resistance)
         limit = LimitAnalysis(
             self.assembly, self.friction, strength=self.strength, associated=self.associated, loads=loads
         )
+        if before is not None:
+            limit.crush_as(before)
         try:
             state, mechanism = limit.collapse(1)
         except NoEquilibrium:
-            return None
-        return Collapse(state, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing)
+            return None, limit
+        return Collapse(state, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing), limit
 
     def at(self, k: int) -> np.ndarray:
         """Where the axles stand [m]."""
@@ -206,7 +211,9 @@ def run(context: Context, options: MovingLoad) -> Result:
     low, high = _way(assembly, chain)
     train = train_of(options, assembly.depth)
     if options.width is not None and options.width > assembly.depth:
-        raise Refused(f"width: {options.width:g} m is more than the depth of the {structure.word}, {assembly.depth:g} m")
+        raise Refused(
+            f"width: {options.width:g} m is more than the depth of the {structure.word}, {assembly.depth:g} m"
+        )
     dead = factored(assembly, loads_of(assembly, options), factors)
     # The whole depth stands for the strip that carries the load: as much heavier is the load on all of it.
     strip = assembly.depth / (options.width or assembly.depth)
@@ -226,9 +233,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         capacity = factor * options.force * factors.live * factors.dynamic
     k = int(factor.argmin())
     if not np.isfinite(factor[k]):
-        raise Refused(
-            f"no load of this kind brings the {structure.word} down: it only presses the joints together"
-        )
+        raise Refused(f"no load of this kind brings the {structure.word} down: it only presses the joints together")
     worst = job.collapse(k)
     if worst is None:  # the sweep found it by the same steps
         raise Refused("the most dangerous place was not found again")
@@ -238,7 +243,11 @@ def run(context: Context, options: MovingLoad) -> Result:
     if options.force is not None:
         asked |= {"load_N": options.force, "safety_factor": capacity[k] / options.force}
     if train.known:
-        asked |= {"adequacy_factor": float(factor[k]), "train": train.name, "live_load_factor": factors.live * factors.dynamic}
+        asked |= {
+            "adequacy_factor": float(factor[k]),
+            "train": train.name,
+            "live_load_factor": factors.live * factors.dynamic,
+        }
     r = out.MovingLoad(
         chain=chain,
         collapse_load_N=float(capacity[k]),
@@ -277,7 +286,9 @@ def run(context: Context, options: MovingLoad) -> Result:
     columns = {"place": places, "collapse_load": finite, "mechanism": mechanisms}
     if train.known:
         adequacy = np.where(np.isinf(factor), np.nan, factor)
-        result.arrays["adequacy"] = Array(adequacy, ("place",), "", "multiple of the factored train that brings it down")
+        result.arrays["adequacy"] = Array(
+            adequacy, ("place",), "", "multiple of the factored train that brings it down"
+        )
         columns = {"place": places, "way": ways, "adequacy": adequacy, "collapse_load": finite, "mechanism": mechanisms}
     result.tables = {"moving_load": TableData(columns, {"place": "m", "collapse_load": "N"})}
     result.answer = _words(context, options, r, assembly.depth)

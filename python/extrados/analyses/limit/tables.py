@@ -121,10 +121,10 @@ class MovingLoad(LimitAnalysisTable):
     shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=200)
     force: Force | None = key(None, "the load itself; the safety factor is told when it is given", gt=0)
     axle_loads: list[Force] | None = key(None, "load of each axle, in place of shares and force", max_length=200)
-    uniform: list[UniformLoad] = key([], "even loads along the train; they need axle_loads, or axles = []", max_length=50)
-    adverse: bool = key(
-        True, "even loads stand only where they press the mechanism on; false: on all of their length"
+    uniform: list[UniformLoad] = key(
+        [], "even loads along the train; they need axle_loads, or axles = []", max_length=50
     )
+    adverse: bool = key(True, "even loads stand only where they press the mechanism on; false: on all of their length")
     alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
     lanes: int | None = key(None, "notional lanes that LM1 loads; default all that the width holds", ge=1, le=20)
     width: Length | None = key(
@@ -134,7 +134,9 @@ class MovingLoad(LimitAnalysisTable):
     factors: PartialFactors = key(PartialFactors(), "partial factors")
     both_ways: bool = key(False, "let the train cross to the left too, its first axle ahead")
     count: int = key(81, "number of places along the span", ge=3, le=2000)
-    places: list[Length] | None = key(None, "places of the first axle, in place of count", min_length=1, max_length=2000)
+    places: list[Length] | None = key(
+        None, "places of the first axle, in place of count", min_length=1, max_length=2000
+    )
 
     @model_validator(mode="after")
     def _axles(self) -> "MovingLoad":
@@ -144,7 +146,9 @@ class MovingLoad(LimitAnalysisTable):
         if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
             raise ValueError("axle_loads: expected one load above 0 for each of axles")
         if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
-            raise ValueError("train stands in place of axles, shares, force, axle_loads and uniform: give the one or the others")
+            raise ValueError(
+                "train stands in place of axles, shares, force, axle_loads and uniform: give the one or the others"
+            )
         if self.axle_loads is not None and (self.shares is not None or self.force is not None):
             raise ValueError("axle_loads stands in place of shares and force")
         if self.uniform and self.axle_loads is None and self.axles:

@@ -39,7 +39,11 @@ def train_of(options: MovingLoad, depth: float) -> Train:
     if options.train is None:
         even = np.array(
             [
-                (-FOR_EVER if u.start is None else u.start, FOR_EVER if u.stop is None else u.stop, options.alpha * u.load)
+                (
+                    -FOR_EVER if u.start is None else u.start,
+                    FOR_EVER if u.stop is None else u.stop,
+                    options.alpha * u.load,
+                )
                 for u in options.uniform
             ]
         ).reshape(-1, 3)

@@ -222,8 +222,9 @@ class _Bridge:
         self.backing: list[int] = []
         if bridge.backing is not None:
             for k, support in enumerate(ends):
-                left_arch, right_arch = (self.arches[k - 1] if k else None, (self.arches + [None])[k])
-                self._backing(bridge.backing, support, left_arch, right_arch, len(ends) - 1, k)
+                left_arch = self.arches[k - 1] if k else None
+                right_arch = self.arches[k] if k < len(self.arches) else None
+                self._backing(f"backing {k + 1}", bridge.backing.height, support, left_arch, right_arch)
 
     def _arch(self, prefix: str, line: np.ndarray, left: int, right: int) -> _Arch:
         n, rings = len(line) - 1, line.shape[1] - 1
@@ -288,12 +289,8 @@ class _Bridge:
             self.chains[name] = joints[::-1]
         return below
 
-    def _backing(
-        self, table: Backing, support: int, left: _Arch | None, right: _Arch | None, last: int, place: int
-    ) -> None:
-        """The body over one springing: over a pier, or at an end of the bridge."""
-        name = "backing" if last < 1 else f"backing {place + 1}"
-        level = table.height
+    def _backing(self, name: str, level: float, support: int, left: _Arch | None, right: _Arch | None) -> None:
+        """The body over one springing up to a level: over a pier, or at an end of the bridge where an arch is None."""
         outline: list[np.ndarray] = []
         joints: list[tuple[str, np.ndarray, np.ndarray, int, int]] = []
         for arch, from_crown in ((left, True), (right, False)):
@@ -402,7 +399,7 @@ class Bridge(Structure):
     starter: ClassVar = {
         "depth": "5.0",
         "spans": '[{ shape = "segmental", span = 8.0, rise = 2.0, thickness = 0.5 }]',
-        "fill": '{ cover = 0.3, density = 2000, friction_angle = 30, passive = 0.0 }',
+        "fill": "{ cover = 0.3, density = 2000, friction_angle = 30, passive = 0.0 }",
     }
     kind: Literal["bridge"]
     crossed: ClassVar[Crossed] = "top"
