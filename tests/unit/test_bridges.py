@@ -15,7 +15,7 @@ from extrados.analyses.run import run_analyses
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.earth import Earth, Skyline, skyline
-from extrados.building.geometry.polygons import signed_area
+from extrados.building.geometry.polygons import properties, signed_area
 from extrados.building.geometry.rigid import rigid_bodies
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.bridge import Bridge, Span, intrados, make_bridge
@@ -180,8 +180,14 @@ def test_fill_weighs_what_lies_between_the_stones_and_the_road() -> None:
     width = float(np.ptp(q[:, 0]))
     area = width * 2.9 - under  # up to rise + thickness + cover
     assert made.fill[:, 0].sum() == pytest.approx(3.0 * (1900.0 * area + 2300.0 * 0.1 * width))
-    moment = made.fill[:, 0] @ made.fill[:, 1:]
-    assert moment[0] / made.fill[:, 0].sum() == pytest.approx(4.0)
+    soil, paved = made.earth.masses(20, 3.0)
+    for i in (0, 3):
+        column = np.array([q[i], q[i + 1], [q[i + 1, 0], 2.9], [q[i, 0], 2.9]])
+        area, centroid, _ = properties(column)
+        assert soil[i] == pytest.approx([3.0 * 1900.0 * area, *centroid])
+        assert paved[i] == pytest.approx([3.0 * 230.0 * np.ptp(column[:, 0]), 0.5 * (q[i, 0] + q[i + 1, 0]), 2.95])
+        both = (soil[i, 0] * soil[i, 1:] + paved[i, 0] * paved[i, 1:]) / made.fill[i, 0]
+        assert made.fill[i, 1:] == pytest.approx(both)
 
 
 def test_passive_pressure_adds_up_to_rankines() -> None:
@@ -281,11 +287,12 @@ def test_pushes_agree_with_an_outside_programme(backing: dict[str, float] | None
                 assert mechanism.upper_bound == pytest.approx(state.gamma, rel=1e-8)
 
 
-def test_fill_pushes_only_where_the_ring_moves_into_it() -> None:
+@pytest.mark.parametrize("form", ["reduced", "sparse"])
+def test_fill_pushes_only_where_the_ring_moves_into_it(form: str) -> None:
     a = bridge(fill=FILL)
     loads = tilt_loads(a)
     loads = Loads(loads.dead, under_load(a.earth, len(a.mass), 2.0, 1e5, 0.3), loads.resistance)
-    state, mechanism = LimitAnalysis(a, loads=loads).collapse(1)
+    state, mechanism = LimitAnalysis(a, loads=loads, form=form).collapse(1)
     push = loads.resistance
     x, y = a.centroid[push.block].T
     v = mechanism.velocity[push.block]
@@ -475,6 +482,9 @@ def test_zones_of_thrust_hold_the_strength() -> None:
     width = np.hypot(*(weak["zone_outer"] - weak["zone_inner"]).T)
     k = int(weak["envelope_normal"][0].argmax())
     assert width[k] * 2e6 == pytest.approx(weak["envelope_normal"][0, k]) == weak["greatest_compression_N"]
+    envelope = weak.tables["moving_load_envelope"].columns
+    assert envelope["greatest_compression"].max() == pytest.approx(weak["greatest_compression_N"] / 1e3)
+    assert (envelope["least_position"] >= 0.0).all() and (envelope["greatest_position"] <= 1.0).all()
 
 
 # Other strategies
@@ -496,3 +506,16 @@ def test_abutments_on_one_level_with_a_deeper_pier_between_have_supports_of_thei
     bodies = rigid_bodies(made)
     supports = bodies.names[bodies.count :]
     assert len(supports) == 3 and all("," not in name for name in supports)
+
+
+def test_a_sweep_reaches_into_fill_and_spans() -> None:
+    swept = run({"kind": "sweep", "vary": "spans.0.rise", "values": [1.5, 2.0, 2.5], "locate": False}, fill=FILL)
+    plain = run({"kind": "tilt"}, fill=FILL)
+    assert swept["collapse_accelerations_g"][1] == pytest.approx(plain["collapse_acceleration_g"], rel=1e-9)
+    soil = run({"kind": "sweep", "vary": "fill.passive", "values": [0.0, 0.5, 1.0], "locate": False}, fill=FILL)
+    assert soil["collapse_accelerations_g"][1] == pytest.approx(plain["collapse_acceleration_g"], rel=1e-9)
+    assert np.all(np.diff(soil["collapse_accelerations_g"]) > 0.0)
+    assert (
+        "a number from 0 to 0 in place of '1'"
+        in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
+    )

@@ -22,6 +22,7 @@ from extrados.analyses.limit.variation import signature, spoken
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
 from extrados.building.geometry.earth import skyline
+from extrados.building.structure import Structure
 from extrados.limit.fill import pressed, under_load
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
@@ -291,7 +292,8 @@ def run(context: Context, options: MovingLoad) -> Result:
         )
         columns = {"place": places, "way": ways, "adequacy": adequacy, "collapse_load": finite, "mechanism": mechanisms}
     result.tables = {"moving_load": TableData(columns, {"place": "m", "collapse_load": "N"})}
-    result.answer = _words(context, options, r, assembly.depth)
+    result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
+    result.answer = _words(options, r, structure)
     return result
 
 
@@ -319,9 +321,29 @@ def _standing(job: Places, k: int, worst: Collapse) -> np.ndarray:
     return np.array([(x0[a], x1[b - 1]) for a, b in ends.reshape(-1, 2)]).reshape(-1, 2)
 
 
-def _words(context: Context, options: MovingLoad, r: out.MovingLoad, depth: float) -> str:
-    what = r.chain or context.building.structure.word
-    way = "span" if r.chain or context.building.structure.crossed == "arch" else "way"
+def _envelope(assembly: Assembly, line: np.ndarray, normal: np.ndarray) -> TableData:
+    """Of each joint over all places at collapse: greatest compression, and the ends of where the thrust line passes."""
+    share = ((line - assembly.p) * assembly.tangent).sum(axis=2) / assembly.length
+    pressed_on = (normal > 0.0) & np.isfinite(share)
+    some = pressed_on.any(axis=0)
+    low, high = (
+        np.where(some, getattr(np.where(pressed_on, share, fill), end)(axis=0), np.nan)
+        for end, fill in (("min", np.inf), ("max", -np.inf))
+    )
+    return TableData(
+        {
+            "joint": assembly.joint_names,
+            "greatest_compression": np.where(pressed_on, normal, 0.0).max(axis=0) / assembly.depth / 1e3,
+            "least_position": low,
+            "greatest_position": high,
+        },
+        {"greatest_compression": "kN/m"},
+    )
+
+
+def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
+    what = r.chain or structure.word
+    way = "span" if r.chain or structure.crossed == "arch" else "way"
     place = f"x = {r.worst_place_m:.2f} m ({100 * r.worst_place_over_span:.0f} % of the {way})"
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""

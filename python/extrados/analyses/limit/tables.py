@@ -51,7 +51,7 @@ class Sweep(LimitAnalysisTable):
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
-        about="key to vary: of [structure], for instance buttress_width or right.buttress_width, or of another table, for "
+        about="key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise, or of another table, for "
         "instance joints.friction or material.compressive_strength"
     )
     start: float | None = key(None, "first value, in the unit of the key")
