@@ -335,6 +335,13 @@ def test_rings_that_part_are_weaker_and_slide_at_their_own_friction() -> None:
     assert smooth < 0.8 * rough and rough < whole
 
 
+def test_a_load_at_rest_spreads_through_the_fill() -> None:
+    """Half the collapse load at rest and half crossing is the collapse load."""
+    whole = run(moving([2.0]), fill=FILL)["collapse_load_N"]
+    half = run(moving([2.0], load=[{"x": 2.0, "force": 0.5 * whole}]), fill=FILL)["collapse_load_N"]
+    assert half == pytest.approx(0.5 * whole, rel=1e-7)
+
+
 # Trains
 
 

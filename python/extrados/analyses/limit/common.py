@@ -12,6 +12,7 @@ from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
 from extrados.limit.equilibrium import Disconnected
+from extrados.limit.fill import under_load
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
@@ -20,6 +21,8 @@ from extrados.results.model import Array
 
 #: Bounds and mechanism must agree this closely, relative to gamma, or the answer is not given.
 GAP = 1e-8
+#: Length over which a point load on earth presses [m]
+CONTACT = 0.3
 
 
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
@@ -55,6 +58,9 @@ def loads_of(assembly: Assembly, options: Any) -> Loads:
     loads = tilt_loads(assembly)
     extra = np.zeros_like(loads.dead)
     for load in getattr(options, "load", []):
+        if assembly.earth is not None:
+            extra += under_load(assembly.earth, len(extra), load.x, load.force, CONTACT)
+            continue
         block, y = block_under(assembly, load.x)
         extra += forces_at(len(extra), block, np.array([load.x, y]), (0.0, -load.force))
     return loads.with_dead(extra)

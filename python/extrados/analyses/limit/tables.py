@@ -14,7 +14,9 @@ ARCHES = ("arch", "pointed-arch", "elliptical-arch")
 class PointLoad(Table):
     """A vertical load that rests on the structure."""
 
-    x: Length = key(about="where it stands; it acts on the highest block below")
+    x: Length = key(
+        about="where it stands; it acts on the highest block below, through the fill of a bridge on all it spreads to"
+    )
     force: Force = key(about="its weight, downward", gt=0)
 
 
