@@ -15,7 +15,7 @@ MOST_FLOW = 3.0  # points: width of the greatest force between stones
 HATCH = "#cfc6b2"
 LONG = 0.5  # height over length: below it section and mechanism stand one over the other
 MOST_LETTERS = 8  # hinges of a moving load: letters of more would run into each other
-FILL, PAVED = "#f3ead6", "#b9b4aa"
+FILL, PAVED, EVEN = "#f3ead6", "#b9b4aa", "#c98a2b"
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
 
@@ -176,6 +176,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [(style.save(fig, folder, f"{name}-collapse"), _caption(r))]
     if "least_line" in run.arrays[name]:
         with style.figure(10.0, height, columns=2, width_ratios=[1.3, 1]) as (fig, (ax, forces)):
+            earth(ax, run, name)
             stone(ax, blocks)
             ground(ax, run, name, _standing(run, name))
             thrust_lines(
@@ -259,6 +260,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     arched = r.chain is not None
     sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
     with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
+        earth(ax, run, name)
         stone(ax, blocks)
         ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
         for which, colour in colours.items():
@@ -442,10 +444,11 @@ def _load_marks(ax: Axes, run: Stored, name: str, road: float, size: float) -> N
         ax.annotate(
             "", (x, road), (x, road + 0.12 * size), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}, zorder=6
         )
-    for start, stop in run.array(name, "even_load"):
+    for i, (start, stop) in enumerate(run.array(name, "even_load")):
         ax.fill_between(
-            [start, stop], road, road + 0.03 * size, color=style.THRUST, alpha=0.45, linewidth=0.0, zorder=4
-        )
+            [start, stop], road, road + 0.03 * size, color=EVEN, alpha=0.7, linewidth=0.0, zorder=4,
+            label="even load" if i == 0 else "_",
+        )  # fmt: skip
 
 
 def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
