@@ -39,16 +39,16 @@ contains
       integer(c_int), intent(out) :: status
       type(linkage) :: mechanism
       type(linkage_state) :: rest
-      type(side_table) :: made
+      type(side_table) :: one_side
       type(table_facts) :: found
       !f2py threadsafe
       table = 0.0_c_double
       facts = 0.0_c_double
       call linkage_new(mass, centroid, inertia, joined, point, row, driver, real(sense, c_double), mechanism, rest, &
          status)
-      if (status == status_ok) call table_new(mechanism, rest, int(side), made, found, status)
-      facts = [made%critical, made%limit, found%lock, found%m, found%dv, found%dh, found%misfit, found%energy]
-      if (status == status_ok) call table_pack(made, table)
+      if (status == status_ok) call table_new(mechanism, rest, int(side), one_side, found, status)
+      facts = [one_side%critical, one_side%limit, found%lock, found%m, found%dv, found%dh, found%misfit, found%energy]
+      if (status == status_ok) call table_pack(one_side, table)
    end subroutine tabulate
 
    !> M, M'/2, V', H and V of a table at nq rotations; `inside` is 0 past its end, and the numbers are zero there

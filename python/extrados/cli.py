@@ -58,10 +58,11 @@ class _Progress:
             if self.bar is None:
                 from rich.progress import Progress
 
-                self.bar = Progress(console=err_console._rich, transient=True)
+                # without its refreshing thread: a process with threads of its own draws its figures alone
+                self.bar = Progress(console=err_console._rich, transient=True, auto_refresh=False)
                 self.bar.start()
                 self.task = self.bar.add_task(text, total=total)
-            self.bar.update(self.task, completed=done, total=total, description=text)
+            self.bar.update(self.task, completed=done, total=total, description=text, refresh=True)
         elif now - self.last > 5.0:
             err_console.print(f"{text}: {100 * done / max(total, 1e-300):.0f} %", markup=False)
             self.last = now

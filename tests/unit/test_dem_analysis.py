@@ -139,7 +139,7 @@ def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     search = dem_domain.Search(first, options, model, [model.values], 4)
     answers = search.fails(asked)
     with monkeypatch.context() as patch:
-        patch.setattr(dem, "run", lambda *args, **keys: pytest.fail("was computed again"))
+        patch.setattr(dem.Model, "run", lambda *args, **keys: pytest.fail("was computed again"))
         again = dem_domain.Search(Context(deck, out=tmp_path / "run", resume=True), options, model, [model.values], 4)
         assert again.fails(asked) == answers
         assert (again.steps, again.residual) == (search.steps, search.residual) and search.steps > 0 < search.residual
@@ -153,14 +153,14 @@ def interrupt_from(monkeypatch: pytest.MonkeyPatch, first: int, **change) -> lis
 
     from extrados.core import dem
 
-    real, count = dem.run, []
+    real, count = dem.Model.run, []
 
     def run(*args, **keys):
         count.append(len(count) + 1)
         found = real(*args, **keys)
         return found if len(count) < first else replace(found, **(change or {"interrupted": True}))
 
-    monkeypatch.setattr(dem, "run", run)
+    monkeypatch.setattr(dem.Model, "run", run)
     return count
 
 

@@ -143,6 +143,11 @@ class Building:
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
         return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
 
+    @property
+    def meshed_by_stones(self) -> bool:
+        """Whether its finite elements are stones with joints between them."""
+        return self.structure is not None and type(self.structure).mesh is Structure.mesh
+
     def _structure(self) -> Structure:
         if self.structure is None:
             raise NoView("the deck has no [structure]")

@@ -117,8 +117,8 @@ def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] 
     for i, (name, rays) in enumerate(polygons.items()):
         colour = colours[i % len(colours)]
         tips = rays / 1e3
-        for tip in tips[:: max(1, len(tips) // 40)]:
-            ax.plot([0.0, tip[0]], [0.0, tip[1]], color=colour, linewidth=0.4, alpha=0.7)
+        shown = [[(0.0, 0.0), tip] for tip in tips[:: max(1, len(tips) // 40)]]
+        ax.add_collection(LineCollection(shown, linewidths=0.4, colors=colour, alpha=0.7, capstyle="projecting"))
         ax.plot(*tips.T, color=colour, linewidth=1.5, marker=".", markersize=2.5, label=name)
     ax.plot(0.0, 0.0, "o", color="black", markersize=3)
     ax.annotate("pole", (0.0, 0.0), textcoords="offset points", xytext=(-4, -9), ha="right", fontsize=7)
