@@ -20,6 +20,7 @@ from extrados.core.sla_parts import (
     Behaviour,
     Events,
     Freedoms,
+    Joints,
     Monitor,
     Plane,
     Softening,
@@ -40,6 +41,7 @@ __all__ = [
     "Events",
     "FreeNode",
     "Freedoms",
+    "Joints",
     "Model",
     "Monitor",
     "Plane",
@@ -58,6 +60,9 @@ REPORT = (
     "tooth_n", "tooth_s", "lambda_lo", "lambda_hi", "volume", "crush_n", "crush_s", "shut",
 )  # fmt: skip
 MOST_TEETH = 4096
+#: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
+#: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
+HELD, HELD_RATE, MARK, MODE = 1, 6, 8, 10
 
 
 class FreeNode(ValueError):
@@ -134,7 +139,7 @@ class Model(Owner):
         self,
         xy: npt.ArrayLike,
         freedoms: Freedoms,
-        groups: Sequence[Plane | Bars | Springs],
+        groups: Sequence[Plane | Joints | Bars | Springs],
         behaviour: Behaviour | None = None,
         *,
         algorithm: str = "update",
@@ -145,7 +150,7 @@ class Model(Owner):
         if algorithm not in ("update", "refactor"):
             raise ValueError(f"algorithm is {algorithm!r}, expected 'update' or 'refactor'")
         self.behaviour = behaviour = behaviour or Behaviour()
-        self.plane_points: list[tuple[Plane, int, int]] = []  # group, first point, points per element
+        self.plane_points: list[tuple[Plane | Joints, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
         place = real("xy", np.transpose(xy), (2, None))
         self.nodes = place.shape[1]
@@ -185,15 +190,15 @@ class Model(Owner):
             self.close()
             raise
 
-    def _tables(self, count: int, group: Plane | Bars) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Hand over the tooth tables of a group; Young's modulus and, for tension and compression, the table of
-        each element (1-based, 0 none)."""
-        young, band = _each("young", group.young, count), _each("band", group.band, count)
+    def _tables(self, count: int, laws: Sequence[tuple]) -> list[np.ndarray]:
+        """Hand over the tooth tables of a group, of laws (softening, modulus, band); the table of each element by law
+        (1-based, 0 none)."""
         found: dict[tuple[float, ...], int] = {}
         numbers = []
-        for law in (group.tension, group.compression):
+        for law, modulus, width in laws:
+            young, band = _each("young", modulus, count), _each("band", width, count)
             one_for_all = law is None or isinstance(law, Softening)
-            each = [law] * count if one_for_all else list(law)  # type: ignore[arg-type]
+            each = [law] * count if one_for_all else list(law)
             if len(each) != count:
                 raise ValueError(f"{len(each)} softening laws for {count} elements")
             number = np.zeros(count, dtype=np.int32)
@@ -215,21 +220,30 @@ class Model(Owner):
                     f"band {width:g} m, the largest is {largest:g} m",
                 )
             check(status, "softening laws")
-        return young, numbers[0], numbers[1]
+        return numbers
 
-    def _add(self, group: Plane | Bars | Springs) -> None:
+    def _add(self, group: Plane | Joints | Bars | Springs) -> None:
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        per = 2 if isinstance(group, Bars) else ELEMENTS[group.kind]
+        per = 2 if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
-        young, tension, compression = self._tables(count, group)
+        if isinstance(group, Joints):
+            kn, ks = group.normal_stiffness, group.shear_stiffness
+            laws: list[tuple] = [(group.tension, kn, 1.0), (group.compression, kn, 1.0), (group.cohesion, ks, 1.0)]
+        else:
+            young = _each("young", group.young, count)
+            laws = [(law, young, group.band) for law in (group.tension, group.compression)]
+        tables = self._tables(count, laws)
         if isinstance(group, Bars):
             bad, status = _core.api_sla_model.bars(
-                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(tension, compression)
+                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(*tables)
             )
             what = "bar"
+        elif isinstance(group, Joints):
+            bad, status = self._add_joints(group, connect, tables)
+            what = "joint element"
         else:
             axis = np.broadcast_to(np.asarray(group.axis, dtype=float), (count,))
             given = np.isfinite(axis)
@@ -239,14 +253,26 @@ class Model(Owner):
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(tension, compression, (1 + int(group.joint)) * given.astype(np.int32)),
+                properties, _rows(*tables, (1 + int(group.joint)) * given.astype(np.int32)),
             )  # fmt: skip
             what = "element"
+        if not isinstance(group, Bars):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
             self.plane_points.append((group, first, group.points_each))
         if bad:
             raise BadElement(int(bad) - 1, what)
         check(status, f"{what}s")
+
+    def _add_joints(self, group: Joints, connect: np.ndarray, tables: list[np.ndarray]) -> tuple[int, int]:
+        count = connect.shape[1]
+        friction = np.broadcast_to(np.asarray(group.friction, dtype=float), (count,))
+        properties = _rows(
+            *real("area", np.transpose(group.area), (2, count)), _each("normal stiffness", group.normal_stiffness, count),
+            _each("shear stiffness", group.shear_stiffness, count), np.where(np.isnan(friction), -1.0, friction),
+            _each("small", group.small, count), *real("normal", np.transpose(group.normal), (2, count)),
+        )  # fmt: skip
+        dry = np.broadcast_to(np.asarray(group.dry, dtype=np.int32), (count,))
+        return _core.api_sla_joints.joints(self.handle, connect, properties, _rows(*tables, dry), float(group.ripple))
 
     def _add_springs(self, group: Springs) -> None:
         count = len(group.stiffness)
@@ -346,11 +372,29 @@ class Model(Owner):
         check(status, "stored damage")
         self.factorise()
 
+    def end_stage(self, load: float) -> None:
+        """Before other loads: friction that slides sticks where it is at the multiplier reached, with the force it has."""
+        damage, report = self.damage(), self.report(load)
+        for group, first, per in self.plane_points:
+            if not isinstance(group, Joints):
+                continue
+            at = first + np.flatnonzero(damage[MODE, first : first + per * len(group.connect)] % 4)
+            slip = (damage[HELD, at] + load * damage[HELD_RATE, at]) / (1.0 - report["ratio_s"][at])
+            damage[MARK, at] = report["strain_ns"][at] - slip
+            damage[HELD, at] = damage[HELD_RATE, at] = damage[MODE, at] = 0.0
+        self.set_damage(damage)
+
     def standing(self) -> np.ndarray:
         """Where the loop stands between two calls of `run`, beside loads and damage."""
         values, status = _core.api_sla.standing(self.handle)
         check(status, "where the events stand")
         return np.array(values)
+
+    def standing_at(self, load: float) -> np.ndarray:
+        """Where the loop stands at the start of a stage, but at a multiplier."""
+        standing = self.standing()
+        standing[3] = load
+        return standing
 
     def renew(self, damage: npt.ArrayLike, standing: npt.ArrayLike) -> None:
         """Go on from a damage and where the loop stood, under the loads of the stage, with a new factor.

@@ -56,6 +56,10 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
                 int(get["event_point"][event - 1]),
                 totals,
             )
+        if model.slides and event < len(get["event_point"]):
+            raise Refused("resume_event: joints that slide keep their state only at the end of a run; leave it out")
+        if model.slides:
+            return get["damage_end"].T, earlier
         damage = damage_before(
             get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
         )

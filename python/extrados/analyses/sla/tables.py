@@ -80,7 +80,7 @@ class Sla(BuildingAnalysis):
     view: ClassVar = "mesh"
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
-        "material.compressive_strength", "joints.tension",
+        "material.compressive_strength", "joints.tension", "joints.friction", "joints.cohesion",
     )  # fmt: skip
     starter_structure: ClassVar = "panel"
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
@@ -113,6 +113,12 @@ class Sla(BuildingAnalysis):
     )
     teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
     ripple: float = key(0.1, "half-width p of the teeth over the strength", source="thesis 4.2", ge=0.005, le=0.5)
+    friction_ripple: float = key(
+        0.02,
+        "half-width of the steps by which friction follows the normal stress of joints, over the friction",
+        ge=0.001,
+        le=0.1,
+    )
     overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
     crack_band: Length | None = key(
         None, "crack band width h; default sqrt(2 A) of linear and sqrt(A) of quadratic elements", gt=0
