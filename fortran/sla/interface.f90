@@ -615,7 +615,8 @@ contains
    end subroutine state
 
    !> Rows as of a plane point: jumps [m] for strains, 1 across and 3 along the joint; 4 sigma, 6 tau; 7-8 the normal;
-   !> 9 and 10 the stiffness left across and along; 11 tension tooth, 12 tooth of the cohesion; 15 area
+   !> 9 and 10 the stiffness left across and along; 11 tension tooth, 12 tooth of the cohesion; 15 area;
+   !> 19 the band of its tooth tables [m]
    pure subroutine report(group, ua, ub, lambda, noise, values)
       class(interface_group), intent(in) :: group
       real(wp), intent(in) :: ua(0:)
@@ -652,6 +653,7 @@ contains
             values(16, p) = real(group%crush(p), wp)
             values(17, p) = 1.0_wp
             values(18, p) = real(group%shut(p), wp)
+            values(19, p) = 1.0_wp
          end do
       end do
    end subroutine report

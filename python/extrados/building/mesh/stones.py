@@ -108,6 +108,7 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
                 kind, connect, gauss, np.full(n, assembly.depth), np.zeros(n, dtype=int), np.zeros(n, dtype=bool),
                 np.full(n, np.nan),
             ))  # fmt: skip
+    building.refuse_mixture()
     if rows_of_elements:
         materials, group = _rows(building, assembly, thickness, nodes, row, joint)
     else:
