@@ -25,7 +25,7 @@ MAY_IMPORT = {
     "motions": {"core", "schema"},
     "tables": {"building", "schema"},
     "decks": {"kinds", "tables", "building", "schema"},
-    "results": {"kinds", "schema"},
+    "results": {"kinds", "schema", "_build_info"},
     "analyses": {
         "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
         "schema",

@@ -79,8 +79,13 @@ class _Batches:
         self.again = "; --resume goes on from here" if context.checkpoint is not None else ""
         if context.checkpoint is not None:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
+            end = 0
             for first, arrays in context.checkpoint.load(self.name, context.warnings):
-                self.parts[first] = arrays
+                if end <= first <= count - _rows(arrays):
+                    self.parts[first] = arrays
+                    end = first + _rows(arrays)
+                else:  # of another run that was going on at the same time
+                    context.warnings.append(f"a kept batch overlaps others and is left out: member {first} on")
         self.done = sum(_rows(p) for p in self.parts.values())
         tell(self.done)
 

@@ -11,7 +11,7 @@ from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.core.errors import Cancelled, CoreError
-from extrados.limit.solver import NoAnswer
+from extrados.limit.solver import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
@@ -44,7 +44,7 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]
-    except (Refused, BadGeometry) as error:
+    except (Refused, BadGeometry, Immovable) as error:
         result = Result(options.kind, "refused", str(error))
     except Unfinished as error:
         result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))
