@@ -33,6 +33,7 @@ MAY_IMPORT = {
     "plots": {"kinds", "results", "schema"},
     "running": {"analyses", "tables", "building", "decks", "motions", "results", "plots", "schema", "_build_info"},
     "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "schema", "_build_info"},
+    "__main__": {"cli"},
     "": {"analyses", "decks", "running"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit

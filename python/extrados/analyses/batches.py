@@ -19,7 +19,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.core.calls import cancel_requested, interruptible
-from extrados.core.errors import Cancelled
+from extrados.core.errors import Cancelled, status_code
 from extrados.results.checkpoint import fingerprint
 
 #: A batch should take about this long [s]; the first one has few members, to learn their speed.
@@ -65,7 +65,11 @@ class Swept:
 
 def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int) -> dict[str, np.ndarray]:
     """The rows of a batch from those of single members: for jobs whose members take long."""
-    found = [rows(k) for k in range(first, first + count)]
+    found = []
+    for k in range(first, first + count):
+        if cancel_requested():
+            raise Cancelled(status_code("cancelled"), "interrupted")
+        found.append(rows(k))
     return {name: np.stack([one[name] for one in found]) for name in found[0]}
 
 

@@ -88,10 +88,17 @@ def _drawn(tasks: list[tuple]) -> list[Figures]:
     with warnings.catch_warnings():
         # Python warns of the idle threads of the numerical libraries, which drawing does not use
         warnings.filterwarnings("ignore", ".*multi-threaded.*fork", DeprecationWarning)
-        with multiprocessing.get_context("fork").Pool(workers, _begin, (tasks,)) as pool:
+        # signals wait until each process has said how it answers them
+        held = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+        try:
+            pool = multiprocessing.get_context("fork").Pool(workers, _begin, (tasks,))
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, held)
+        with pool:
             return pool.map(_draw_numbered, range(len(tasks)), chunksize=1)
 
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 #: What a forked process is to draw; a run is handed over by the fork, not copied through a pipe
 _tasks: list[tuple] = []
 
@@ -99,6 +106,7 @@ _tasks: list[tuple] = []
 def _begin(tasks: list[tuple]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is answered by the parent, which ends the pool
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
     _tasks[:] = tasks
 
 
@@ -163,7 +171,7 @@ def write_report(folder: Path) -> tuple[Path, dict[str, Figures]]:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.drawing-", dir=within) as place:
             scratch = Path(place)
             drawn = draw(run, scratch)
-            (scratch / REPORT).write_text(_page(run, scratch, drawn), encoding="utf-8")
+            (scratch / REPORT).write_text(_page(run, scratch, drawn), encoding="utf-8", errors="backslashreplace")
             with written.alone(within):
                 names = _put(scratch, folder)
     except OSError as error:

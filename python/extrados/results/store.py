@@ -25,6 +25,7 @@ from extrados.results.model import Array, Result, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
 from extrados.schema import files
+from extrados.schema.text import printable
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
@@ -190,7 +191,7 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
         for name, result in zip(names, results, strict=True):
             for title, table in result.tables.items():
                 suffix = name.removeprefix(result.kind)
-                (folder / f"{title}{suffix}.csv").write_text(csv_text(table), encoding="utf-8")
+                (folder / f"{title}{suffix}.csv").write_text(csv_text(table), encoding="utf-8", newline="")
             for title, content in result.files.items():
                 # a second analysis of a kind keeps its files in a folder of its own, where they find each other
                 target = folder / title if name == result.kind else folder / name / title
@@ -202,7 +203,8 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
             "files": written.sums_of(folder),
         }
         text = json.dumps(plain(summary), indent=1, ensure_ascii=False)
-        (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
+        # names of files may hold bytes that are no text; what replaces them is JSON for the same
+        (folder / SUMMARY).write_text(text + "\n", encoding="utf-8", errors="backslashreplace")
     except OSError as error:
         raise StoreError(f"{folder}: results could not be written: {reason(error)}") from None
 
@@ -213,15 +215,18 @@ def csv_text(table: TableData) -> str:
     writer = csv.writer(out, lineterminator="\n")
     names = list(table.columns)
     units = [table.units.get(name, "") for name in names]
-    writer.writerow([f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)])
+    writer.writerow([_cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)])
     for row in zip(*(np.asarray(c).tolist() for c in table.columns.values()), strict=True):
         writer.writerow([repr(v) if isinstance(v, float) else _cell(v) for v in row])
     return out.getvalue()
 
 
 def _cell(value: Any) -> Any:
-    """Text that a spreadsheet would take for a formula is quoted."""
-    return "'" + value if isinstance(value, str) and value[:1] in ("=", "+", "-", "@") else value
+    """Text that a spreadsheet would take for a formula is quoted, and what a terminal would obey is escaped."""
+    if not isinstance(value, str):
+        return value
+    quote = "'" if value.lstrip()[:1] in ("=", "+", "-", "@") else ""
+    return quote + printable(value)
 
 
 def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
@@ -240,10 +245,11 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
             for title, array in result.arrays.items():
                 data = np.asarray(array.data)
                 if data.dtype.kind in "OU":
-                    data = data.astype(h5py.string_dtype())
+                    shown = [printable(str(text), keep="\n") for text in data.ravel()]
+                    data = np.array(shown, dtype=object).reshape(data.shape).astype(h5py.string_dtype())
                 store = group.create_dataset(title, data=data)
                 store.attrs["unit"] = store.attrs["units"] = array.unit
-                store.attrs["about"] = array.about
+                store.attrs["about"] = printable(array.about, keep="\n")
                 store.attrs["series"] = array.series
                 if array.dims == (title,):
                     store.make_scale(title)
