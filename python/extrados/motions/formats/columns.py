@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from extrados.motions.formats.record import Lines, Record, unit_in
+from extrados.motions.formats.record import Lines, Record, tidy, unit_in
 
 MOST_HEADER = 60
 
@@ -24,7 +24,7 @@ def read(text: Lines) -> list[Record]:
         raise text.error(odd, f"{len(text[odd].split())} columns where {width} stood before")
     short = len(rows[-1][1]) != width  # the last row of a path file may be
     table = text.numbers(rows[:-1] if short else rows).reshape(-1, width)
-    said = " \n".join(header)
+    said = " \n".join(map(tidy, header))
     unit = unit_in(said)
     if width > 1 and (width == 2 or _is_time(table[:, 0])):
         if short:
@@ -43,7 +43,7 @@ def read(text: Lines) -> list[Record]:
         ]
     values = np.append(table.ravel(), text.numbers(rows[-1:])) if short else table.ravel()
     steps = re.search(
-        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d*\.?\d+)\s*s",
+        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d+\.?\d*|\.\d+)\s*s",
         said,
         re.I,
     )

@@ -13,7 +13,7 @@ _QUANTITY = {"VELOCITY": ("velocity", "cm/s"), "DISPLACEMENT": ("displacement", 
 
 
 def recognises(text: Lines) -> bool:
-    return text[1].strip().startswith("*") and re.match(r"\s*(?:\d\s+\S|\*)", text[0]) is not None
+    return text[1].strip().startswith("*") and re.match(r"\s*(?:\d\s+\S|\*)", text.words(0)) is not None
 
 
 def read(text: Lines) -> list[Record]:
@@ -32,5 +32,5 @@ def read(text: Lines) -> list[Record]:
     values, _ = text.fixed(at + comments, count, 10, 8)
     if (abs(values) >= _MISSING).any():
         raise text.error(at + comments, "holds values marked as missing")
-    found = re.search(r"component\s*=\s*(\S+)", text[5])
+    found = re.search(r"component\s*=\s*(\S+)", text.words(5))
     return [Record(text.path.stem, values, 1.0 / rate, unit, quantity, found[1] if found else "")]
