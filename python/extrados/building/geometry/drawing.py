@@ -73,10 +73,7 @@ def read_dxf(
         elif kind in ("LWPOLYLINE", "POLYLINE"):
             if not entity.is_closed and not _ends_meet(entity, curve):
                 raise BadGeometry(f"{where}: is open; only closed polylines become blocks")
-            try:
-                points = [(v.x, v.y) for v in curve.make_path(entity).flattening(SAGITTA / scale)]
-            except ValueError as error:  # a bulge that is no number
-                raise BadGeometry(f"{where}: is no sound polyline: {error}") from None
+            points = [(v.x, v.y) for v in curve.make_path(entity).flattening(SAGITTA / scale)]
             polygons.append(Polygon(f"{layer} #{entity.dxf.handle}", scale * np.array(points)))
         else:
             raise BadGeometry(
