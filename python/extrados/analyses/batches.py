@@ -63,6 +63,19 @@ class Swept:
         return self
 
 
+def computed(context: Context | None, name: str, job: Job, count: int, text: str, threads: int = 1, **how: Any) -> Any:
+    """All rows of a job: by `sweep` where there is a context, Unfinished where some are missing; else at once."""
+    if context is None:
+        return job.run(0, count, threads)
+    return sweep(context, name, job, count, text, **how).whole()
+
+
+def stop_if_asked() -> None:
+    """Cancelled where the user has asked for the end: for members that take long outside the core."""
+    if cancel_requested():
+        raise Cancelled(status_code("cancelled"), "interrupted")
+
+
 def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int) -> dict[str, np.ndarray]:
     """The rows of a batch from those of single members: for jobs whose members take long."""
     found = []
