@@ -12,6 +12,8 @@ import json
 import os
 import random
 import re
+import resource
+import signal
 import subprocess
 import sys
 import time
@@ -146,12 +148,11 @@ def caught_by(place: Path, fault: Fault, patience: int) -> str:
         ([str(meson), "test", "-C", str(place / "build"), "--no-rebuild", *native], "native tests"),
         ([sys.executable, "-S", "-m", "pytest", "-q", "-x", *(f"tests/{test}" for test in python)], ""),
     ):
-        try:
-            run = subprocess.run(
-                command, cwd=place, env=environment, capture_output=True, text=True, timeout=patience,
-                start_new_session=True,
-            )  # fmt: skip
-        except subprocess.TimeoutExpired:
+        run = subprocess.run(
+            command, cwd=place, env=environment, capture_output=True, text=True,
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (patience, patience)),
+        )  # fmt: skip
+        if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             return "a test that does not end"
         if run.returncode:
             failed = re.search(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.M)
@@ -164,7 +165,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--count", type=int, default=80)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--patience", type=int, default=1200, help="seconds until a test counts as hanging")
+    parser.add_argument("--patience", type=int, default=300, help="seconds of a processor that the tests may take")
+    parser.add_argument("--first", type=int, default=1, help="where to go on, counted from 1")
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
     options = parser.parse_args()
@@ -174,9 +176,13 @@ def main() -> int:
     apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
     chosen = draw(options.count, options.seed)
     if options.only:
-        chosen = [f for f in faults_of(apart.ROOT / options.only.split(":")[0]) if f.line == int(options.only.split(":")[1])]
+        chosen = [
+            f for f in faults_of(apart.ROOT / options.only.split(":")[0]) if f.line == int(options.only.split(":")[1])
+        ]
     missed = []
     for k, fault in enumerate(chosen, start=1):
+        if k < options.first:
+            continue
         begin = time.monotonic()
         plant(place, fault)
         try:

@@ -150,7 +150,7 @@ def run(
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
 ) -> None:
     """Run decks: print the answer, write results, figures and report."""
-    from extrados.analyses.context import Context, default_threads
+    from extrados.analyses.context import Context
     from extrados.decks.reader import DeckError, read_deck
     from extrados.running.run import default_out, run_to
 
@@ -166,7 +166,7 @@ def run(
             raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
         for deck in checked:
             progress = _Progress(quiet or as_json)
-            context = Context(deck, threads or default_threads(), progress, resume=resume, scheduler=scheduler)
+            context = Context(deck, _threads(threads), progress, resume=resume, scheduler=scheduler)
             try:
                 found = run_to(context, out or default_out(deck), figures=False)
             finally:
@@ -185,6 +185,16 @@ def run(
             if stopped:
                 break
     raise typer.Exit(worst)
+
+
+def _threads(asked: int | None) -> int:
+    """As many threads as asked for, but no more than there are cores."""
+    from extrados.analyses.context import default_threads
+
+    cores = default_threads()
+    if asked is not None and asked > cores:
+        err_console.say(f"--threads {asked}: this process may use {cores} cores, and starts no more threads than that")
+    return min(asked or cores, cores)
 
 
 def _tell(run, title: str) -> None:

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import trials
 from test_files import DOORS, SUFFIX
 from test_motion_formats import FILES
 
+import trials
 from extrados.analyses.context import Context
 from extrados.decks.reader import make_deck
 from extrados.motions.formats.recognise import read_records
@@ -62,7 +62,9 @@ def test_damaged_records() -> None:
                 case 2:
                     del raw[k : k + rng.randint(1, 50)]
                 case 3:
-                    raw[k:k] = rng.choice((b"nan", b"1e999", b"-", b"9" * 300, b"\r", b"\0", b"\xff\xfe", b" " * 5000, b"#"))
+                    raw[k:k] = rng.choice(
+                        (b"nan", b"1e999", b"-", b"9" * 300, b"\r", b"\0", b"\xff\xfe", b" " * 5000, b"#")
+                    )
                 case 4:
                     lines = raw.split(b"\n")
                     i, j = rng.randrange(len(lines)), rng.randrange(len(lines))
@@ -73,7 +75,9 @@ def test_damaged_records() -> None:
                     at = rng.randrange(len(other))
                     raw[k:k] = other[at : at + 300]
                 case _:
-                    raw[k:] = raw[k:].replace(rng.choice((b"0", b"1", b" ", b".")), rng.choice((b"", b"9", b"e", b"-")), 3)
+                    raw[k:] = raw[k:].replace(
+                        rng.choice((b"0", b"1", b" ", b".")), rng.choice((b"", b"9", b"e", b"-")), 3
+                    )
             raw = raw or bytearray(b" ")
         tried(trial, name, bytes(raw))
     trial.close(least)
@@ -121,7 +125,9 @@ HOSTILE = {
 
 def test_hostile_files(tmp_path) -> None:
     """Each through every door: an answer or a reason, no internal error."""
-    trial = trials.Trial("files-hostile", "hostile files that a deck names and that are neither read nor refused in words")
+    trial = trials.Trial(
+        "files-hostile", "hostile files that a deck names and that are neither read nor refused in words"
+    )
     for key, deck in DOORS.items():
         if key == "resume_from":
             continue

@@ -246,3 +246,13 @@ except KeyboardInterrupt:
 """
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert run.stdout == "True True\n", run.stdout + run.stderr
+
+
+def test_more_threads_than_cores_are_not_started(tmp_path) -> None:
+    words = ["--threads", "100000", "--out", str(tmp_path / "o"), "--no-figures"]
+    run = extrados(
+        "run",
+        deck(tmp_path, ARCH + '[analysis]\nkind = "sweep"\nvary = "thickness"\nstart = 1.2\nstop = 2.0\ncount = 9\n'),
+        *words,
+    )
+    assert run.returncode == 0 and "--threads 100000: this process may use" in run.stderr

@@ -18,7 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.core.calls import cancel_requested, interruptible
+from extrados.core.calls import cancel_requested, interruptible, thread_count
 from extrados.core.errors import Cancelled, status_code
 from extrados.results.checkpoint import fingerprint
 
@@ -191,7 +191,7 @@ def _in_turn(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swep
 def _in_threads(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:
     """A batch for each thread at a time, kept as they come; few members have several threads each."""
     todo = _pieces(batches.missing(), lambda: pace.size)
-    threads = max(1, context.threads)
+    threads = thread_count(max(1, context.threads))
     each = max(1, threads // (batches.count - batches.done))
     pending: dict[Future, int] = {}
     stopped = False

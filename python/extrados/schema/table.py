@@ -4,7 +4,6 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import BaseModel, ConfigDict, Field, create_model, field_validator
 
-
 #: Size of a number in SI that no structure and no motion reaches, and below which it can only be zero
 LARGEST, SMALLEST = 1e15, 1e-15
 

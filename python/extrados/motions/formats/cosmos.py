@@ -36,7 +36,8 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
     first = at
     at += int(found[1]) if found else 13
     name = next(
-        (text[k] for k in range(first, min(at, len(text))) if re.match(r"\s*sta(?:tn)?\s+chan", text.words(k), re.I)), ""
+        (text[k] for k in range(first, min(at, len(text))) if re.match(r"\s*sta(?:tn)?\s+chan", text.words(k), re.I)),
+        "",
     )
     for _ in range(4):  # some files count the line after the text lines in, some do not
         if re.search(r"integer-header", text.words(at), re.I):
