@@ -59,10 +59,11 @@ contains
       call extrados_watch_signals(on)
    end subroutine watch_signals
 
-   !> Once per process: GSL's aborting error handler is turned off
-   subroutine init_libraries()
+   !> Once per process: GSL's aborting error handler is turned off, BLAS takes its first buffer
+   subroutine init_libraries(status)
       use common_c_bindings, only : extrados_library_init
-      call extrados_library_init()
+      integer(c_int), intent(out) :: status
+      status = extrados_library_init()
    end subroutine init_libraries
 
 end module api_support

@@ -75,9 +75,11 @@ module common_c_bindings
          integer(c_int) :: count
       end function extrados_handle_count
 
-      subroutine extrados_library_init() bind(c)
+      function extrados_library_init() bind(c) result(status)
+         import :: c_int
          implicit none (type, external)
-      end subroutine extrados_library_init
+         integer(c_int) :: status
+      end function extrados_library_init
    end interface
 
 end module common_c_bindings

@@ -199,7 +199,10 @@ def _in_threads(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     try:
         while True:
             while not stopped and len(pending) < threads and (piece := next(todo, None)):
-                pending[pool.submit(_timed, job, *piece, each)] = piece[0]
+                try:
+                    pending[pool.submit(_timed, job, *piece, each)] = piece[0]
+                except RuntimeError as error:  # the system has no room for the stack of another thread
+                    raise MemoryError(f"not enough memory: {error}") from None
             if not pending:
                 break
             finished, _ = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)

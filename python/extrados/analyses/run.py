@@ -53,7 +53,10 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = Result(options.kind, "failed", str(error) or "not enough memory")
     except (CoreError, NoAnswer) as error:
         result = Result(options.kind, "failed", str(error))
-    except Exception as error:  # a fault of ours: the other analyses of the deck still count
-        result = faulty(options.kind, error)
+    except Exception as error:
+        if isinstance(error, ImportError) and "failed to map" in str(error):  # a library that is loaded when needed
+            result = Result(options.kind, "failed", f"not enough memory: {error}")
+        else:  # a fault of ours: the other analyses of the deck still count
+            result = faulty(options.kind, error)
     result.seconds = time.perf_counter() - begin
     return result

@@ -11,9 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core
+from extrados.core.errors import check
 
-_core.api_support.init_libraries()
-
+check(_core.api_support.init_libraries(), "loading the core")
+# numpy's own BLAS ends the process where its first buffer finds no room: it takes it here, not amid a long run
+np.linalg.solve(np.eye(2), np.ones(2))
 
 #: Values an answer of the core may have: 2 GB.
 MOST_VALUES = 250_000_000
@@ -154,7 +156,10 @@ def long_call(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
 
     with interruptible():
         thread = threading.Thread(target=work, daemon=True)
-        thread.start()
+        try:
+            thread.start()
+        except RuntimeError as error:  # the system has no room for its stack
+            raise MemoryError(f"not enough memory: {error}") from None
         while not done.wait(0.05):
             pass
         thread.join()
