@@ -135,9 +135,10 @@ def plant(place: Path, fault: Fault, back: bool = False) -> None:
     path.write_text("\n".join(lines), encoding="utf-8")
 
 
-def caught_by(place: Path, fault: Fault, patience: int) -> str:
+def caught_by(place: Path, fault: Fault, patience: int, most: int | None) -> str:
     """The test that fails, "" where none does."""
     native, python = ROOMS["/".join(fault.file.split("/")[:2])]
+    python = python[:most]
     try:
         apart.build(place)
     except subprocess.CalledProcessError:
@@ -147,7 +148,7 @@ def caught_by(place: Path, fault: Fault, patience: int) -> str:
     for command, name in (
         ([str(meson), "test", "-C", str(place / "build"), "--no-rebuild", *native], "native tests"),
         ([sys.executable, "-S", "-m", "pytest", "-q", "-x", *(f"tests/{test}" for test in python)], ""),
-    ):
+    )[: 2 if python else 1]:
         run = subprocess.run(
             command, cwd=place, env=environment, capture_output=True, text=True,
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (patience, patience)),
@@ -166,6 +167,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=80)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--patience", type=int, default=300, help="seconds of a processor that the tests may take")
+    parser.add_argument("--python", type=int, help="how many of a room's Python tests are run; default all")
     parser.add_argument("--first", type=int, default=1, help="where to go on, counted from 1")
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
@@ -186,7 +188,7 @@ def main() -> int:
         begin = time.monotonic()
         plant(place, fault)
         try:
-            by = caught_by(place, fault, options.patience)
+            by = caught_by(place, fault, options.patience, options.python)
         finally:
             plant(place, fault, back=True)
         if not by:
@@ -194,7 +196,7 @@ def main() -> int:
         seconds = time.monotonic() - begin
         print(f"{k}/{len(chosen)} {f'caught by {by}' if by else 'NOT CAUGHT'} ({seconds:.0f} s) {fault}", flush=True)
     print(f"{len(chosen) - len(missed)} of {len(chosen)} caught", *missed, sep="\n")
-    if not options.only:
+    if not options.only and options.python is None and options.first == 1:
         notes = apart.ROOT / "build" / "trials"
         notes.mkdir(parents=True, exist_ok=True)
         row = {"what": "faults planted in Fortran and C that no quick test sees", "tried": len(chosen),

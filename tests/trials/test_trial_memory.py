@@ -27,7 +27,9 @@ print(json.dumps([(row["status"], row["reason"]) for row in run.analyses]))
 
 def test_memory_that_is_lowered_after_the_start() -> None:
     """Every size from none to plenty: OpenBLAS would wait for ever, or crash, where its buffer finds no room."""
-    trial = trials.Trial("memory-lowered", "runs with lowered memory that end in a signal, hang or fail without saying so")
+    trial = trials.Trial(
+        "memory-lowered", "runs with lowered memory that end in a signal, hang or fail without saying so"
+    )
     kinds = ("sla", "dem", "fragility", "motion", "tilt") if trials.SHARE > 0.0 else ("sla",)
     rooms = (0, 1, 4, 8, 16, 32, 48, 64, 96, 128, 160, 200, 260, 400) if trials.SHARE > 0.0 else (4, 64)
     ends: dict[str, int] = {}
