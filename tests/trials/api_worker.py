@@ -7,12 +7,14 @@ process ends this one, and the last number tells where.
 """
 
 import random
+import signal
 import sys
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
+from extrados import _core
 from extrados.core import arch, dem, mechanism, motion, rocking, sla
 from extrados.core.ground import Ground, MotionSet
 
@@ -180,7 +182,11 @@ def bits(value: Any) -> bytes:
     return repr(value).encode() if isinstance(value, str) else np.asarray(value).tobytes()
 
 
+PATIENCE = 3.0  # seconds of the processor; then a call is asked to stop, as by Ctrl-C: it may have an age to compute
+
+
 def main() -> None:
+    signal.signal(signal.SIGPROF, lambda *_: _core.api_support.set_cancel(1))
     seed, first, count = map(int, sys.argv[1:])
     np.seterr(all="ignore")
     calls = _valid()
@@ -195,6 +201,7 @@ def main() -> None:
             changed[name] = spoiled(keys[name], rng)
         told = ", ".join(f"{name}={changed[name]!r:.60}".replace("\n", " ") for name in names)
         print(f"{number}\t{function.__name__}({told})", end="\t", flush=True)
+        signal.setitimer(signal.ITIMER_PROF, PATIENCE, PATIENCE)
         try:
             function(**changed)
             end = "result"
@@ -202,6 +209,7 @@ def main() -> None:
             end = "MemoryError"
         except Exception as error:
             end = type(error).__name__
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
         if number % 20 == 0 and bits(calls[k][0](**calls[k][1])) != right[k]:
             end = "WRONG: the core no longer gives the right bits"
         print(end, flush=True)
