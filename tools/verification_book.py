@@ -3,6 +3,7 @@
 import json
 import sys
 from pathlib import Path
+from statistics import mean, stdev
 
 ROOT = Path(__file__).resolve().parents[1]
 BOOK = ROOT / "docs" / "verification.md"
@@ -18,6 +19,13 @@ TITLES = {
     "experiment": "Validation: experiments",
     "regression": "Regression: unchanged numbers",
 }
+
+
+#: What a row of a measured curve compares
+COMPARED = {
+    "peak_ratio": "peak", "tail_ratios[0]": "tail at 75 % of the peak", "tail_ratios[1]": "tail at 50 %",
+    "tail_ratios[2]": "tail at 25 %",
+}  # fmt: skip
 
 
 def shown(value: object) -> str:
@@ -55,9 +63,26 @@ def with_trials_alone(book: str) -> str:
     return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials())
 
 
+def bias(rows: list[tuple[str, Row, object]]) -> list[str]:
+    """Bias and scatter of the curves that were compared with measured ones, by what of them was compared."""
+    groups: dict[str, list[tuple[str, float]]] = {}
+    for case, row, found in rows:
+        place, _, name = row.quantity.partition(".measured.")
+        if row.kind == "experiment" and name and isinstance(found, int | float):
+            groups.setdefault(f"{place}: {COMPARED[name]}", []).append((case, float(found)))
+    lines = []
+    for what, found in groups.items():
+        values = [value for _, value in found]
+        spread = f"{100 * stdev(values):.0f} %" if len(values) > 1 else "-"
+        each = ", ".join(f"{case.rpartition('/')[2]} {value:.2f}" for case, value in found)
+        lines.append(f"| {what} | {len(values)} | {100 * (mean(values) - 1):+.0f} % | {spread} | {each} |")
+    return lines
+
+
 def main() -> int:
     """Run all cases; the number of rows that differ."""
     tables: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    all_rows: list[tuple[str, Row, object]] = []
     wrong = 0
     for case in load_cases():
         for change in dict.fromkeys(row.change for row in case.rows):
@@ -66,12 +91,19 @@ def main() -> int:
                 found = pick(results, row.quantity)
                 wrong += not row.fits(found)
                 tables[row.kind].append(line(case.name, row, found))
+                all_rows.append((case.name, row, found))
         print(case.name, flush=True)
     parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", ""]
     for kind, title in TITLES.items():
         if tables[kind]:
             head = "| case | change | quantity | expected | found | source |\n|---|---|---|---|---|---|"
-            parts += [f"## {title}", "", f"{len(tables[kind])} rows.", "", head, *tables[kind], ""]
+            parts += [f"## {title}", "", f"{len(tables[kind])} rows.", ""]
+            if kind == "experiment" and (found := bias(all_rows)):
+                parts += [
+                    "Computed over measured, of whole measured curves (bias: mean less one; scatter: standard deviation):", "",
+                    "| | tests | bias | scatter | each |\n|---|---|---|---|---|", *found, "",
+                ]  # fmt: skip
+            parts += [head, *tables[kind], ""]
     parts += trials()
     BOOK.write_text("\n".join(parts), encoding="utf-8")
     print(f"docs/verification.md: {sum(map(len, tables.values()))} rows, {wrong} differ")
