@@ -1,15 +1,18 @@
 """Write docs/verification.md: every row of every case with what was found, grouped by kind of proof."""
 
+import json
 import math
 import sys
 from pathlib import Path
 from statistics import mean, stdev
 
 ROOT = Path(__file__).resolve().parents[1]
+BOOK = ROOT / "docs" / "verification.md"
 sys.path.insert(0, str(ROOT / "tests" / "cases"))
 
 from expectations import KINDS, Row, load_cases, pick, results_of  # noqa: E402
 
+TRIALS = "## Trials"
 TITLES = {
     "exact": "Verification: exact solutions",
     "peer": "Verification: independent programs",
@@ -59,6 +62,24 @@ def of_loads(ratios: dict[str, list[float]]) -> list[str]:
     return ["### Bias and scatter of single numbers", "", f"{head}\n|---|---|---|---|", *rows, ""]
 
 
+def trials() -> list[str]:
+    """What was tried and did not hold, as the trials of tests/trials and tools/seeded_faults.py noted it."""
+    notes = sorted((ROOT / "build" / "trials").glob("*.json"))
+    rows = [json.loads(path.read_text(encoding="utf-8")) for path in notes]
+    if not rows:
+        return []
+    lines = [
+        f"| {r['what']} | {r['tried']:,} | {r['failures']} | {'; '.join(r['notes'])} |".replace("\n", " ") for r in rows
+    ]
+    return [TRIALS, "", "From fixed seeds; a failure is one of what the first column says.", "",
+            "| looked for | tried | found | |\n|---|---|---|---|", *lines, ""]  # fmt: skip
+
+
+def with_trials_alone(book: str) -> str:
+    """The book with the section of the trials written anew, and all else as it was."""
+    return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials())
+
+
 def bias(rows: list[tuple[str, Row, object]]) -> list[str]:
     """Bias and scatter of the curves that were compared with measured ones, by what of them was compared."""
     groups: dict[str, list[tuple[str, float]]] = {}
@@ -106,10 +127,14 @@ def main() -> int:
             parts += [head, *tables[kind], ""]
         if kind == "experiment":
             parts += of_loads(ratios)
-    (ROOT / "docs" / "verification.md").write_text("\n".join(parts), encoding="utf-8")
+    parts += trials()
+    BOOK.write_text("\n".join(parts), encoding="utf-8")
     print(f"docs/verification.md: {sum(map(len, tables.values()))} rows, {wrong} differ")
     return wrong
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--trials"]:
+        BOOK.write_text(with_trials_alone(BOOK.read_text(encoding="utf-8")), encoding="utf-8")
+        sys.exit()
     sys.exit(min(main(), 1))
