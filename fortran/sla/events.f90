@@ -14,7 +14,7 @@ module sla_events
    use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
-   use sla_group, only : below, bound, event_vectors, point_group, scan_result, unbounded, most_entries, most_rank
+   use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
    use sla_model, only : element_model, model_factor, model_solve, held_work
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -225,7 +225,8 @@ contains
          r = event%rank
          if (r == 0) return
          do i = 1, r
-            model%before(i) = along(event, i, model%ua, model%ub, model%lambda) - event%origin(i)
+            model%before(i) = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
+               model%lambda * model%ub(event%index(1:event%entries))) - event%origin(i)
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -244,17 +245,18 @@ contains
          if (status /= status_ok) return
          do j = 1, r
             do i = 1, r
-               m(i, j) = -along(event, i, model%z(:, j))
+               m(i, j) = -dot_product(event%w(1:event%entries, i), model%z(event%index(1:event%entries), j))
             end do
             m(j, j) = m(j, j) + event%sign(j)
-            wa(j) = along(event, j, model%ua) - event%origin(j) - event%hold(1, j)
+            wa(j) = dot_product(event%w(1:event%entries, j), model%ua(event%index(1:event%entries))) - &
+               event%origin(j) - event%hold(1, j)
             model%fo(event%index(1:event%entries)) = model%fo(event%index(1:event%entries)) - &
                event%sign(j) * event%origin(j) * event%w(1:event%entries, j)
             do i = 1, 2
                model%fh(event%index(1:event%entries), i) = model%fh(event%index(1:event%entries), i) - &
                   event%sign(j) * event%hold(i, j) * event%w(1:event%entries, j)
             end do
-            wb(j) = along(event, j, model%ub) - event%hold(2, j)
+            wb(j) = dot_product(event%w(1:event%entries, j), model%ub(event%index(1:event%entries))) - event%hold(2, j)
          end do
          call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), reason)
          if (reason /= stop_none) return
@@ -374,7 +376,8 @@ contains
       else
          associate (event => model%event)
             do i = 1, event%rank
-               after = along(event, i, model%ua, model%ub, lambda) - event%origin(i)
+               after = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
+                  lambda * model%ub(event%index(1:event%entries))) - event%origin(i)
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * (model%before(i) * after - &
                   event%origin(i)**2)
                ! What the change of the held forces did at the old and at the new displacements
@@ -438,27 +441,5 @@ contains
          end do
       end do
    end subroutine record
-
-   !> w_i . x, or w_i . (x + lambda y), over the entries of an event: dot_product would gather them in memory that it
-   !> does not ask for
-   pure function along(event, i, x, y, lambda) result(total)
-      type(event_vectors), intent(in) :: event
-      integer, intent(in) :: i
-      real(wp), intent(in) :: x(:)
-      real(wp), intent(in), optional :: y(:)
-      real(wp), intent(in), optional :: lambda
-      real(wp) :: total
-      integer :: k
-      total = 0.0_wp
-      if (present(y)) then
-         do k = 1, event%entries
-            total = total + event%w(k, i) * (x(event%index(k)) + lambda * y(event%index(k)))
-         end do
-      else
-         do k = 1, event%entries
-            total = total + event%w(k, i) * x(event%index(k))
-         end do
-      end if
-   end function along
 
 end module sla_events
