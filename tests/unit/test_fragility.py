@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
+from scipy.stats import norm
 
 import extrados
 from extrados.analyses.codes.code_rules import asce43, ishiyama, piers
@@ -78,6 +80,38 @@ def test_curve_and_resurrections() -> None:
     assert r["resurrections"] == sum(later)
     assert r["motions_that_collapse"] == len(later)
     assert len(result.arrays["curve_lower"].data) == 200
+    # Lists and tables hold one value a level, none over all of them
+    share = (outcome == 2).mean(axis=0)
+    assert r["collapse_probability"] == pytest.approx(share) and table["collapse_probability"] == pytest.approx(share)
+    assert len(r["mean_peak_rotation_ratio"]) == len(r["count"]) == 7 and "bin_count" not in result.arrays
+    assert result.verdict.outcome == "none" and result.verdict.capacity == r["median"]
+    # Percentiles by sorting; collapse is beyond every rotation
+    ratio = np.where(outcome == 2, np.inf, result.arrays["peak_ratio"].data.reshape(60, 7))
+    for percent, rank in ((16, 9), (50, 29), (84, 50)):
+        expected = np.sort(ratio, axis=0)[rank]
+        assert table[f"peak_ratio_{percent}"] == pytest.approx(expected)
+        assert r[f"peak_rotation_ratio_{percent}"] == [pytest.approx(v) if np.isfinite(v) else None for v in expected]
+    # A motion that falls first at level j has its capacity between j - 1 and j
+    first = np.where((outcome == 2).any(axis=1), (outcome == 2).argmax(axis=1), 7)
+    edges = np.log([1e-300, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1e300])
+
+    def loss(c):
+        p = norm.cdf((edges - c[0]) / np.exp(c[1]))
+        return -np.sum(np.log(np.diff(p)[first]))
+
+    best = minimize(loss, [-0.7, -0.7], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
+    assert (r["first_collapse_median"], r["first_collapse_dispersion"]) == pytest.approx(
+        tuple(np.exp(best.x)), rel=1e-6
+    )
+    low, high = r["first_collapse_median_interval"]
+    assert low < r["first_collapse_median"] < high
+
+
+def test_first_collapse_where_some_motions_never_fall() -> None:
+    result = run({"kind": "fragility", "count": 40, "levels": [0.3, 0.4, 0.5], "bootstrap": 0})
+    r = result.results
+    assert 0 < r["motions_that_collapse"] < 40
+    assert r["first_collapse_median"] > 0.3 and r["first_collapse_median_interval"][0] < r["first_collapse_median"]
 
 
 def test_uncertain_values_are_sampled_evenly() -> None:
@@ -120,6 +154,8 @@ def test_durations() -> None:
         motion={**GENERATED, "mmi": 5, "scaling": "thesis", "factor": 5.0},
     )
     mean = result.results["mean_peak_rotation_ratio"]
+    assert result.results["count"] == [40, 40, 40] and len(result.results["collapsed"]) == 3
+    assert "of 1 s" in result.verdict.statement or "of 8 s" in result.verdict.statement
     assert len(mean) == 3 and mean[0] < mean[2]
     assert (
         run(

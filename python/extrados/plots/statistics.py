@@ -10,9 +10,12 @@ from extrados.results.statistics import OverDurations
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
+PERCENTILES = (16, 50, 84)
+FALLEN = 1.12  # where a figure draws the rotation ratio of what has come down
+
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Histogram (Fig. 6-7), curve over intensity with its stripes, incremental curves, or Fig. 6-8."""
+    """Histogram (Fig. 6-7); over levels the curves with their stripes and the incremental picture; or Fig. 6-8."""
     arrays = run.arrays[name]
     if isinstance(run[name], OverDurations):
         return _durations(run, name, folder)
@@ -80,22 +83,18 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 linewidth=0.9,
                 label=f"{label}, counted",
             )
-        if "curve" in arrays:
-            ax.plot(
-                grid,
-                run.array(name, "curve"),
-                color=style.THRUST,
-                label=f"lognormal, median {r.median:.3g}, dispersion {r.dispersion:.2f}",
-            )
-        if "curve_lower" in arrays:
-            ax.fill_between(
-                grid,
-                run.array(name, "curve_lower"),
-                run.array(name, "curve_upper"),
-                color=style.THRUST,
-                alpha=0.15,
-                linewidth=0,
-            )
+        for curve, band, color, style_, text, median, dispersion in (
+            ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
+            ("first_collapse_curve", "first_collapse", style.HINGE, "-.", "collapse by the level", r.first_collapse_median,
+             r.first_collapse_dispersion),
+        ):  # fmt: skip
+            if curve not in arrays:
+                continue
+            label = f"{text}: median {median:.3g}, dispersion {dispersion:.2f}"
+            ax.plot(grid, run.array(name, curve), style_, color=color, label=label)
+            if f"{band}_lower" in arrays:
+                low, high = run.array(name, f"{band}_lower"), run.array(name, f"{band}_upper")
+                ax.fill_between(grid, low, high, color=color, alpha=0.15, linewidth=0)
         if "uplift_curve" in arrays:
             ax.plot(grid, run.array(name, "uplift_curve"), color=style.GROUND, linewidth=0.9)
         if "two_stage_curve" in arrays:
@@ -106,9 +105,11 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylim(-0.02, 1.02)
         ax.set_xlabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         ax.set_ylabel("probability")
+        ax.set_title(f"{r.motions} motions at {len(level)} levels")
         ax.legend(loc="best")
         return style.save(fig, folder, f"{name}-curve"), (
-            f"Counted probabilities with {100 * r.confidence:g} % Wilson intervals, the fitted curve and its bootstrap band."
+            f"Shares of the motions with {100 * r.confidence:g} % Wilson intervals; the fitted curve of collapse at a level with "
+            "its bootstrap band; and that of collapse at the level or one below it, by interval-censored likelihood."
         )
 
 
@@ -120,26 +121,28 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         run.array(name, "incremental_risen"),
     )
     unit = run.arrays[name]["stripe_level"].unit
+    quantile = [np.minimum(run.array(name, f"stripe_peak_ratio_{p}"), FALLEN) for p in PERCENTILES]
     with style.figure(6.5, 4.2) as (fig, (ax,)):
-        for row in np.minimum(ratio, 1.05):
-            ax.plot(row, level, color=style.EDGE, alpha=0.25, linewidth=0.6)
+        for row in np.minimum(ratio, FALLEN):
+            ax.plot(row, level, color=style.EDGE, alpha=0.15, linewidth=0.5)
+        low, middle, high = quantile
+        ax.fill_betweenx(level, low, high, color=style.HINGE, alpha=0.2, linewidth=0, label="16 to 84 % of the motions")
+        ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="half of the motions")
         i, j = np.nonzero(risen)
-        ax.plot(
-            ratio[i, j],
-            level[j],
-            "o",
-            color=style.HINGE,
-            markersize=3,
-            label="stands again above a level that overturned it",
-        )
-        ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
-        ax.set_xlabel("greatest rotation over the critical rotation (collapse drawn at 1.05)")
-        ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         if len(i):
-            ax.legend(loc="upper left")
-        return style.save(
-            fig, folder, f"{name}-incremental"
-        ), f"Incremental curves of {len(ratio)} motions; {r.resurrections} of {r.motions} have resurrections."
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3,
+                    label="stands again above a level that overturned it")  # fmt: skip
+        ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
+        ax.set_xlim(-0.02, FALLEN + 0.03)
+        ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, FALLEN]
+        ax.set_xticks(ticks, [*(f"{x:g}" for x in ticks[:-1]), "collapse"])
+        ax.set_xlabel("greatest rotation over the critical rotation")
+        ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
+        style.legend_below(fig, ax)
+        return style.save(fig, folder, f"{name}-incremental"), (
+            f"Incremental curves of {len(ratio)} motions with the percentiles of all {r.motions}; "
+            f"{r.resurrections} have resurrections."
+        )
 
 
 def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
