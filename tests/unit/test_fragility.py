@@ -306,15 +306,50 @@ def test_panel_as_a_pier() -> None:
     assert "without openings" in run(pier, holed, motion=None).reason
 
 
-def test_code_checks_deck() -> None:
-    result = run(
-        {"kind": "code-checks"},
-        {"kind": "block", "width": 0.5, "height": 2.4},
-        {"kind": "record", "file": "extrados:el-centro-1940"},
+SITE = {"code": "EN1998-1", "ground": "B", "acceleration": "0.25 g"}
+
+
+def test_code_demands_are_those_of_the_code_whatever_the_motion() -> None:
+    block = {"kind": "block", "width": 0.5, "height": 2.4}
+    asked = {"kind": "code-checks", "spectrum": SITE, "peak_velocity": 0.3}
+    random = {"kind": "generated", "mmi": 9, "duration": 4.0}
+    record = {"kind": "record", "file": "extrados:el-centro-1940"}
+    runs = [run(asked, block, motion) for motion in (None, record, {**random, "seed": 1}, {**random, "seed": 2})]
+    assert all(r.results["checks"] == runs[0].results["checks"] for r in runs)
+    assert all(r.verdict == runs[0].verdict for r in runs) and runs[1].results["dynamic_outcome"] == "recovery"
+    checks = runs[0].results["checks"]
+    assert checks["NTC linear (ground level)"]["demand"] == pytest.approx(0.25 * 1.2)
+    # S_De(T) = S_e(T) (T/2 pi)^2 on the branch of constant velocity
+    period = float(checks["NTC nonlinear"]["note"].removeprefix("T_s = ").removesuffix(" s"))
+    assert 0.5 < period < 2.0
+    assert checks["NTC nonlinear"]["demand"] == pytest.approx(
+        2.5 * 0.3 * G * 0.5 / period * (period / (2 * np.pi)) ** 2, rel=1e-3
     )
-    checks = result.results["checks"]
-    assert checks["uplift"]["verdict"] == "fails" and all(c["source"] for c in checks.values())
-    assert result.results["dynamic_outcome"] == "recovery"
+    # A compatible motion brings the spectrum of its code
+    compatible = {"kind": "compatible", **SITE, "duration": 10.0, "tolerance": 0.3}
+    own = run({"kind": "code-checks", "peak_velocity": 0.3}, block, compatible)
+    assert own.results["checks"] == checks
+    without = run({"kind": "code-checks"}, block, {**random, "seed": 1})
+    assert without.verdict.outcome == "none" and "give spectrum" in without.answer
+    assert all(c["demand"] is None for c in without.results["checks"].values())
+
+
+def test_one_verdict_of_all_code_checks() -> None:
+    """Of one code any check suffices; all codes must hold; formulas for comparison do not count."""
+    block = {"kind": "block", "width": 0.5, "height": 2.4}
+
+    def judged(peak: float, velocity: float | None = None):
+        options = {"peak_velocity": velocity} if velocity else {}
+        return run({"kind": "code-checks", "peak_acceleration": f"{peak} g", **options}, block, motion=None)
+
+    # 0.25 g: above uplift (0.208 g) and Ishiyama's acceleration, below his velocity (0.3227 m/s); NTC linear bears 0.309 g
+    held = judged(0.25, 0.3)
+    assert held.results["checks"]["uplift"]["verdict"] == "fails" and held.verdict.outcome == "stands"
+    fallen = judged(0.25, 0.4)
+    assert fallen.verdict.outcome == "falls" and "Ishiyama governs" in fallen.verdict.statement
+    assert fallen.verdict.demand == 0.25 or fallen.verdict.demand == 0.4
+    # One check of Ishiyama fails and the other has no demand: not decided, and told
+    assert "Ishiyama" in judged(0.25).verdict.statement
     crushed = run(
         {"kind": "code-checks", "axial_load": "10 MN", "material": {"compressive_strength": "2 MPa"}}, motion=None
     )

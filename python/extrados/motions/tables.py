@@ -209,11 +209,9 @@ class Generated(Motion):
         return self
 
 
-class Compatible(Motion):
-    """Random earthquakes whose response spectrum matches that of a code or table, baseline corrected."""
+class CodeSpectrum(Table):
+    """The elastic spectrum of a code, with its own values, or a table."""
 
-    kind: Literal["compatible"]
-    starter: ClassVar = {"code": '"EN1998-1"', "ground": '"B"', "acceleration": '"0.2 g"', "tolerance": "0.15"}
     code: Literal["EN1998-1", "EN1998-2", "NTC", "ASCE7", "table"] = key(
         about="EN 1998-1:2004 spectrum type 1 or 2, NTC 2018, ASCE 7-16, or a table of your own"
     )
@@ -226,6 +224,22 @@ class Compatible(Motion):
     sd1: Acceleration | None = key(None, "S_D1 (ASCE 7)", gt=0)
     long_period: Time = key(8.0, "T_L (ASCE 7)", gt=0)
     table: str | None = key(None, "CSV file period_s,sa_g", min_length=1, max_length=1024)
+
+    @model_validator(mode="after")
+    def _has_values(self) -> "CodeSpectrum":
+        need = {"EN1998-1": ("acceleration",), "EN1998-2": ("acceleration",), "NTC": ("acceleration",),
+                "ASCE7": ("sds", "sd1"), "table": ("table",)}[self.code]  # fmt: skip
+        missing = [name for name in need if getattr(self, name) is None]
+        if missing:
+            raise ValueError(f"code {self.code} needs {' and '.join(missing)}")
+        return self
+
+
+class Compatible(CodeSpectrum, Motion):
+    """Random earthquakes whose response spectrum matches that of a code or table, baseline corrected."""
+
+    kind: Literal["compatible"]
+    starter: ClassVar = {"code": '"EN1998-1"', "ground": '"B"', "acceleration": '"0.2 g"', "tolerance": "0.15"}
     damping: float = key(0.05, "damping ratio of the spectrum", ge=0.005, le=0.3)
     shortest: Time = key(0.05, "shortest period that is matched", ge=0.02)
     longest: Time = key(2.0, "longest period that is matched", le=6)
@@ -240,11 +254,6 @@ class Compatible(Motion):
 
     @model_validator(mode="after")
     def _complete(self) -> "Compatible":
-        need = {"EN1998-1": ("acceleration",), "EN1998-2": ("acceleration",), "NTC": ("acceleration",),
-                "ASCE7": ("sds", "sd1"), "table": ("table",)}[self.code]  # fmt: skip
-        missing = [name for name in need if getattr(self, name) is None]
-        if missing:
-            raise ValueError(f"code {self.code} needs {' and '.join(missing)}")
         if self.code == "ASCE7" and self.damping != 0.05:
             raise ValueError("the spectrum of ASCE 7 is that of 5 % damping")
         if self.longest <= 2.0 * self.shortest:

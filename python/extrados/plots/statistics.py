@@ -270,17 +270,20 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
 def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Demand over capacity of each rule."""
     rows = [
-        (rule, c.demand / c.capacity)
+        (rule, c.demand / c.capacity, c.code)
         for rule, c in run[name].checks.items()
         if c.demand is not None and c.capacity > 0.0
     ]
     if not rows:
         return []
     with style.figure(6.5, 0.6 + 0.35 * len(rows)) as (fig, (ax,)):
-        for k, (_, value) in enumerate(rows):
-            ax.barh(k, value, color=style.THRUST if value > 1.0 else style.SAFE)
+        for k, (_, value, code) in enumerate(rows):
+            ax.barh(k, value, color=style.STONE if not code else style.THRUST if value > 1.0 else style.SAFE)
         ax.axvline(1.0, color="k", linewidth=0.9)
-        ax.set_yticks(range(len(rows)), [rule for rule, _ in rows])
+        ax.set_yticks(range(len(rows)), [rule for rule, _, _ in rows])
         ax.invert_yaxis()
         ax.set_xlabel("demand over capacity")
-        return [(style.save(fig, folder, name), "Demand over capacity of each rule; above 1 it fails.")]
+        return [(style.save(fig, folder, name), (
+            "Demand over capacity of each rule; above 1 it fails. Of several checks of one code any that holds suffices; "
+            f"pale bars are formulas for comparison. {run[name].overall().statement}"
+        ))]  # fmt: skip
