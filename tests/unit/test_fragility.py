@@ -23,6 +23,7 @@ from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions import pulses
+from extrados.motions.from_deck import make_motion
 
 G = 9.80665
 BLOCK = {"kind": "block", "width": 0.1, "height": 0.4}
@@ -132,6 +133,40 @@ def test_uncertain_values_are_sampled_evenly() -> None:
     assert tangent.mean() == pytest.approx(0.25, rel=2e-3) and tangent.std() == pytest.approx(0.025, rel=0.03)
 
 
+def test_sobol_indices_are_those_of_a_full_factorial() -> None:
+    """All 128 widths under all 32 motions: variances of the means over rows and columns, written out."""
+    analysis = {"kind": "fragility", "count": 32, "seed": 5, "uncertain": {"width": 0.1}, "sensitivity": 4096}
+    motion = {**GENERATED, "mmi": 8}
+    result = run({**analysis, "bootstrap": 100}, motion=motion)
+    found = result.results["sensitivity"]
+    spread = np.sqrt(np.log1p(0.1**2))
+    factors = np.exp(spread * norm.ppf((np.arange(128) + 0.5) / 128) - 0.5 * spread**2)
+    models = [BlockModel(make_block(0.1 * f, 0.4)) for f in factors]
+    grounds = [make_motion(make_deck({"structure": BLOCK, "motion": {**motion, "seed": 5, "member": k + 1},
+                                      "analysis": {"kind": "rocking"}}).motion, Path()).ground for k in range(32)]  # fmt: skip
+    body, index = (v.ravel() for v in np.meshgrid(np.arange(128), np.arange(32), indexing="ij"))
+    end = np.array([g.end for g in grounds])[index] + 40.0 / BlockModel(make_block(0.1, 0.4)).frequency[0]
+    runs = rocking.ensemble([m.body for m in models], grounds, body, index, np.ones(4096), end, threads=2)
+    peak = np.minimum(runs.peak_ratio, 1.0).reshape(128, 32)
+    width, record = peak.mean(axis=1).var() / peak.var(), peak.mean(axis=0).var() / peak.var()
+    assert 0.05 < record < 0.9 and 0.05 < width < 0.9
+    for value, first, total in (("width", width, 1.0 - record), ("motion", record, 1.0 - width)):
+        assert found[value].rotation_first == pytest.approx(first, abs=0.08)
+        assert found[value].rotation_total == pytest.approx(total, abs=0.08)
+        low, high = found[value].rotation_total_interval
+        assert low < found[value].rotation_total < high < low + 0.6
+    assert result.results["sensitivity_runs"] == 4096 * 4
+
+
+def test_sensitivity_of_one_motion_is_of_the_structure_alone() -> None:
+    pulse = {"kind": "pulse", "shape": "rectangular", "amplitude": "0.5 g", "period": 0.1}
+    analysis = {"kind": "fragility", "count": 16, "uncertain": {"width": 0.1, "restitution": 0.05}, "sensitivity": 256}
+    found = run({**analysis, "bootstrap": 0}, motion=pulse).results["sensitivity"]
+    assert list(found) == ["restitution", "width"]
+    # Pushed once, it rotates most before the first impact: the restitution cannot matter, the width is all
+    assert abs(found["restitution"].rotation_total) < 0.05 and found["width"].rotation_first > 0.9
+
+
 def test_a_broken_record_fails_alone(tmp_path: Path) -> None:
     t = 0.01 * np.arange(200)
     for k, peak in enumerate((0.2, 0.5)):
@@ -174,6 +209,8 @@ def test_durations() -> None:
         ({"levels": [0.1], "durations": [1.0]}, "not both"),
         ({"levels": [0.1], "intensity": "sa"}, "go together"),
         ({"uncertain": {"widht": 0.1}}, "unknown"),
+        ({"sensitivity": 64}, "needs uncertain"),
+        ({"uncertain": {"width": 0.1}, "sensitivity": 100}, "power of 2"),
         ({"uncertain": {"width": 2.0}}, "at most 0.5"),
         ({"initial": {"rotation_ratio": 1.2}}, "less than 1"),
     ],

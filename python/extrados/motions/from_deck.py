@@ -13,6 +13,7 @@ from extrados.motions.compatible import CompatibleSet, NotMatched
 from extrados.motions.formats.record import RecordError
 from extrados.motions.generated import GeneratedSet, generated
 from extrados.motions.motion import Motion
+from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Motion as Model
 
 Sets = models.Suite | models.Generated | models.Compatible
@@ -107,7 +108,7 @@ def compatible_set(model: models.Compatible, folder: Path) -> CompatibleSet:
         raise RecordError(f"[motion] compatible: {error}") from None
 
 
-def code_spectrum(model: models.CodeSpectrum, folder: Path, damping: float = 0.05) -> code_spectra.Spectrum:
+def code_spectrum(model: CodeSpectrum, folder: Path, damping: float = 0.05) -> code_spectra.Spectrum:
     """The spectrum of a deck's table; those of ASCE 7 and of a table are of 5 % whatever the damping."""
     match model.code:
         case "EN1998-1" | "EN1998-2":

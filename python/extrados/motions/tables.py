@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from extrados.schema.quantities import Acceleration, Angle, Frequency, Time, Velocity
+from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Motion, Table, key
 
 
@@ -206,32 +207,6 @@ class Generated(Motion):
         count = self.lines if isinstance(self.lines, int) else len(self.lines)
         if not 2 <= count <= 2000:
             raise ValueError(f"{count} lines, expected 2 to 2000")
-        return self
-
-
-class CodeSpectrum(Table):
-    """The elastic spectrum of a code, with its own values, or a table."""
-
-    code: Literal["EN1998-1", "EN1998-2", "NTC", "ASCE7", "table"] = key(
-        about="EN 1998-1:2004 spectrum type 1 or 2, NTC 2018, ASCE 7-16, or a table of your own"
-    )
-    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (EN 1998-1, NTC)")
-    acceleration: Acceleration | None = key(None, "a_g on ground A (EN 1998-1, NTC)", gt=0)
-    amplification: float = key(2.5, "F_0 (NTC)", ge=1, le=10)
-    corner_period: Time = key(0.35, "T_C* (NTC)", gt=0, le=2)
-    topography: float = key(1.0, "S_T (NTC)", ge=1, le=2)
-    sds: Acceleration | None = key(None, "S_DS (ASCE 7)", gt=0)
-    sd1: Acceleration | None = key(None, "S_D1 (ASCE 7)", gt=0)
-    long_period: Time = key(8.0, "T_L (ASCE 7)", gt=0)
-    table: str | None = key(None, "CSV file period_s,sa_g", min_length=1, max_length=1024)
-
-    @model_validator(mode="after")
-    def _has_values(self) -> "CodeSpectrum":
-        need = {"EN1998-1": ("acceleration",), "EN1998-2": ("acceleration",), "NTC": ("acceleration",),
-                "ASCE7": ("sds", "sd1"), "table": ("table",)}[self.code]  # fmt: skip
-        missing = [name for name in need if getattr(self, name) is None]
-        if missing:
-            raise ValueError(f"code {self.code} needs {' and '.join(missing)}")
         return self
 
 

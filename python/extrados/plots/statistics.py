@@ -24,6 +24,8 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found += [_curve(run, name, folder), _incremental(run, name, folder)]
     if "bin_edge" in arrays:
         found.append(_histogram(run, name, folder))
+    if "sensitivity_rotation_total" in arrays:
+        found.append(_sensitivity(run, name, folder))
     return found
 
 
@@ -58,6 +60,33 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         return style.save(
             fig, folder, f"{name}-histogram"
         ), "Greatest rotation of all runs; the red bar holds those that collapse."
+
+
+def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """First-order and total Sobol indices of each uncertain value, for the rotation and the collapse."""
+    r = run[name]
+    values = list(r.sensitivity)
+    place = np.arange(len(values))
+    with style.figure(7.5, 1.6 + 0.45 * len(values), columns=2, sharey=True) as (fig, axes):
+        for ax, what, title in zip(axes, ("rotation", "collapse"), ("greatest rotation", "collapse"), strict=True):
+            for order, shift, color, text in (
+                ("total", 0.18, style.HINGE, "with interactions"),
+                ("first", -0.18, style.SAFE, "alone"),
+            ):
+                index, low, high = (run.array(name, f"sensitivity_{what}_{order}{e}") for e in ("", "_lower", "_upper"))
+                ax.barh(place + shift, index, 0.34, color=color, label=text)
+                bars = np.maximum([index - low, high - index], 0.0)
+                ax.errorbar(index, place + shift, xerr=bars, fmt="none", ecolor="k", capsize=2, linewidth=0.8)
+            ax.set_title(title)
+            ax.set_xlabel("share of the variance (Sobol index)")
+            ax.axvline(0.0, color="k", linewidth=0.8)
+        axes[0].set_yticks(place, values)
+        axes[0].invert_yaxis()
+        style.legend_below(fig, axes[0])
+        return style.save(fig, folder, f"{name}-sensitivity"), (
+            f"Sobol indices of the uncertain values and of the choice of the motion, {r.sensitivity_runs} runs; "
+            f"{100 * r.confidence:g} % bootstrap intervals."
+        )
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:

@@ -1,8 +1,21 @@
 """Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
-from extrados.results.fields import fact, maybe
+from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
+
+
+class Sensitivity(ResultModel):
+    """Sobol indices of one uncertain value: its own share of the variance, and that of all in which it is involved."""
+
+    rotation_first: float | None = fact("first-order index of the greatest rotation, collapse counted as 1")
+    rotation_first_interval: list[float | None] = fact("its bootstrap interval")
+    rotation_total: float | None = fact("total index of the greatest rotation")
+    rotation_total_interval: list[float | None] = fact("its bootstrap interval")
+    collapse_first: float | None = fact("first-order index of the collapse, 1 or 0; null where all runs agree")
+    collapse_first_interval: list[float | None] = fact("its bootstrap interval")
+    collapse_total: float | None = fact("total index of the collapse")
+    collapse_total_interval: list[float | None] = fact("its bootstrap interval")
 
 
 class Ensemble(KindResults):
@@ -34,6 +47,11 @@ class Ensemble(KindResults):
     expected_pgv_m_s: float = maybe(
         "of generated motions: median peak velocity observed at their intensity", "m/s", source="Worden et al. 2012"
     )
+
+    sensitivity: dict[str, Sensitivity] = maybe(
+        "Sobol indices by uncertain value; `motion` is the choice of the motion", source="Saltelli and others 2010"
+    )
+    sensitivity_runs: int = maybe("runs for these indices, apart from `count`")
 
     def judged(self, demand: Demand) -> Verdict:
         """The share of motions that bring it down; open unless all agree."""

@@ -3,8 +3,8 @@
 from typing import ClassVar, Literal
 
 from extrados.analyses.table import BuildingAnalysis
-from extrados.motions.tables import CodeSpectrum
 from extrados.schema.quantities import Acceleration, Force, Length, Time
+from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import key
 
 

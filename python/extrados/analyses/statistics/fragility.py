@@ -6,17 +6,19 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm, qmc
 
-from extrados.analyses.batches import Swept, sweep
+from extrados.analyses.batches import Swept, Unfinished, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe
+from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import shares
 from extrados.analyses.statistics.tables import UNCERTAIN, Fragility
 from extrados.building.rockers.rocker import Rocker, make_rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import FAILED, Body, Ground
+from extrados.motions.from_deck import is_set
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE
@@ -96,16 +98,21 @@ class EnsembleJob:
 
 
 def sampled_models(context: Context, options: Fragility, base: Rocker, count: int) -> list[Rocker]:
-    """One model for each motion with lognormal factors of mean 1 on the uncertain keys, by a scrambled Sobol sequence."""
+    """One model for each motion with uncertain values drawn by a scrambled Sobol sequence."""
+    draws = qmc.Sobol(len(options.uncertain), scramble=True, seed=options.seed or 0).random_base2(
+        max(1, int(np.ceil(np.log2(count))))
+    )[:count]
+    return models_at(context, options, base, draws)
+
+
+def models_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> list[Rocker]:
+    """One model for each row of draws from the unit cube: lognormal factors of mean 1 on the uncertain keys, by name."""
     structure = context.deck.structure
     known = UNCERTAIN.get(base.what, ())
     for name in options.uncertain:
         if name not in known or (name != "restitution" and getattr(structure, name) is None):
             raise Refused(f"uncertain.{name} does not belong to this {base.word}; it has {', '.join(known) or 'none'}")
     names = sorted(options.uncertain)
-    draws = qmc.Sobol(len(names), scramble=True, seed=options.seed or 0).random_base2(
-        max(1, int(np.ceil(np.log2(count))))
-    )[:count]
     spread = np.sqrt(np.log1p(np.array([options.uncertain[n] for n in names]) ** 2))
     factors = np.exp(spread * norm.ppf(np.clip(draws, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
     made = []
@@ -238,6 +245,16 @@ def _describe(
         f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
         f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
     ) if p is not None else "No motion could be run."  # fmt: skip
+    if options.sensitivity is not None and swept.complete:
+        try:
+            r |= sensitivity(
+                context, sorted(options.uncertain), lambda draws: models_at(context, options, base, draws), job.source,
+                motions if context.deck.motion is None or is_set(context.deck.motion) else 1, job.settle,
+                options.sensitivity, options.seed or 0, options.bootstrap, options.confidence, options.tolerance, result,
+            )  # fmt: skip
+            result.answer += f" {spoken(r['sensitivity'])}"
+        except Unfinished as stop:
+            result.status, result.reason = ("interrupted" if stop.interrupted else "failed"), str(stop)
     result.results = out.Ensemble(**r)
 
 
