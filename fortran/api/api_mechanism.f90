@@ -3,7 +3,7 @@ module api_mechanism
    use, intrinsic :: iso_c_binding, only : c_double, c_int
    implicit none
    private
-   public :: table_length, tabulate, evaluate, follow, restitution
+   public :: table_length, tabulate, evaluate, follow, restitution, blow
 
 contains
 
@@ -125,5 +125,24 @@ contains
       !f2py threadsafe
       c_v = projected_restitution(mass, inertia, before, after)
    end subroutine restitution
+
+   !> Velocities after an inelastic impact at all joints, see mechanism_blow
+   subroutine blow(n, joints, mass, inertia, centroid, side, ends, normal, tangent, before, after, status)
+      use mechanism_blow, only : inelastic_blow
+      integer(c_int), intent(in) :: n
+      integer(c_int), intent(in) :: joints
+      real(c_double), intent(in) :: mass(n)             !! of the blocks [kg]
+      real(c_double), intent(in) :: inertia(n)          !! about the centroids [kg m^2]
+      real(c_double), intent(in) :: centroid(2, n)      !! [m]
+      integer(c_int), intent(in) :: side(2, joints)     !! blocks on both sides, 1 to n, 0 for the ground
+      real(c_double), intent(in) :: ends(2, 2, joints)  !! [m]
+      real(c_double), intent(in) :: normal(2, joints)
+      real(c_double), intent(in) :: tangent(2, joints)
+      real(c_double), intent(in) :: before(3, n)        !! velocity x, y, spin
+      real(c_double), intent(out) :: after(3, n)
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      call inelastic_blow(mass, inertia, centroid, side, ends, normal, tangent, before, after, status)
+   end subroutine blow
 
 end module api_mechanism

@@ -36,6 +36,10 @@ class Material(Table):
     lateral_reduction: bool = key(
         False, "reduce ft under lateral compression, s1/ft - s2/fc <= 1; needs compressive_strength"
     )
+    confinement: float = key(
+        0.0, "what a lateral pressure adds to the compressive strength, over that pressure; 4.1 for concrete",
+        source="Richart and others (1928)", ge=0, le=10,
+    )  # fmt: skip
 
     @model_validator(mode="after")
     def _complete(self) -> "Material":
@@ -45,6 +49,8 @@ class Material(Table):
             raise ValueError("crushing_energy needs compressive_strength")
         if self.lateral_reduction and self.compressive_strength is None:
             raise ValueError("lateral_reduction needs compressive_strength")
+        if self.confinement and self.crushing_energy is None:
+            raise ValueError("confinement needs compressive_strength and crushing_energy")
         return self
 
 
@@ -52,13 +58,19 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground', min_length=1, max_length=10000
+        about='names of joints; "ground" means all joints to the ground, "rings" and "backing" those of a bridge; the name '
+        "of a layer of a drawing, those between its stones or along its lines",
+        min_length=1,
+        max_length=10000,
     )
     friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] | None = key(None, "coefficient of friction")
     normal_stiffness: Stiffness | None = key(None, "normal stiffness per area", gt=0)
     cohesion: Stress | None = key(None, "cohesion of the mortar, lost at the first failure", ge=0)
     tension: Stress | None = key(None, "tensile strength of the mortar, lost at the first failure", ge=0)
     fracture_energy: Energy | None = key(None, "energy of a crack in the mortar per area", gt=0)
+    shear_energy: Energy | None = key(None, "energy of the cohesion per area, mode II", gt=0)
+    compressive_strength: Stress | None = key(None, "compressive strength of the masonry across the joint", gt=0)
+    crushing_energy: Energy | None = key(None, "energy of crushing per area of the joint", gt=0)
 
 
 class Joints(Table):
@@ -71,6 +83,21 @@ class Joints(Table):
     tension: Stress = key(0.0, "tensile strength of mortar, lost at the first failure", ge=0)
     fracture_energy: Energy | None = key(
         None, "energy of a crack in the mortar per area; sequentially linear analysis needs it with a tension", gt=0
+    )
+    shear_energy: Energy | None = key(
+        None,
+        "energy of the cohesion per area, mode II; sequentially linear analysis needs it with a cohesion, and loses the "
+        "cohesion by it, not at the first failure",
+        gt=0,
+    )
+    compressive_strength: Stress | None = key(
+        None, "compressive strength of the masonry across the joints, of sequentially linear analysis", gt=0
+    )
+    crushing_energy: Energy | None = key(None, "energy of crushing per area of the joints; goes with it", gt=0)
+    softening: Literal["linear", "exponential"] = key(
+        "exponential",
+        "how cohesion and tension of mortar fall, in sequentially linear analysis",
+        source="Lourenco 1996",
     )
     normal_stiffness: Stiffness | None = key(
         None, "normal stiffness per area; default E over the length of stone that a joint stands for",
@@ -91,11 +118,11 @@ class Joints(Table):
         None, "stiffness-proportional damping in s, instead of the rule"
     )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
-        "thesis",
-        "impact of rocking: the thesis' momentum balance of arches (of blocks Housner's; of other sections the energy-safe "
-        "projection); the energy-safe projection; all energy that an inelastic blow leaves; or the ratio c_v of the rates "
-        "after and before an impact (0 to 1)",
-        source="thesis Eqs 5.3, 6.2, 6.3, B.3",
+        "inelastic",
+        "impact of rocking, of blocks always Housner's: all energy that a blow without rebound leaves, with impulses at all "
+        "joints; the thesis' momentum balance of arches (of other sections the energy-safe projection); the energy-safe "
+        "projection on the next mechanism alone; or the ratio c_v of the rates after and before an impact (0 to 1)",
+        source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
         None, "instead of restitution: c_E, the kinetic energy after over that before an impact of a block",

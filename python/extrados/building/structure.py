@@ -10,10 +10,12 @@ from extrados.schema.table import Table
 if TYPE_CHECKING:
     from extrados.building.building import Building
     from extrados.building.geometry.assembly import Assembly
+    from extrados.building.geometry.inspection import Inspection
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
 
 RocksAs = Literal["mechanism", "block", "piers"]
+Crossed = Literal["arch", "top"]
 
 
 class Structure(Table):
@@ -21,6 +23,7 @@ class Structure(Table):
     have, with the reason in words.
 
     rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, or its piers.
+    crossed: where a moving load goes unless a deck names a chain, over the first arch or along the whole top.
     starter_analysis: the analysis of the deck that `new` writes.
     """
 
@@ -28,6 +31,7 @@ class Structure(Table):
     word: ClassVar[str] = "structure"
     lacks: ClassVar[Mapping[str, str]] = {}
     rocks_as: ClassVar[RocksAs] = "mechanism"
+    crossed: ClassVar[Crossed] = "arch"
     starter_analysis: ClassVar[str] = "tilt"
 
     def assembly(self, density: float, folder: Path) -> "Assembly":
@@ -37,11 +41,19 @@ class Structure(Table):
         """
         raise NoView(self.lacks["blocks"])
 
+    def inspection(self, folder: Path) -> "Inspection | None":
+        """Gaps, overlaps and near misses of a surveyed structure; None where its geometry is exact by its making."""
+        return None
+
+    def mended(self, folder: Path) -> "Structure | None":
+        """The structure with the tolerance that closes its open gaps; None where there are none that one closes."""
+        return None
+
     def weighed(self, made: "Assembly", density: float, densities: Mapping[str, float]) -> "Assembly":
         """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""
         return made
 
-    def piers(self, density: float) -> "Assembly":
+    def pier_assembly(self, density: float) -> "Assembly":
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""
         raise NoView(f"a structure of kind '{self.kind}' has no piers")
 

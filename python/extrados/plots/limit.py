@@ -8,11 +8,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
 from extrados.plots import style
-from extrados.results.limit import Hinge, Tilt
+from extrados.results.limit import Hinge, MovingLoad, Tilt
 from extrados.results.store import Stored
 
+MOST_LETTERED = 26  # hinges: more are dots
 MOST_FLOW = 3.0  # points: width of the greatest force between stones
 HATCH = "#cfc6b2"
+LONG = 0.5  # height over length: below it section and mechanism stand one over the other
+MOST_LETTERS = 8  # hinges of a moving load: letters of more would run into each other
+FILL, PAVED, EVEN = "#f3ead6", "#b9b4aa", "#c98a2b"
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
 
@@ -88,25 +92,32 @@ def overall_dimensions(ax: Axes, blocks: list[np.ndarray]) -> None:
     ax.set_ylim(low - 2.0 * away, high + 1.2 * away)
 
 
-def thrust_lines(ax: Axes, lines: dict[str, np.ndarray], colour: str | None = None, label: str = "", **options) -> None:
-    """Thrust lines of all chains and piers."""
-    for i, line in enumerate(lines.values()):
-        ax.plot(*line.T, color=colour or style.THRUST, label=label if i == 0 else "_", zorder=3, **options)
-
-
-def compression(ax: Axes, run: Stored, name: str, state: str, label: str) -> None:
-    """Where forces flow through stones that form no chain: from each stone to its joints, as thick as they press."""
-    centroid, point, normal = (run.array(name, what) for what in ("centroid", f"{state}_point", f"{state}_normal"))
-    blocks = run.array(name, "joint_block")
-    ends = np.where((blocks >= 0)[..., None], centroid[blocks], point[:, None])
-    width = MOST_FLOW * normal / max(float(normal.max()), 1e-300)
-    shown = np.flatnonzero(width > 0.01 * MOST_FLOW)
-    lines = [[end, point[j]] for j in shown for end in ends[j]]
+def thrust_lines(ax: Axes, run: Stored, name: str, state: str, colour: str, label: str) -> None:
+    """The thrust line of a state through every stone: where there are arches or stacks of one width, but for branches
+    within a stone, which share it as they press; else as wide everywhere as it presses."""
+    points, start = run.array(name, f"{state}_line"), run.array(name, f"{state}_line_start")
+    lines = [points[a:b] for a, b in itertools.pairwise(start)]
+    force = run.array(name, f"{state}_line_force")
+    if len(run.array(name, f"{state}_polygon_of")):
+        _, stone_of = np.unique(run.array(name, f"{state}_line_of").astype(str), return_inverse=True)
+        greatest = np.zeros(len(lines))
+        np.maximum.at(greatest, stone_of, force)
+        shown, width = np.arange(len(lines)), 1.2 * np.maximum(force / np.maximum(greatest[stone_of], 1e-300), 0.2)
+    else:
+        width = MOST_FLOW * force / max(float(force.max(initial=0.0)), 1e-300)
+        shown = np.flatnonzero(width > 0.01 * MOST_FLOW)
     ax.add_collection(
         LineCollection(
-            lines, linewidths=np.repeat(width[shown], 2), colors=style.THRUST, capstyle="round", zorder=3, label=label
+            [lines[k] for k in shown], linewidths=width[shown], colors=colour, capstyle="round", zorder=3, label=label
         )
     )
+
+
+def funiculars(ax: Axes, run: Stored, name: str, state: str) -> None:
+    """Funicular polygons of the arches, dashed."""
+    for k, line in enumerate(paths(run, name, f"{state}_funicular").values()):
+        label = "funicular" if k == 0 else "_"
+        ax.plot(*line.T, color=style.EDGE, linewidth=0.6, linestyle="--", label=label, zorder=2.8)
 
 
 def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] = CHAIN_COLOURS) -> None:
@@ -128,10 +139,10 @@ def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] 
 def hinge_marks(ax: Axes, hinges: list[Hinge]) -> None:
     """Hinges as circles with letters."""
     points = np.array([[h.x_m, h.y_m] for h in hinges]).reshape(-1, 2)
-    if len(points) > 26:
+    if len(points) > MOST_LETTERED:
         ax.plot(*points.T, ".", color=style.HINGE, markersize=2.0, zorder=5)
         return
-    style.draw_hinges(ax, points, [chr(65 + i) for i in range(min(len(points), 26))])
+    style.draw_hinges(ax, points, [chr(65 + i) for i in range(len(points))])
 
 
 def _standing(run: Stored, name: str) -> list[int]:
@@ -145,19 +156,15 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     points = np.concatenate(blocks)
     tall = float(np.ptp(points[:, 1]) / max(np.ptp(points[:, 0]), 1e-9))
     height = float(np.clip(3.4 * tall + 1.2, 3.6, 7.0))
-    with_lines = "collapse_line" in run.arrays[name] and len(run.array(name, "collapse_line"))
-    polygons = paths(run, name, "collapse_polygon") if with_lines else {}
+    polygons = paths(run, name, "collapse_polygon")
     with style.figure(12.5 if polygons else 9.0, height, columns=3 if polygons else 2) as (fig, axes):
+        earth(axes[0], run, name)
         stone(axes[0], blocks)
         ground(axes[0], run, name, _standing(run, name))
-        if with_lines:
-            thrust_lines(axes[0], paths(run, name, "collapse_line"), label="thrust line")
-            thrust_lines(
-                axes[0], paths(run, name, "collapse_funicular"), style.EDGE, "funicular", linewidth=0.6, linestyle="--"
-            )
+        thrust_lines(axes[0], run, name, "collapse", style.THRUST, "thrust line")
+        if polygons:
+            funiculars(axes[0], run, name, "collapse")
             style.legend_below(fig, axes[0])
-        else:
-            compression(axes[0], run, name, "collapse", "compression")
         hinge_marks(axes[0], r.hinges)
         overall_dimensions(axes[0], blocks)
         axes[0].set_title(f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)")
@@ -172,14 +179,11 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [(style.save(fig, folder, f"{name}-collapse"), _caption(r))]
     if "least_line" in run.arrays[name]:
         with style.figure(10.0, height, columns=2, width_ratios=[1.3, 1]) as (fig, (ax, forces)):
+            earth(ax, run, name)
             stone(ax, blocks)
             ground(ax, run, name, _standing(run, name))
-            thrust_lines(
-                ax, paths(run, name, "least_line"), style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}"
-            )
-            thrust_lines(
-                ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}"
-            )
+            thrust_lines(ax, run, name, "least", style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}")
+            thrust_lines(ax, run, name, "most", style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}")
             style.legend_below(fig, ax)
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
@@ -205,10 +209,7 @@ def _per_metre(r: Tilt, force: float) -> str:
 
 
 def _caption(r: Tilt) -> str:
-    rings = [name for name in r.thrusts or {} if not name.startswith("stack")]  # only they have an intrados
-    letters = "; ".join(
-        f"{chr(65 + i)} {f'{h.side} of ' if rings else ''}{h.name}" for i, h in enumerate(r.hinges[:26])
-    )
+    letters = "; ".join(f"{chr(65 + i)} {h.told()}" for i, h in enumerate(r.hinges[:MOST_LETTERED]))
     free = (
         " Where the line is not fixed by the mechanism its most central course is drawn."
         if len(r.thrusts or {}) > 1
@@ -251,23 +252,20 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
     lines_of = {which: line for which in colours if (line := getattr(r, which)) is not None}
     colours = {which: colours[which] for which in lines_of}
-    lines = {which: paths(run, name, f"{which}_line") for which in colours}
     arched = r.chain is not None
     sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
     with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
+        earth(ax, run, name)
         stone(ax, blocks)
         ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
         for which, colour in colours.items():
-            if arched:
-                label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m"
-                thrust_lines(ax, lines[which], colour, label)
-            else:
-                compression(ax, run, name, which, f"{which} state: compression")
+            label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m" if arched else f"{which} state"
+            thrust_lines(ax, run, name, which, colour, label)
         overall_dimensions(ax, blocks)
         style.legend_below(fig, ax)
         safety = r.geometric_safety_factor
         told = f", safety factor {safety:.2f}" if safety is not None and np.isfinite(safety) else ""
-        ax.set_title(f"{'Thrust lines' if arched else 'Compression'} at {r['gamma_g']:g} g{told}")
+        ax.set_title(f"{'Thrust lines' if arched else 'Thrust line'} at {r['gamma_g']:g} g{told}")
         style.section_axes(ax)
         for forces in others:
             polygons = {which: paths(run, name, f"{which}_polygon")[r.chain] for which in colours}
@@ -275,7 +273,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             forces.set_title(f"Force polygons of the {r['chain']}")
         caption = "Thrust lines of least, greatest and most central thrust, and their force polygons."
         if not arched:
-            caption = "The most central state: lines from stone to stone, as thick as the joints press."
+            caption = "The most central state: the thrust line through every stone, as wide as it presses."
         found = [(style.save(fig, folder, f"{name}-lines"), caption)]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
@@ -382,6 +380,34 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         return [(style.save(fig, folder, name), "Collapse acceleration of the sections that stand.")]
 
 
+def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacities of the random surveys: how many bear at most how much, the band, and the survey that is given."""
+    r = run[name]
+    gamma = run.array(name, "gamma")
+    lesser = np.sort(np.nan_to_num(gamma.min(axis=1), nan=0.0))
+    with style.figure(7.5, 3.8) as (fig, (ax,)):
+        share = np.arange(1, len(lesser) + 1) / len(lesser)
+        ax.axvspan(
+            r.low_collapse_acceleration_g, r.high_collapse_acceleration_g, color=style.STONE, zorder=0,
+            label=f"nine in ten: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
+        )  # fmt: skip
+        ax.step(
+            lesser,
+            share,
+            where="post",
+            color=style.THRUST,
+            label=f"{r.count} surveys within {1e3 * r.deviation_m:.3g} mm",
+        )
+        given = r.given_collapse_acceleration_g
+        ax.axvline(given, color=style.HINGE, linestyle="--", label=f"as given: {given:.4f} g")
+        ax.set_xlabel("collapse acceleration, the lesser of both senses [g]")
+        ax.set_ylabel("share of surveys at or below")
+        ax.set_ylim(0.0, 1.0)
+        ax.set_title("Capacity within the tolerance of the survey")
+        style.legend_below(fig, ax)
+        return [(style.save(fig, folder, name), "Capacities of random surveys of the same stones.")]
+
+
 def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The arch on the way to its fall, and how the thrust changes."""
     r = run[name]
@@ -419,24 +445,136 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     return found
 
 
-def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Capacity over place, and the worst place."""
-    blocks, centroid = outlines(run, name), run.array(name, "centroid")
-    place, capacity = run.array(name, "place"), run.array(name, "capacity")
-    top = max(float(o[:, 1].max()) for o in blocks)
-    with style.figure(11.0, 4.0, columns=2) as (fig, (ax, curve)):
-        stone(ax, blocks, ghost=True)
-        stone(ax, carried(blocks, centroid, run.array(name, "mechanism_pose")))
-        for x in run.array(name, "axle"):
+def earth(ax: Axes, run: Stored, name: str) -> None:
+    """Fill and surfacing over the stones, where there are any."""
+    for what, colour in (("fill_outline", FILL), ("surfacing_outline", PAVED)):
+        if what in run.arrays[name]:
+            ax.fill(*run.array(name, what).T, facecolor=colour, edgecolor=style.EDGE, linewidth=0.4, zorder=0.5)
+
+
+def road_of(run: Stored, name: str, blocks: list[np.ndarray]) -> float:
+    """Level at which loads stand [m]: the top of the surfacing, the fill or the stones."""
+    tops = [run.array(name, what) for what in ("fill_outline", "surfacing_outline") if what in run.arrays[name]]
+    return max(float(o[:, 1].max()) for o in [*blocks, *tops])
+
+
+def _load_marks(ax: Axes, run: Stored, name: str, road: float, size: float) -> None:
+    """Axles as arrows and even loads as bands on the road."""
+    for x in run.array(name, "axle"):
+        ax.annotate(
+            "", (x, road), (x, road + 0.12 * size), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}, zorder=6
+        )
+    for i, (start, stop) in enumerate(run.array(name, "even_load")):
+        ax.fill_between(
+            [start, stop], road, road + 0.03 * size, color=EVEN, alpha=0.7, linewidth=0.0, zorder=4,
+            label="even load" if i == 0 else "_",
+        )  # fmt: skip
+
+
+def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
+    """Passive pressures that push back, as arrows as long as they are great."""
+    if "push_force" not in run.arrays[name]:
+        return
+    force, at = run.array(name, "push_force"), run.array(name, "push_point")
+    greatest = max(float(np.abs(run.array(name, "push_most")).max()), 1e-300)
+    for (x, y), f in zip(at, force, strict=True):
+        if abs(f) > 0.01 * greatest:
             ax.annotate(
-                "", (x, top), (x, top + 0.1 * np.ptp(place)), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}
-            )
-        ax.set_ylim(top=top + 0.13 * np.ptp(place))
-        ax.set_title("Mechanism under the load at its worst place")
-        style.section_axes(ax)
-        curve.plot(place, capacity / 1e3, color=style.THRUST, marker=".", markersize=3)
-        low = float(np.nanmin(capacity)) / 1e3
-        curve.set_ylim(0.0, min(float(np.nanmax(capacity)) / 1e3 * 1.05, 8.0 * low))
+                "", (x, y), (x - 0.08 * size * f / greatest, y), zorder=5,
+                arrowprops={"arrowstyle": "->", "color": style.GROUND, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0},
+            )  # fmt: skip
+    ax.plot([], [], color=style.GROUND, label="passive pressure")
+
+
+def _zones(ax: Axes, run: Stored, name: str, links: list[np.ndarray]) -> None:
+    """Zones of thrust along the chains: what of the joints the strength needs to carry the compression."""
+    if "zone_inner" not in run.arrays[name]:
+        return
+    inner, outer = run.array(name, "zone_inner"), run.array(name, "zone_outer")
+    for i, joints in enumerate(links):
+        band = np.concatenate([inner[joints], outer[joints][::-1]])
+        ax.fill(
+            *band.T,
+            color=style.THRUST,
+            alpha=0.35,
+            linewidth=0.0,
+            zorder=2.5,
+            label="zone of thrust" if i == 0 else "_",
+        )
+
+
+def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """The worst place with its thrust line, the mechanism, and the capacity over place."""
+    r = run[name]
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
+    place, size = run.array(name, "place"), float(np.ptp(np.concatenate(blocks)[:, 0]))
+    road = road_of(run, name, blocks)
+    start, joints = run.array(name, "chain_start"), run.array(name, "chain_joint")
+    links = [joints[a:b] for a, b in itertools.pairwise(start)]
+    point, envelope = run.array(name, "collapse_point"), run.array(name, "envelope_point")
+    tall = (road - min(float(o[:, 1].min()) for o in blocks)) / size + 0.15
+    long = tall < LONG
+    height = float(np.clip((19.0 if long else 5.6) * tall + 1.5, 3.2, 8.0))
+    with style.figure(9.0 if long else 11.5, height, rows=1 + long, columns=2 - long) as (fig, (ax, moved)):
+        earth(ax, run, name)
+        stone(ax, blocks)
+        for i, link in enumerate(links):
+            rows = envelope[:, link]
+            ax.add_collection(LineCollection(
+                rows[np.isfinite(rows).all(axis=(1, 2))], colors=style.EDGE, linewidths=0.25, alpha=0.5, zorder=2.2,
+                label="thrust lines, all places" if i == 0 else "_",
+            ))  # fmt: skip
+            ax.plot(*point[link].T, color=style.THRUST, zorder=3, label="thrust line" if i == 0 else "_")
+        _zones(ax, run, name, links)
+        _pushes(ax, run, name, size)
+        _load_marks(ax, run, name, road, size)
+        hinged = [h.joint for h in r.hinges]
+        lettered = len(hinged) <= MOST_LETTERS
+        style.draw_hinges(ax, point[hinged], [chr(65 + i) for i in range(len(hinged))] if lettered else None)
+        ax.set_title(f"Collapse at the worst place: {_borne(r)}")
+        if ax.get_legend_handles_labels()[0]:
+            style.legend_below(fig, ax)
+        earth(moved, run, name)
+        stone(moved, blocks, ghost=True)
+        stone(moved, carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        _load_marks(moved, run, name, road, size)
+        moved.set_title("Mechanism (finite rotations)")
+        for drawn in (ax, moved):
+            drawn.set_ylim(top=road + (0.15 if len(run.array(name, "axle")) else 0.06) * size)
+            style.section_axes(drawn)
+        letters = "; ".join(
+            f"{f'{chr(65 + i)} ' if lettered else ''}{h.side} of {h.name}" for i, h in enumerate(r.hinges[:26])
+        )
+        found = [(
+            style.save(fig, folder, f"{name}-worst"),
+            f"The most dangerous place: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
+        )]  # fmt: skip
+    if len(place) == 1:
+        return found
+    adequacy = "adequacy" in run.arrays[name]
+    value = run.array(name, "adequacy") if adequacy else run.array(name, "capacity") / 1e3
+    way = run.array(name, "way")
+    with style.figure(7.5, 3.6) as (fig, (curve,)):
+        for sense, colour, label in ((1, style.THRUST, "heading to +x"), (-1, style.HINGE, "heading to -x")):
+            if (way == sense).any():
+                curve.plot(
+                    place[way == sense], value[way == sense], color=colour, marker=".", markersize=3, label=label
+                )
+        if (way < 0).any():
+            curve.legend()
+        if adequacy:
+            curve.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle="--")
+        low = float(np.nanmin(value))
+        curve.set_ylim(0.0, max(1.1 * low, min(float(np.nanmax(value)) * 1.05, 8.0 * low), 1.1 if adequacy else 0.0))
         curve.set_xlabel("x of the first axle [m]")
-        curve.set_ylabel("load at collapse [kN]")
-        return [(style.save(fig, folder, name), "Load that brings it down, over the place of the first axle.")]
+        curve.set_ylabel("adequacy factor" if adequacy else "load at collapse [kN]")
+        curve.set_title("Adequacy over place" if adequacy else "Load at collapse over place")
+        found.append(
+            (style.save(fig, folder, f"{name}-places"), "What brings it down, over the place of the first axle.")
+        )
+    return found
+
+
+def _borne(r: MovingLoad) -> str:
+    load = f"{r.collapse_load_N / 1e3:.4g} kN"
+    return load if r.adequacy_factor is None else f"{r.adequacy_factor:.3g} x the load ({load})"

@@ -24,8 +24,13 @@ class NamedHinge(JointHinge):
 class Hinge(NamedHinge):
     """A hinge of a mechanism, and its place."""
 
+    place: str = fact("where it is, in words: springing, haunch or crown of an arch, foot of a pier, bed or head joint")
     x_m: float = fact("x of the hinge", "m")
     y_m: float = fact("y of the hinge", "m")
+
+    def told(self) -> str:
+        """The place in words, with numbers where a stone's name alone finds nothing."""
+        return f"{self.place} (x = {self.x_m:.2f}, y = {self.y_m:.2f} m)" if "joint" in self.place else self.place
 
 
 class Reaction(ResultModel):
@@ -140,22 +145,33 @@ class Thrust(KindResults):
 
 
 class MovingLoad(KindResults):
-    """moving-load: the load that brings an arch down, at every place along its span."""
+    """moving-load: the load or train that brings an arch or a bridge down, at every place along it."""
 
     chain: str | None = fact("the arch that the load crosses; null where it crosses the whole top")
-    collapse_load_N: float = fact("least load that brings it down", "N")
+    collapse_load_N: float = fact("least load that brings it down; of a train, what then stands on the structure", "N")
     collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle where that is", "m")
     worst_place_over_span: float = fact("x of the first axle where that is, from the left springing, over the span")
+    worst_way: Literal["+x", "-x"] = fact("where the train heads there")
     hinges: list[NamedHinge] = fact("hinges of the mechanism there")
+    sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
+    greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
     places_without_limit: int = fact("places where no load of the kind brings it down")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
     load_N: float = maybe("the load that the deck gives", "N")
     safety_factor: float = maybe("collapse load over that load")
+    train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")
+    adequacy_factor: float = maybe("multiple of the factored train, or load, that brings it down")
+    live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
 
     def judged(self, demand: Demand) -> Verdict:
         """The deck's load against the least collapse load [N]."""
         text = f"It bears {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
+        if self.load_N is None and self.adequacy_factor is not None:
+            return judge(
+                f"It bears {self.adequacy_factor:.3g} times the factored train at the most dangerous place.",
+                1.0, self.adequacy_factor,
+            )  # fmt: skip
         if self.load_N is None:
             return judge(f"{text}; the deck gives no load to compare with.", None, self.collapse_load_N, "N")
         return judge(
@@ -275,3 +291,22 @@ class Survey(KindResults):
             return judge(f"{text}.", None, None, "g")
         least = self.weakest_collapse_acceleration_g
         return judge(f"{text}; the weakest of them, {self.weakest}, bears {least:.3g} g.", None, least, "g")
+
+
+class Imperfections(KindResults):
+    """imperfections: capacities of random surveys of the same stones, the lesser of the two senses of each."""
+
+    count: int = fact("number of random surveys")
+    deviation_m: float = fact("how far each measured point lies at most from where the given survey has it", "m")
+    given_collapse_acceleration_g: float = fact("capacity of the survey that is given", "g")
+    median_collapse_acceleration_g: float = fact("median capacity", "g")
+    low_collapse_acceleration_g: float = fact("lower end of the band that holds nine tenths: the 5th percentile", "g")
+    high_collapse_acceleration_g: float = fact("its upper end: the 95th percentile", "g")
+    least_collapse_acceleration_g: float = fact("least capacity; 0 where a survey cannot stand", "g")
+    greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
+    cannot_stand: int = fact("surveys that cannot stand upright; they count as 0 g")
+    without_answer: int = fact("surveys whose programmes gave no answer; they are left out")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The 5th percentile of the capacities against the peak ground acceleration of the motion [g]."""
+        return acceleration(self.low_collapse_acceleration_g, demand)

@@ -69,9 +69,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     if numbers["still_moving"]:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     if trial.idle:
-        result.warnings.append(
-            "nothing moves it: add [motion], [[initial.movements]] or, for a block, [initial] rotation_ratio"
-        )
+        result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
     if not found.interrupted:
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)

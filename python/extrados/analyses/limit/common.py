@@ -7,19 +7,25 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
 from extrados.limit.equilibrium import Disconnected
+from extrados.limit.fill import under_load
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
+from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
-from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.limit.places import place_of
+from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.results.limit import Hinge, Reaction
 from extrados.results.model import Array
 
 #: Bounds and mechanism must agree this closely, relative to gamma, or the answer is not given.
 GAP = 1e-8
+#: Length over which a point load on earth presses [m]
+CONTACT = 0.3
 
 
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
@@ -55,6 +61,9 @@ def loads_of(assembly: Assembly, options: Any) -> Loads:
     loads = tilt_loads(assembly)
     extra = np.zeros_like(loads.dead)
     for load in getattr(options, "load", []):
+        if assembly.earth is not None:
+            extra += under_load(assembly.earth, len(extra), load.x, load.force, CONTACT)
+            continue
         block, y = block_under(assembly, load.x)
         extra += forces_at(len(extra), block, np.array([load.x, y]), (0.0, -load.force))
     return loads.with_dead(extra)
@@ -106,10 +115,26 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
         raise Refused(f"fracture: {error}") from None
 
 
+def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: float) -> str | None:
+    """What a survey with open gaps would bear to +x if they were closed, in words beside its capacity gamma [g]; None
+    where none is open."""
+    if not building.told()[0] or building.structure is None:
+        return None
+    mended = building.structure.mended(building.folder)
+    if mended is None:
+        return None
+    told = f'with all gaps closed (contact_tolerance = "{1e3 * mended.contact_tolerance:.3g} mm")'
+    try:
+        closed = limit_of(building.apart().having(structure=mended), options).collapse(1)[0].gamma
+    except (BadGeometry, Refused, NoEquilibrium, NoAnswer, Immovable) as error:
+        return f"{told} there is no capacity: {error}"
+    return f"{told} it bears {closed:.4f} g to +x, {closed / gamma:.2f} times the {gamma:.4f} g told here"
+
+
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
     """What every picture of the structure needs."""
     outlines = [np.asarray(o) for o in assembly.outlines]
-    return {
+    return earth_arrays(assembly) | {
         "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first ends of the joints (intrados)"),
         "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second ends of the joints (extrados)"),
         "outline": Array(
@@ -126,6 +151,50 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
             "blocks on both sides, -1 the ground",
         ),
     }
+
+
+def earth_arrays(assembly: Assembly) -> dict[str, Array]:
+    """Fill and surfacing as pictures show them; nothing without them."""
+    earth = assembly.earth
+    if earth is None:
+        return {}
+    line = np.column_stack([earth.line.start, earth.line.end]).reshape(-1, 2)
+    left, right, low, high = line[0, 0], line[-1, 0], earth.formation, earth.road
+    outline = np.concatenate([line, [[right, low], [left, low]]])
+    made = {"fill_outline": Array(outline, ("fill_vertex", "axis"), "m", "outline of the fill")}
+    if earth.surfacing > 0.0:
+        made["surfacing_outline"] = Array(
+            np.array([[left, low], [right, low], [right, high], [left, high]]), ("surfacing_vertex", "axis"), "m",
+            "outline of the surfacing",
+        )  # fmt: skip
+    return made
+
+
+def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Array]:
+    """The passive pressures that a state mobilises: where they act and how much; nothing where none counts."""
+    if loads.resistance is None or state.mobilised is None:
+        return {}
+    block, wrench = loads.resistance.block, loads.resistance.wrench
+    at = np.column_stack([assembly.centroid[block, 0], -wrench[:, 2] / wrench[:, 0]])
+    return {
+        "push_point": Array(at, ("push", "axis"), "m", "where the fill pushes back"),
+        "push_force": Array(state.mobilised * wrench[:, 0], ("push",), "N", "its horizontal push, to +x"),
+        "push_most": Array(wrench[:, 0], ("push",), "N", "the most it can push, to +x"),
+    }
+
+
+def zone_arrays(assembly: Assembly, state: State, strength: float | None) -> dict[str, Array]:
+    """The zone of thrust: the part of each joint, about the thrust line, that the strength [Pa] needs to carry it."""
+    if strength is None:
+        return {}
+    half = 0.5 * state.normal / (strength * assembly.depth * assembly.length)
+    along = assembly.q - assembly.p
+    return {
+        f"zone_{name}": Array(
+            assembly.p + (state.position + sign * half)[:, None] * along, ("joint", "axis"), "m", f"{about} end of the zone of thrust"
+        )
+        for name, sign, about in (("inner", -1.0, "intrados"), ("outer", 1.0, "extrados"))
+    }  # fmt: skip
 
 
 def state_arrays(assembly: Assembly, name: str, state: State, about: str) -> dict[str, Array]:
@@ -151,11 +220,29 @@ def packed(name: str, paths: dict[str, np.ndarray], unit: str, about: str) -> di
     }
 
 
+def line_arrays(name: str, found: list[ThrustPath], about: str) -> dict[str, Array]:
+    """Thrust lines through all stones, and the greatest force along each of their pieces."""
+    points = [path.points for path in found] or [np.empty((0, 2))]
+    title = f"{name}_line"
+    return {
+        title: Array(np.concatenate(points), (f"{title}_vertex", "axis"), "m", f"thrust lines {about}"),
+        f"{title}_start": Array(
+            np.cumsum([0, *(len(path.points) for path in found)]), (f"{title}_edge",), "", f"first vertex of each path of {title}, and the end"
+        ),
+        f"{title}_of": Array(
+            np.array([path.name for path in found], dtype=object), (f"{title}_path",), "", f"the chain or stone of each path of {title}"
+        ),
+        f"{title}_force": Array(
+            np.array([path.force for path in found]), (f"{title}_path",), "N", f"greatest force along each path of {title}"
+        ),
+    }  # fmt: skip
+
+
 def graphic_arrays(answer: Answer, name: str, state: State, about: str) -> dict[str, Array]:
     """Thrust lines, funicular and force polygons of a state."""
     per_metre = {k: v / answer.assembly.depth for k, v in answer.polygons(state).items()}
     return {
-        **packed(f"{name}_line", answer.lines(state), "m", f"thrust lines {about}"),
+        **line_arrays(name, answer.lines(state), about),
         **packed(f"{name}_funicular", answer.funiculars(state), "m", f"funicular polygons {about}"),
         **packed(f"{name}_polygon", per_metre, "N/m", f"rays of the force polygons {about}, per metre of depth"),
     }
@@ -166,7 +253,8 @@ def hinge_rows(assembly: Assembly, hinges: list[tuple[int, str]], pivot: np.ndar
     rows = []
     for j, side in hinges:
         x, y = assembly.p[j] + pivot[j] * (assembly.q[j] - assembly.p[j])
-        rows.append(Hinge(joint=j, side=side, name=assembly.joint_names[j], x_m=x, y_m=y))
+        place = place_of(assembly, j, np.array([x, y]))
+        rows.append(Hinge(joint=j, side=side, name=assembly.joint_names[j], place=place, x_m=x, y_m=y))
     return rows
 
 

@@ -25,7 +25,7 @@ from extrados.motions import tables as models
 from extrados.motions.formats.record import RecordError
 from extrados.motions.from_deck import compatible_motion, compatible_set, generated_set, is_set, suite_motions
 from extrados.motions.impulse import Impulse, primary_impulses
-from extrados.motions.measures import fourier_spectrum, spectral_measures
+from extrados.motions.measures import BANDWIDTH, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
 from extrados.motions.wavelet_pulse import classify
 from extrados.results import motion as out
@@ -34,6 +34,7 @@ from extrados.schema.constants import GRAVITY
 
 MOST_SPECTRA = 1000  # of a set: what percentiles are taken over
 MOST_IMPULSES = 60  # of a set: whose primary impulse is fitted
+SMOOTHED = 300  # frequencies of a smoothed spectrum
 SHOWN = 4  # motions of a set that are stored and drawn
 PERCENTILES = (16, 50, 84)
 #: Measures of a motion whose medians over a set are results
@@ -87,7 +88,9 @@ def _study(motion: Motion, options: MotionStudy) -> dict:
         "wavelet_pulse": out.WaveletPulse(
             indicator=pulse.indicator, period_s=pulse.period, peak_velocity_m_s=pulse.peak_velocity,
             pgv_ratio=pulse.pgv_ratio, energy_ratio=pulse.energy_ratio, early=pulse.early, pulse_like=pulse.pulse_like,
+            fails=list(pulse.fails),
         ),
+        **{name: said for name in ("title", "station") if (said := getattr(motion, name))},
     }  # fmt: skip
 
 
@@ -118,6 +121,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
         "husid": Array(husid / max(husid[-1], 1e-300), ("time",), "", "share of the Arias intensity"),
         "frequency": Array(frequency, ("frequency",), "Hz"),
         "fourier": Array(amplitude, ("frequency",), "m/s", "Fourier amplitude of the acceleration"),
+        **_smoothed(frequency, amplitude),
         **_spectra_arrays(spectra),
     }
     if context.motion.ground.channels > 1:
@@ -154,6 +158,19 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     return result
 
 
+def _smoothed(frequency: np.ndarray, amplitude: np.ndarray) -> dict[str, Array]:
+    """The Fourier spectrum smoothed, from 0.05 Hz or what the motion resolves up to 50 Hz or what it holds."""
+    low, high = max(0.05, 2.0 * float(frequency[1])), min(50.0, float(frequency[-1]))
+    if low >= high:
+        return {}
+    centre = np.geomspace(low, high, SMOOTHED)
+    about = f"Fourier amplitude smoothed by the window of Konno and Ohmachi, b = {BANDWIDTH:g}"
+    return {
+        "smooth_frequency": Array(centre, ("smooth_frequency",), "Hz"),
+        "fourier_smooth": Array(konno_ohmachi(frequency, amplitude, centre), ("smooth_frequency",), "m/s", about),
+    }
+
+
 def _damping(options: MotionStudy) -> float:
     """Damping ratio where one spectrum must do."""
     return options.dampings[min(1, len(options.dampings) - 1)]
@@ -176,8 +193,9 @@ def _all_directions(
 
 def describe(name: str, r: out.OneMotion) -> str:
     """The numbers of one motion in words."""
+    said = ", ".join(part for part in (r.title, r.station) if part)
     text = (
-        f"{name}: peak {r.pga_g:.4g} g at {r.pga_time_s:.2f} s, {100 * r.pgv_m_s:.3g} cm/s, {100 * r.pgd_m:.3g} cm; "
+        f"{name}{f' ({said})' if said else ''}: peak {r.pga_g:.4g} g at {r.pga_time_s:.2f} s, {100 * r.pgv_m_s:.3g} cm/s, {100 * r.pgd_m:.3g} cm; "
         f"Arias intensity {r.arias_m_s:.3g} m/s over {r.duration_5_95_s:.3g} s (5 to 95 %). "
     )
     if r.rotd100_pga_g is not None:
@@ -188,11 +206,9 @@ def describe(name: str, r: out.OneMotion) -> str:
             f"(explains {100 * first.goodness_of_fit:.0f} % of the motion over its span). "
         )
     pulse = r.wavelet_pulse
-    kind = "pulse-like" if pulse.pulse_like else "not pulse-like"
-    return (
-        text
-        + f"By Baker's classification it is {kind} (indicator {pulse.indicator:.2f}, period {pulse.period_s:.2f} s)."
-    )
+    if pulse.pulse_like:
+        return f"{text}By Baker's classification it is pulse-like (indicator {pulse.indicator:.2f}, period {pulse.period_s:.2f} s)."
+    return f"{text}By Baker's classification it is not pulse-like: {'; '.join(pulse.fails)} (period {pulse.period_s:.2f} s)."
 
 
 def _spectra_arrays(spectra: core.Spectra) -> dict[str, Array]:

@@ -11,6 +11,9 @@ from extrados.schema.files import File
 
 LARGEST = 50_000_000  # bytes: three hours at 200 samples a second, ten times what a record needs
 
+LONGEST_WORDS = 2000  # characters of a header line that are looked at
+LONGEST_NUMBER = 60  # characters
+
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
 ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254,
                 "mg": 9.80665e-3}  # fmt: skip
@@ -30,7 +33,8 @@ class RecordError(ValueError):
 class Record:
     """Samples as in the file [unit of the file] at `step` [s]; step or unit None where the file has none.
 
-    component: the channel's own name or direction. notes: what was mended or ought to be known.
+    component: the channel's own name or direction; title, station: of the event and where it was recorded, as the file
+    says. notes: what was mended or ought to be known. rounded: to which the times are rounded that give the step [s].
     """
 
     name: str
@@ -40,6 +44,9 @@ class Record:
     quantity: str = "acceleration"
     component: str = ""
     notes: list[str] = field(default_factory=list)
+    title: str = ""
+    station: str = ""
+    rounded: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -55,6 +62,10 @@ class Lines:
     def __getitem__(self, at: int) -> str:
         return self.lines[at] if at < len(self.lines) else ""
 
+    def words(self, at: int) -> str:
+        """The line as a header is read; see `tidy`."""
+        return tidy(self[at])
+
     def error(self, at: int, what: str) -> RecordError:
         """A complaint about line `at`."""
         return RecordError(f"{self.path}:{min(at, max(len(self.lines) - 1, 0)) + 1}: {what}")
@@ -68,6 +79,8 @@ class Lines:
     def number(self, token: str, at: int) -> float:
         """A token as a finite number, no NaN, no decimal comma, no Python spelling."""
         token = token.strip()
+        if len(token) > LONGEST_NUMBER:
+            raise self.error(at, f"'{token[:30]}...' has {len(token)} characters, a number at most {LONGEST_NUMBER}")
         if not _NUMBER.match(token):
             hint = "; the decimal sign is a point" if re.fullmatch(r"[+-]?\d*,\d+", token) else ""
             raise self.error(at, f"'{token[:30]}' is not a number{hint}")
@@ -92,7 +105,7 @@ class Lines:
     def numbers(self, rows: list[tuple[int, list[str]]]) -> np.ndarray:
         """All tokens of (line, tokens) rows as one array; the first bad token is named with its line."""
         tokens = [token for _, row in rows for token in row]
-        if all(map(_PLAIN.match, tokens)):
+        if all(map(_PLAIN.match, tokens)) and max(map(len, tokens), default=0) <= LONGEST_NUMBER:
             try:
                 values = np.array(tokens, dtype=float)
                 if np.isfinite(values).all():
@@ -144,6 +157,15 @@ class Lines:
         ]
 
 
+def tidy(text: str) -> str:
+    """Words of a header, their first LONGEST_WORDS characters, with at most two blanks between.
+
+    What is looked for in headers is looked for again from every place where it might begin: without a bound the time
+    would grow with the square of a line of blanks.
+    """
+    return re.sub(r"\s{3,}", "  ", text[: 100 * LONGEST_WORDS])[:LONGEST_WORDS]
+
+
 def read_file(file: str | Path, folder: Path | None = None, largest: int = LARGEST) -> File:
     """The file that a deck in `folder` names, or the one at a path; RecordError where it cannot be read."""
     try:
@@ -166,15 +188,44 @@ def read_lines(file: File) -> Lines:
     return Lines(path, re.split(r"\r\n|\n|\r", text.rstrip("\r\n \t\x1a")))
 
 
+def said_in(lines: list[str]) -> tuple[str, str]:
+    """Event and station of header lines: the first that speaks of an earthquake, and what follows 'station'; "" where
+    they say neither."""
+    event = next((line.strip() for line in lines if re.search(r"\bearthquake\b", line, re.I)), "")
+    found = (
+        re.search(r"\bsta(?:tion|tn|\b)\s*(?:no\b\.?)?\s*[:=.]?\s+(?=\S)(.+?)\s*(?:\bcomponent\s*=.*)?$", line, re.I)
+        for line in lines if not re.search(r"\bsta(?:tion|tn)?\s+chan", line, re.I)
+    )  # fmt: skip
+    station = next((match[1] for match in found if match), "")
+    return " ".join(re.sub(r"(?i)^(?:record|rcrd) of ", "", event).split()), " ".join(station.split())
+
+
 def fortran_columns(text: str) -> tuple[int, int] | None:
     """(columns, width) of a Fortran format such as (8F10.5), 8E10.4 or (10I8) in a text; None if there is none."""
-    found = re.search(r"\(\s*(\d{1,2})\s*[FEGDI]\s*(\d{1,2})(?:\.\d+)?\s*\)", text, re.I)
+    found = re.search(r"\(\s*(\d{1,2})\s*[FEGDI]\s*(\d{1,2})(?:\.\d+)?\s*\)", tidy(text), re.I)
     return (int(found[1]), int(found[2])) if found and int(found[1]) and int(found[2]) else None
+
+
+#: Units of time that a column may be in, in seconds
+TIME = {"ms": 1e-3, "us": 1e-6, "min": 60.0, "s": 1.0}
+_TIMES = (
+    ("ms", r"m(?:illi)?s(?:ec(?:ond)?s?)?"), ("us", r"[uµμ]s(?:ec)?|microsec(?:ond)?s?"), ("min", r"min(?:ute)?s?"),
+    ("s", r"s(?:ec(?:ond)?s?)?"),
+)  # fmt: skip
+
+
+def time_unit_in(name: str) -> str | None:
+    """The unit of time that the name of a column ends in, such as time_ms, t [s] or Time (sec); None without one."""
+    low = name.strip().lower()
+    for unit, words in _TIMES:
+        if re.search(rf"(?:^|[\s_\[(/,])(?:{words})[\])]?\s*$", low):
+            return unit
+    return None
 
 
 def unit_in(text: str, quantity: str = "acceleration") -> str | None:
     """The unit that a header text names, or None."""
-    low = text.lower()
+    low = tidy(text).lower()
     second = r"\s*/\s*(?:s(?:ec)?\s*(?:\^|\*\*)?\s*2|s(?:ec)?\s*[/*.]\s*s(?:ec)?|s²|sec\^?2)"
     if quantity == "acceleration":
         for length in ("cm", "mm", "in", "m"):

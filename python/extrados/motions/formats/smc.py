@@ -6,14 +6,14 @@ refused; their corrected companions are equally spaced.
 
 import re
 
-from extrados.motions.formats.record import Lines, Record
+from extrados.motions.formats.record import Lines, Record, said_in
 
 _MISSING = 1.7e38
 _QUANTITY = {"VELOCITY": ("velocity", "cm/s"), "DISPLACEMENT": ("displacement", "cm")}
 
 
 def recognises(text: Lines) -> bool:
-    return text[1].strip().startswith("*") and re.match(r"\s*(?:\d\s+\S|\*)", text[0]) is not None
+    return text[1].strip().startswith("*") and re.match(r"\s*(?:\d\s+\S|\*)", text.words(0)) is not None
 
 
 def read(text: Lines) -> list[Record]:
@@ -32,5 +32,8 @@ def read(text: Lines) -> list[Record]:
     values, _ = text.fixed(at + comments, count, 10, 8)
     if (abs(values) >= _MISSING).any():
         raise text.error(at + comments, "holds values marked as missing")
-    found = re.search(r"component\s*=\s*(\S+)", text[5])
-    return [Record(text.path.stem, values, 1.0 / rate, unit, quantity, found[1] if found else "")]
+    found = re.search(r"component\s*=\s*(\S+)", text.words(5))
+    _, station = said_in(text.lines[:11])
+    event = " ".join(text[3].split())
+    component = found[1] if found else ""
+    return [Record(text.path.stem, values, 1.0 / rate, unit, quantity, component, title=event, station=station)]
