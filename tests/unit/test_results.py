@@ -216,7 +216,7 @@ def test_explain() -> None:
         "results.tilt.collapse_acceleration_g [g]: "
     )
     assert "hinges[].x_m [m]" in explain.explain("results.tilt") and "sla" in explain.explain("results")
-    assert explain.explain("results.fragility").count("fragility:") == 2
+    assert explain.explain("results.fragility").count("fragility:") == 3
     assert explain.explain("results.tilt.verdict") == explain.explain("results.verdict")
     assert "statement: the verdict" in explain.explain("results.verdict")
     with pytest.raises(KeyError, match="collapse_acceleration_g"):
