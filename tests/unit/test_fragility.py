@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize
+from scipy.stats import norm
 
 import extrados
 from extrados.analyses.codes.code_rules import asce43, ishiyama, piers
@@ -21,6 +23,7 @@ from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions import pulses
+from extrados.motions.from_deck import make_motion
 
 G = 9.80665
 BLOCK = {"kind": "block", "width": 0.1, "height": 0.4}
@@ -78,6 +81,38 @@ def test_curve_and_resurrections() -> None:
     assert r["resurrections"] == sum(later)
     assert r["motions_that_collapse"] == len(later)
     assert len(result.arrays["curve_lower"].data) == 200
+    # Lists and tables hold one value a level, none over all of them
+    share = (outcome == 2).mean(axis=0)
+    assert r["collapse_probability"] == pytest.approx(share) and table["collapse_probability"] == pytest.approx(share)
+    assert len(r["mean_peak_rotation_ratio"]) == len(r["count"]) == 7 and "bin_count" not in result.arrays
+    assert result.verdict.outcome == "none" and result.verdict.capacity == r["median"]
+    # Percentiles by sorting; collapse is beyond every rotation
+    ratio = np.where(outcome == 2, np.inf, result.arrays["peak_ratio"].data.reshape(60, 7))
+    for percent, rank in ((16, 9), (50, 29), (84, 50)):
+        expected = np.sort(ratio, axis=0)[rank]
+        assert table[f"peak_ratio_{percent}"] == pytest.approx(expected)
+        assert r[f"peak_rotation_ratio_{percent}"] == [pytest.approx(v) if np.isfinite(v) else None for v in expected]
+    # A motion that falls first at level j has its capacity between j - 1 and j
+    first = np.where((outcome == 2).any(axis=1), (outcome == 2).argmax(axis=1), 7)
+    edges = np.log([1e-300, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1e300])
+
+    def loss(c):
+        p = norm.cdf((edges - c[0]) / np.exp(c[1]))
+        return -np.sum(np.log(np.diff(p)[first]))
+
+    best = minimize(loss, [-0.7, -0.7], method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
+    assert (r["first_collapse_median"], r["first_collapse_dispersion"]) == pytest.approx(
+        tuple(np.exp(best.x)), rel=1e-6
+    )
+    low, high = r["first_collapse_median_interval"]
+    assert low < r["first_collapse_median"] < high
+
+
+def test_first_collapse_where_some_motions_never_fall() -> None:
+    result = run({"kind": "fragility", "count": 40, "levels": [0.3, 0.4, 0.5], "bootstrap": 0})
+    r = result.results
+    assert 0 < r["motions_that_collapse"] < 40
+    assert r["first_collapse_median"] > 0.3 and r["first_collapse_median_interval"][0] < r["first_collapse_median"]
 
 
 def test_uncertain_values_are_sampled_evenly() -> None:
@@ -96,6 +131,40 @@ def test_uncertain_values_are_sampled_evenly() -> None:
     models = sampled_models(context, context.deck.analyses[0], context.building.rocker(), 256)
     tangent = np.array([m.uplift for m in models])
     assert tangent.mean() == pytest.approx(0.25, rel=2e-3) and tangent.std() == pytest.approx(0.025, rel=0.03)
+
+
+def test_sobol_indices_are_those_of_a_full_factorial() -> None:
+    """All 128 widths under all 32 motions: variances of the means over rows and columns, written out."""
+    analysis = {"kind": "fragility", "count": 32, "seed": 5, "uncertain": {"width": 0.1}, "sensitivity": 4096}
+    motion = {**GENERATED, "mmi": 8}
+    result = run({**analysis, "bootstrap": 100}, motion=motion)
+    found = result.results["sensitivity"]
+    spread = np.sqrt(np.log1p(0.1**2))
+    factors = np.exp(spread * norm.ppf((np.arange(128) + 0.5) / 128) - 0.5 * spread**2)
+    models = [BlockModel(make_block(0.1 * f, 0.4)) for f in factors]
+    grounds = [make_motion(make_deck({"structure": BLOCK, "motion": {**motion, "seed": 5, "member": k + 1},
+                                      "analysis": {"kind": "rocking"}}).motion, Path()).ground for k in range(32)]  # fmt: skip
+    body, index = (v.ravel() for v in np.meshgrid(np.arange(128), np.arange(32), indexing="ij"))
+    end = np.array([g.end for g in grounds])[index] + 40.0 / BlockModel(make_block(0.1, 0.4)).frequency[0]
+    runs = rocking.ensemble([m.body for m in models], grounds, body, index, np.ones(4096), end, threads=2)
+    peak = np.minimum(runs.peak_ratio, 1.0).reshape(128, 32)
+    width, record = peak.mean(axis=1).var() / peak.var(), peak.mean(axis=0).var() / peak.var()
+    assert 0.05 < record < 0.9 and 0.05 < width < 0.9
+    for value, first, total in (("width", width, 1.0 - record), ("motion", record, 1.0 - width)):
+        assert found[value].rotation_first == pytest.approx(first, abs=0.08)
+        assert found[value].rotation_total == pytest.approx(total, abs=0.08)
+        low, high = found[value].rotation_total_interval
+        assert low < found[value].rotation_total < high < low + 0.6
+    assert result.results["sensitivity_runs"] == 4096 * 4
+
+
+def test_sensitivity_of_one_motion_is_of_the_structure_alone() -> None:
+    pulse = {"kind": "pulse", "shape": "rectangular", "amplitude": "0.5 g", "period": 0.1}
+    analysis = {"kind": "fragility", "count": 16, "uncertain": {"width": 0.1, "restitution": 0.05}, "sensitivity": 256}
+    found = run({**analysis, "bootstrap": 0}, motion=pulse).results["sensitivity"]
+    assert list(found) == ["restitution", "width"]
+    # Pushed once, it rotates most before the first impact: the restitution cannot matter, the width is all
+    assert abs(found["restitution"].rotation_total) < 0.05 and found["width"].rotation_first > 0.9
 
 
 def test_a_broken_record_fails_alone(tmp_path: Path) -> None:
@@ -120,6 +189,8 @@ def test_durations() -> None:
         motion={**GENERATED, "mmi": 5, "scaling": "thesis", "factor": 5.0},
     )
     mean = result.results["mean_peak_rotation_ratio"]
+    assert result.results["count"] == [40, 40, 40] and len(result.results["collapsed"]) == 3
+    assert "of 1 s" in result.verdict.statement or "of 8 s" in result.verdict.statement
     assert len(mean) == 3 and mean[0] < mean[2]
     assert (
         run(
@@ -138,6 +209,8 @@ def test_durations() -> None:
         ({"levels": [0.1], "durations": [1.0]}, "not both"),
         ({"levels": [0.1], "intensity": "sa"}, "go together"),
         ({"uncertain": {"widht": 0.1}}, "unknown"),
+        ({"sensitivity": 64}, "needs uncertain"),
+        ({"uncertain": {"width": 0.1}, "sensitivity": 100}, "power of 2"),
         ({"uncertain": {"width": 2.0}}, "at most 0.5"),
         ({"initial": {"rotation_ratio": 1.2}}, "less than 1"),
     ],
@@ -270,15 +343,50 @@ def test_panel_as_a_pier() -> None:
     assert "without openings" in run(pier, holed, motion=None).reason
 
 
-def test_code_checks_deck() -> None:
-    result = run(
-        {"kind": "code-checks"},
-        {"kind": "block", "width": 0.5, "height": 2.4},
-        {"kind": "record", "file": "extrados:el-centro-1940"},
+SITE = {"code": "EN1998-1", "ground": "B", "acceleration": "0.25 g"}
+
+
+def test_code_demands_are_those_of_the_code_whatever_the_motion() -> None:
+    block = {"kind": "block", "width": 0.5, "height": 2.4}
+    asked = {"kind": "code-checks", "spectrum": SITE, "peak_velocity": 0.3}
+    random = {"kind": "generated", "mmi": 9, "duration": 4.0}
+    record = {"kind": "record", "file": "extrados:el-centro-1940"}
+    runs = [run(asked, block, motion) for motion in (None, record, {**random, "seed": 1}, {**random, "seed": 2})]
+    assert all(r.results["checks"] == runs[0].results["checks"] for r in runs)
+    assert all(r.verdict == runs[0].verdict for r in runs) and runs[1].results["dynamic_outcome"] == "recovery"
+    checks = runs[0].results["checks"]
+    assert checks["NTC linear (ground level)"]["demand"] == pytest.approx(0.25 * 1.2)
+    # S_De(T) = S_e(T) (T/2 pi)^2 on the branch of constant velocity
+    period = float(checks["NTC nonlinear"]["note"].removeprefix("T_s = ").removesuffix(" s"))
+    assert 0.5 < period < 2.0
+    assert checks["NTC nonlinear"]["demand"] == pytest.approx(
+        2.5 * 0.3 * G * 0.5 / period * (period / (2 * np.pi)) ** 2, rel=1e-3
     )
-    checks = result.results["checks"]
-    assert checks["uplift"]["verdict"] == "fails" and all(c["source"] for c in checks.values())
-    assert result.results["dynamic_outcome"] == "recovery"
+    # A compatible motion brings the spectrum of its code
+    compatible = {"kind": "compatible", **SITE, "duration": 10.0, "tolerance": 0.3}
+    own = run({"kind": "code-checks", "peak_velocity": 0.3}, block, compatible)
+    assert own.results["checks"] == checks
+    without = run({"kind": "code-checks"}, block, {**random, "seed": 1})
+    assert without.verdict.outcome == "none" and "give spectrum" in without.answer
+    assert all(c["demand"] is None for c in without.results["checks"].values())
+
+
+def test_one_verdict_of_all_code_checks() -> None:
+    """Of one code any check suffices; all codes must hold; formulas for comparison do not count."""
+    block = {"kind": "block", "width": 0.5, "height": 2.4}
+
+    def judged(peak: float, velocity: float | None = None):
+        options = {"peak_velocity": velocity} if velocity else {}
+        return run({"kind": "code-checks", "peak_acceleration": f"{peak} g", **options}, block, motion=None)
+
+    # 0.25 g: above uplift (0.208 g) and Ishiyama's acceleration, below his velocity (0.3227 m/s); NTC linear bears 0.309 g
+    held = judged(0.25, 0.3)
+    assert held.results["checks"]["uplift"]["verdict"] == "fails" and held.verdict.outcome == "stands"
+    fallen = judged(0.25, 0.4)
+    assert fallen.verdict.outcome == "falls" and "Ishiyama governs" in fallen.verdict.statement
+    assert fallen.verdict.demand == 0.25 or fallen.verdict.demand == 0.4
+    # One check of Ishiyama fails and the other has no demand: not decided, and told
+    assert "Ishiyama" in judged(0.25).verdict.statement
     crushed = run(
         {"kind": "code-checks", "axial_load": "10 MN", "material": {"compressive_strength": "2 MPa"}}, motion=None
     )

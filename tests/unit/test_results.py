@@ -204,7 +204,7 @@ def test_series_of_arrays_keep_their_order(tmp_path) -> None:
     )  # fmt: skip
     result = Result("rocking-spectrum", results=values)
     result.arrays = {f"part_{k}": Array(np.full(2, k), (f"n_{k}",), series="part") for k in range(12)}
-    with store.new_folder(tmp_path / "o") as folder:
+    with store.NewFolder(tmp_path / "o") as folder:
         head = {"extrados": {"version": ""}, "deck": {"path": "", "sha256": "", "resolved": {}}}
         store.write(folder, head, [result])
     found = store.read(tmp_path / "o").series("rocking-spectrum", "part")
@@ -216,7 +216,7 @@ def test_explain() -> None:
         "results.tilt.collapse_acceleration_g [g]: "
     )
     assert "hinges[].x_m [m]" in explain.explain("results.tilt") and "sla" in explain.explain("results")
-    assert explain.explain("results.fragility").count("fragility:") == 2
+    assert explain.explain("results.fragility").count("fragility:") == 3
     assert explain.explain("results.tilt.verdict") == explain.explain("results.verdict")
     assert "statement: the verdict" in explain.explain("results.verdict")
     with pytest.raises(KeyError, match="collapse_acceleration_g"):

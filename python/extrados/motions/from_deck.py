@@ -13,7 +13,9 @@ from extrados.motions.compatible import CompatibleSet, NotMatched
 from extrados.motions.formats.record import RecordError
 from extrados.motions.generated import GeneratedSet, generated
 from extrados.motions.motion import Motion
+from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Motion as Model
+from extrados.schema.text import printable
 
 Sets = models.Suite | models.Generated | models.Compatible
 
@@ -75,7 +77,7 @@ def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
 
 def member_name(member: models.Components) -> str:
     """What a record of a suite is called in tables and messages."""
-    stem = Path(member.file).stem
+    stem = printable(Path(member.file).stem)
     return stem if member.channel is None else f"{stem} {member.channel}"
 
 
@@ -107,23 +109,23 @@ def compatible_set(model: models.Compatible, folder: Path) -> CompatibleSet:
         raise RecordError(f"[motion] compatible: {error}") from None
 
 
-def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
-    """The target spectrum of a deck's `compatible` motion."""
+def code_spectrum(model: CodeSpectrum, folder: Path, damping: float = 0.05) -> code_spectra.Spectrum:
+    """The spectrum of a deck's table; those of ASCE 7 and of a table are of 5 % whatever the damping."""
     match model.code:
         case "EN1998-1" | "EN1998-2":
-            return code_spectra.en1998(int(model.code[-1]), model.ground, model.acceleration, model.damping)
+            return code_spectra.en1998(int(model.code[-1]), model.ground, model.acceleration, damping)
         case "NTC":
             return code_spectra.ntc(
-                model.ground,
-                model.acceleration,
-                model.amplification,
-                model.corner_period,
-                model.topography,
-                model.damping,
+                model.ground, model.acceleration, model.amplification, model.corner_period, model.topography, damping
             )
         case "ASCE7":
             return code_spectra.asce7(model.sds, model.sd1, model.long_period)
-    spectrum = code_spectra.read_table(model.table, folder)
+    return code_spectra.read_table(model.table, folder)
+
+
+def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
+    """The target spectrum of a deck's `compatible` motion."""
+    spectrum = code_spectrum(model, folder, model.damping)
     spectrum(model.longest)  # refuses a table that ends before the band
     return spectrum
 

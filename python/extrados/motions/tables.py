@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from extrados.schema.quantities import Acceleration, Angle, Frequency, Time, Velocity
+from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import Motion, Table, key
 
 
@@ -209,23 +210,11 @@ class Generated(Motion):
         return self
 
 
-class Compatible(Motion):
+class Compatible(CodeSpectrum, Motion):
     """Random earthquakes whose response spectrum matches that of a code or table, baseline corrected."""
 
     kind: Literal["compatible"]
     starter: ClassVar = {"code": '"EN1998-1"', "ground": '"B"', "acceleration": '"0.2 g"', "tolerance": "0.15"}
-    code: Literal["EN1998-1", "EN1998-2", "NTC", "ASCE7", "table"] = key(
-        about="EN 1998-1:2004 spectrum type 1 or 2, NTC 2018, ASCE 7-16, or a table of your own"
-    )
-    ground: Literal["A", "B", "C", "D", "E"] = key("A", "ground type (EN 1998-1, NTC)")
-    acceleration: Acceleration | None = key(None, "a_g on ground A (EN 1998-1, NTC)", gt=0)
-    amplification: float = key(2.5, "F_0 (NTC)", ge=1, le=10)
-    corner_period: Time = key(0.35, "T_C* (NTC)", gt=0, le=2)
-    topography: float = key(1.0, "S_T (NTC)", ge=1, le=2)
-    sds: Acceleration | None = key(None, "S_DS (ASCE 7)", gt=0)
-    sd1: Acceleration | None = key(None, "S_D1 (ASCE 7)", gt=0)
-    long_period: Time = key(8.0, "T_L (ASCE 7)", gt=0)
-    table: str | None = key(None, "CSV file period_s,sa_g", min_length=1, max_length=1024)
     damping: float = key(0.05, "damping ratio of the spectrum", ge=0.005, le=0.3)
     shortest: Time = key(0.05, "shortest period that is matched", ge=0.02)
     longest: Time = key(2.0, "longest period that is matched", le=6)
@@ -240,11 +229,6 @@ class Compatible(Motion):
 
     @model_validator(mode="after")
     def _complete(self) -> "Compatible":
-        need = {"EN1998-1": ("acceleration",), "EN1998-2": ("acceleration",), "NTC": ("acceleration",),
-                "ASCE7": ("sds", "sd1"), "table": ("table",)}[self.code]  # fmt: skip
-        missing = [name for name in need if getattr(self, name) is None]
-        if missing:
-            raise ValueError(f"code {self.code} needs {' and '.join(missing)}")
         if self.code == "ASCE7" and self.damping != 0.05:
             raise ValueError("the spectrum of ASCE 7 is that of 5 % damping")
         if self.longest <= 2.0 * self.shortest:

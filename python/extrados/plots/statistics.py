@@ -10,9 +10,12 @@ from extrados.results.statistics import OverDurations
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
+PERCENTILES = (16, 50, 84)
+FALLEN = 1.12  # where a figure draws the rotation ratio of what has come down
+
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Histogram (Fig. 6-7), curve over intensity with its stripes, incremental curves, or Fig. 6-8."""
+    """Histogram (Fig. 6-7); over levels the curves with their stripes and the incremental picture; or Fig. 6-8."""
     arrays = run.arrays[name]
     if isinstance(run[name], OverDurations):
         return _durations(run, name, folder)
@@ -21,6 +24,8 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found += [_curve(run, name, folder), _incremental(run, name, folder)]
     if "bin_edge" in arrays:
         found.append(_histogram(run, name, folder))
+    if "sensitivity_rotation_total" in arrays:
+        found.append(_sensitivity(run, name, folder))
     return found
 
 
@@ -57,6 +62,33 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ), "Greatest rotation of all runs; the red bar holds those that collapse."
 
 
+def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """First-order and total Sobol indices of each uncertain value, for the rotation and the collapse."""
+    r = run[name]
+    values = list(r.sensitivity)
+    place = np.arange(len(values))
+    with style.figure(7.5, 1.6 + 0.45 * len(values), columns=2, sharey=True) as (fig, axes):
+        for ax, what, title in zip(axes, ("rotation", "collapse"), ("greatest rotation", "collapse"), strict=True):
+            for order, shift, color, text in (
+                ("total", 0.18, style.HINGE, "with interactions"),
+                ("first", -0.18, style.SAFE, "alone"),
+            ):
+                index, low, high = (run.array(name, f"sensitivity_{what}_{order}{e}") for e in ("", "_lower", "_upper"))
+                ax.barh(place + shift, index, 0.34, color=color, label=text)
+                bars = np.maximum([index - low, high - index], 0.0)
+                ax.errorbar(index, place + shift, xerr=bars, fmt="none", ecolor="k", capsize=2, linewidth=0.8)
+            ax.set_title(title)
+            ax.set_xlabel("share of the variance (Sobol index)")
+            ax.axvline(0.0, color="k", linewidth=0.8)
+        axes[0].set_yticks(place, values)
+        axes[0].invert_yaxis()
+        style.legend_below(fig, axes[0])
+        return style.save(fig, folder, f"{name}-sensitivity"), (
+            f"Sobol indices of the uncertain values and of the choice of the motion, {r.sensitivity_runs} runs; "
+            f"{100 * r.confidence:g} % bootstrap intervals."
+        )
+
+
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     r, arrays = run[name], run.arrays[name]
     level = run.array(name, "stripe_level")
@@ -80,22 +112,18 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 linewidth=0.9,
                 label=f"{label}, counted",
             )
-        if "curve" in arrays:
-            ax.plot(
-                grid,
-                run.array(name, "curve"),
-                color=style.THRUST,
-                label=f"lognormal, median {r.median:.3g}, dispersion {r.dispersion:.2f}",
-            )
-        if "curve_lower" in arrays:
-            ax.fill_between(
-                grid,
-                run.array(name, "curve_lower"),
-                run.array(name, "curve_upper"),
-                color=style.THRUST,
-                alpha=0.15,
-                linewidth=0,
-            )
+        for curve, band, color, style_, text, median, dispersion in (
+            ("curve", "curve", style.THRUST, "-", "collapse at the level", r.median, r.dispersion),
+            ("first_collapse_curve", "first_collapse", style.HINGE, "-.", "collapse by the level", r.first_collapse_median,
+             r.first_collapse_dispersion),
+        ):  # fmt: skip
+            if curve not in arrays:
+                continue
+            label = f"{text}: median {median:.3g}, dispersion {dispersion:.2f}"
+            ax.plot(grid, run.array(name, curve), style_, color=color, label=label)
+            if f"{band}_lower" in arrays:
+                low, high = run.array(name, f"{band}_lower"), run.array(name, f"{band}_upper")
+                ax.fill_between(grid, low, high, color=color, alpha=0.15, linewidth=0)
         if "uplift_curve" in arrays:
             ax.plot(grid, run.array(name, "uplift_curve"), color=style.GROUND, linewidth=0.9)
         if "two_stage_curve" in arrays:
@@ -106,9 +134,11 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylim(-0.02, 1.02)
         ax.set_xlabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         ax.set_ylabel("probability")
+        ax.set_title(f"{r.motions} motions at {len(level)} levels")
         ax.legend(loc="best")
         return style.save(fig, folder, f"{name}-curve"), (
-            f"Counted probabilities with {100 * r.confidence:g} % Wilson intervals, the fitted curve and its bootstrap band."
+            f"Shares of the motions with {100 * r.confidence:g} % Wilson intervals; the fitted curve of collapse at a level with "
+            "its bootstrap band; and that of collapse at the level or one below it, by interval-censored likelihood."
         )
 
 
@@ -120,26 +150,28 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         run.array(name, "incremental_risen"),
     )
     unit = run.arrays[name]["stripe_level"].unit
+    quantile = [np.minimum(run.array(name, f"stripe_peak_ratio_{p}"), FALLEN) for p in PERCENTILES]
     with style.figure(6.5, 4.2) as (fig, (ax,)):
-        for row in np.minimum(ratio, 1.05):
-            ax.plot(row, level, color=style.EDGE, alpha=0.25, linewidth=0.6)
+        for row in np.minimum(ratio, FALLEN):
+            ax.plot(row, level, color=style.EDGE, alpha=0.15, linewidth=0.5)
+        low, middle, high = quantile
+        ax.fill_betweenx(level, low, high, color=style.HINGE, alpha=0.2, linewidth=0, label="16 to 84 % of the motions")
+        ax.plot(middle, level, "-", color=style.HINGE, linewidth=2.0, label="half of the motions")
         i, j = np.nonzero(risen)
-        ax.plot(
-            ratio[i, j],
-            level[j],
-            "o",
-            color=style.HINGE,
-            markersize=3,
-            label="stands again above a level that overturned it",
-        )
-        ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
-        ax.set_xlabel("greatest rotation over the critical rotation (collapse drawn at 1.05)")
-        ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         if len(i):
-            ax.legend(loc="upper left")
-        return style.save(
-            fig, folder, f"{name}-incremental"
-        ), f"Incremental curves of {len(ratio)} motions; {r.resurrections} of {r.motions} have resurrections."
+            ax.plot(ratio[i, j], level[j], "o", color=style.GROUND, markersize=3,
+                    label="stands again above a level that overturned it")  # fmt: skip
+        ax.axvline(1.0, color=style.THRUST, linewidth=0.9)
+        ax.set_xlim(-0.02, FALLEN + 0.03)
+        ticks = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0, FALLEN]
+        ax.set_xticks(ticks, [*(f"{x:g}" for x in ticks[:-1]), "collapse"])
+        ax.set_xlabel("greatest rotation over the critical rotation")
+        ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
+        style.legend_below(fig, ax)
+        return style.save(fig, folder, f"{name}-incremental"), (
+            f"Incremental curves of {len(ratio)} motions with the percentiles of all {r.motions}; "
+            f"{r.resurrections} have resurrections."
+        )
 
 
 def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
@@ -267,17 +299,20 @@ def draw_harmonic_map(run: Stored, name: str, folder: Path) -> list[tuple[str, s
 def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Demand over capacity of each rule."""
     rows = [
-        (rule, c.demand / c.capacity)
+        (rule, c.demand / c.capacity, c.code)
         for rule, c in run[name].checks.items()
         if c.demand is not None and c.capacity > 0.0
     ]
     if not rows:
         return []
     with style.figure(6.5, 0.6 + 0.35 * len(rows)) as (fig, (ax,)):
-        for k, (_, value) in enumerate(rows):
-            ax.barh(k, value, color=style.THRUST if value > 1.0 else style.SAFE)
+        for k, (_, value, code) in enumerate(rows):
+            ax.barh(k, value, color=style.STONE if not code else style.THRUST if value > 1.0 else style.SAFE)
         ax.axvline(1.0, color="k", linewidth=0.9)
-        ax.set_yticks(range(len(rows)), [rule for rule, _ in rows])
+        ax.set_yticks(range(len(rows)), [rule for rule, _, _ in rows])
         ax.invert_yaxis()
         ax.set_xlabel("demand over capacity")
-        return [(style.save(fig, folder, name), "Demand over capacity of each rule; above 1 it fails.")]
+        return [(style.save(fig, folder, name), (
+            "Demand over capacity of each rule; above 1 it fails. Of several checks of one code any that holds suffices; "
+            f"pale bars are formulas for comparison. {run[name].overall().statement}"
+        ))]  # fmt: skip

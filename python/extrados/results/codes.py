@@ -16,6 +16,9 @@ class Check(ResultModel):
     verdict: Literal["holds", "fails", ""] = fact("the rule's verdict; empty without a demand")
     source: str = fact("where the rule comes from")
     note: str = fact("what to know of it")
+    code: str = fact(
+        "whose check it is: of several checks of one code any that holds suffices; empty for a formula or a strength"
+    )
 
 
 class CodeChecks(KindResults):
@@ -23,26 +26,41 @@ class CodeChecks(KindResults):
 
     dynamic_outcome: RockingOutcome = maybe("of a block under a motion: what the computed rocking gives")
     dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
-    peak_ground_acceleration_g: float | None = maybe("of a block: demand of the rules", "g")
-    peak_ground_velocity_m_s: float | None = maybe("of a block: demand of the rules", "m/s")
+    peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
+    peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
     checks: dict[str, Check] = fact("the rules by name")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The rule of the least capacity over demand; without a demand the weakest strength of a pier [N]."""
-        asked = [
-            (c.capacity / c.demand, name, c)
-            for name, c in self.checks.items()
-            if c.demand is not None and c.demand > 0.0
-        ]
-        if asked:
-            _, name, worst = min(asked, key=lambda row: row[0])
+        """The overall verdict; the deck's motion is no demand of a code."""
+        return self.overall()
+
+    def overall(self) -> Verdict:
+        """One verdict for all: of each code the check that allows most, of the codes the one that allows least. Formulas for
+        comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
+        margins: dict[str, tuple[float, str, Check]] = {}
+        open_codes = set()
+        for name, check in self.checks.items():
+            if not check.code:
+                continue
+            if check.demand is None:
+                open_codes.add(check.code)
+            elif check.demand > 0.0:
+                row = (check.capacity / check.demand, name, check)
+                margins[check.code] = max(margins.get(check.code, row), row, key=lambda r: r[0])
+        # A code one of whose checks fails while another has no demand is not decided
+        undecided = {c for c in open_codes if c not in margins or margins[c][2].verdict == "fails"}
+        decided = [row for code, row in margins.items() if code not in undecided]
+        left = f" Without a demand for a check of {' and of '.join(sorted(undecided))}." if undecided else ""
+        if decided:
+            _, name, worst = min(decided, key=lambda row: row[0])
             unit = f" {worst.unit}" if worst.unit else ""
             return judge(
-                f"{name} governs and {worst.verdict}: {worst.demand:.3g} against {worst.capacity:.3g}{unit}.",
+                f"{worst.code} governs and {worst.verdict}, by {name}: {worst.demand:.3g} against "
+                f"{worst.capacity:.3g}{unit}.{left}",
                 worst.demand, worst.capacity, worst.unit, "falls" if worst.verdict == "fails" else "stands",
             )  # fmt: skip
         strengths = {name: c for name, c in self.checks.items() if c.unit == "N"}
         if not strengths:
-            return judge("The deck holds no demand for the rules.")
+            return judge("The deck holds no demand of a code: give its spectrum.")
         name, weakest = min(strengths.items(), key=lambda item: item[1].capacity)
         return judge(f"{name} gives the least strength, {weakest.capacity / 1e3:.4g} kN.", None, weakest.capacity, "N")

@@ -1,12 +1,25 @@
 """Results of the rocking statistics: fragility, resonance, rocking-spectrum, harmonic-map."""
 
-from extrados.results.fields import fact, maybe
+from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.rocking import RockingOutcome
 from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
 
 
+class Sensitivity(ResultModel):
+    """Sobol indices of one uncertain value: its own share of the variance, and that of all in which it is involved."""
+
+    rotation_first: float | None = fact("first-order index of the greatest rotation, collapse counted as 1")
+    rotation_first_interval: list[float | None] = fact("its bootstrap interval")
+    rotation_total: float | None = fact("total index of the greatest rotation")
+    rotation_total_interval: list[float | None] = fact("its bootstrap interval")
+    collapse_first: float | None = fact("first-order index of the collapse, 1 or 0; null where all runs agree")
+    collapse_first_interval: list[float | None] = fact("its bootstrap interval")
+    collapse_total: float | None = fact("total index of the collapse")
+    collapse_total_interval: list[float | None] = fact("its bootstrap interval")
+
+
 class Ensemble(KindResults):
-    """fragility: one structure under many motions, or under motions scaled to levels of an intensity."""
+    """fragility: one structure under many motions, each as it is."""
 
     count: int = fact("runs with a result")
     failed: int = fact("runs without one")
@@ -34,82 +47,145 @@ class Ensemble(KindResults):
     expected_pgv_m_s: float = maybe(
         "of generated motions: median peak velocity observed at their intensity", "m/s", source="Worden et al. 2012"
     )
-    intensity: str = maybe("with levels: the measure to which motions are scaled; levels and medians are in its unit")
-    intensity_unit: str = maybe("with levels: unit of the levels and medians")
-    median: float | None = maybe("median of the fitted lognormal curve of collapse", source="Baker 2015")
-    dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
-    deviance: float = maybe("deviance of the fit")
-    degrees_of_freedom: int = maybe("its degrees of freedom")
-    goodness_p_value: float | None = maybe("probability of a worse deviance were the curve true")
-    uplift_median: float | None = maybe("median of the curve, for uplift")
-    uplift_dispersion: float | None = maybe("dispersion of the curve, for uplift")
-    uplift_deviance: float = maybe("deviance of the curve, for uplift")
-    uplift_degrees_of_freedom: int = maybe("degrees of freedom of that fit, for uplift")
-    uplift_goodness_p_value: float | None = maybe("probability of a worse deviance were the curve true, for uplift")
-    overturning_given_uplift_median: float | None = maybe("median of the curve, for collapse of those that rock")
-    overturning_given_uplift_dispersion: float | None = maybe(
-        "dispersion of the curve, for collapse of those that rock"
+
+    sensitivity: dict[str, Sensitivity] = maybe(
+        "Sobol indices by uncertain value; `motion` is the choice of the motion", source="Saltelli and others 2010"
     )
-    overturning_given_uplift_deviance: float = maybe("deviance of the curve, for collapse of those that rock")
-    overturning_given_uplift_degrees_of_freedom: int = maybe(
-        "degrees of freedom of that fit, for collapse of those that rock"
-    )
-    overturning_given_uplift_goodness_p_value: float | None = maybe(
-        "probability of a worse deviance were the curve true, for collapse of those that rock"
-    )
-    median_interval: list[float | None] = maybe("bootstrap interval of the median")
-    dispersion_interval: list[float | None] = maybe("bootstrap interval of the dispersion")
-    motions_that_collapse: int = maybe("motions that bring it down at some level")
-    resurrections: int = maybe("motions that leave it standing at a level above one that brings it down")
-    first_collapse_median: float | None = maybe("median of the first level that brings it down")
-    first_collapse_dispersion: float | None = maybe("dispersion of the first level that brings it down")
+    sensitivity_runs: int = maybe("runs for these indices, apart from `count`")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The share of runs that come down; open unless all runs agree. With levels the fitted median is the capacity."""
+        """The share of motions that bring it down; open unless all agree."""
         if self.collapse_probability is None:
             return judge("No motion could be run.", outcome="open")
         outcome: Outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
-        text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} runs bring it down"
-        if self.intensity is None:
-            return judge(f"{text}.", self.collapse_probability, None, "probability", outcome)
-        if self.median is None:
-            return judge(f"{text}; no curve could be fitted.", None, None, self.intensity_unit, outcome)
+        text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} motions bring it down."
+        return judge(text, self.collapse_probability, None, "probability", outcome)
+
+
+class OverLevels(KindResults):
+    """fragility: one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
+
+    intensity: str = fact("the measure to which motions are scaled; levels and medians are in its unit")
+    intensity_unit: str = fact("unit of the levels and medians")
+    levels: list[float] = fact("the levels, ascending, in intensity_unit")
+    motions: int = fact("number of motions")
+    count: list[int] = fact("motions with a result, at each level")
+    failed: int = fact("runs without a result")
+    collapsed: list[int] = fact("motions that bring it down, at each level")
+    collapse_probability: list[float | None] = fact("their share, at each level")
+    confidence_interval: list[list[float]] = fact("score intervals of that share", source="Wilson 1927")
+    uplifted: list[int] = fact("motions that make it rock, at each level")
+    uplift_probability: list[float | None] = fact("their share, at each level")
+    uplift_confidence_interval: list[list[float]] = fact("score intervals of that share", source="Wilson 1927")
+    mean_peak_rotation_ratio: list[float | None] = fact(
+        "mean of the greatest rotation over the critical one, at each level; collapse is 1"
+    )
+    deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio, at each level")
+    median_peak_rotation_ratio: list[float | None] = fact("median of that ratio, at each level; collapse is 1")
+    peak_rotation_ratio_16: list[float | None] = fact(
+        "ratio that 16 % of the motions stay within, at each level; null: collapse",
+        source="Vamvatsikos and Cornell 2002",
+    )
+    peak_rotation_ratio_50: list[float | None] = fact("ratio that half of them stay within; null: collapse")
+    peak_rotation_ratio_84: list[float | None] = fact("ratio that 84 % of them stay within; null: collapse")
+    median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level", "g")
+    confidence: float = fact("level of all intervals")
+    restitution: float = fact("rate after over before an impact")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
+    initial_rotation_ratio: float = fact("rotation at the start over the critical one")
+    median: float | None = maybe(
+        "median of the lognormal curve of collapse at a level, in intensity_unit", source="Baker 2015"
+    )
+    dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
+    deviance: float | None = maybe("deviance of that curve")
+    degrees_of_freedom: int = maybe("its degrees of freedom")
+    goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
+    median_interval: list[float | None] = maybe(
+        "bootstrap interval of that median, motions drawn with all their levels"
+    )
+    dispersion_interval: list[float | None] = maybe("bootstrap interval of that dispersion")
+    first_collapse_median: float | None = maybe(
+        "median of the lognormal curve of the intensity at which a motion first brings it down, in intensity_unit",
+        source="interval-censored likelihood: Burridge 1981",
+    )
+    first_collapse_dispersion: float | None = maybe(
+        "its dispersion, of the logarithm", source="interval-censored likelihood: Burridge 1981"
+    )
+    first_collapse_deviance: float | None = maybe("deviance of that curve")
+    first_collapse_degrees_of_freedom: int = maybe("its degrees of freedom")
+    first_collapse_goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
+    first_collapse_median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
+    first_collapse_dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
+    uplift_median: float | None = maybe(
+        "median of the lognormal curve of uplift, in intensity_unit", source="Baker 2015"
+    )
+    uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
+    uplift_deviance: float | None = maybe("deviance of that curve")
+    uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
+    uplift_goodness_p_value: float | None = maybe("probability of a worse deviance were that curve true")
+    overturning_given_uplift_median: float | None = maybe(
+        "median of the lognormal curve of collapse of those that rock, in intensity_unit", source="Baker 2015"
+    )
+    overturning_given_uplift_dispersion: float | None = maybe("its dispersion, of the logarithm", source="Baker 2015")
+    overturning_given_uplift_deviance: float | None = maybe("deviance of that curve")
+    overturning_given_uplift_degrees_of_freedom: int = maybe("its degrees of freedom")
+    overturning_given_uplift_goodness_p_value: float | None = maybe(
+        "probability of a worse deviance were that curve true"
+    )
+    motions_that_collapse: int = fact("motions that bring it down at some level")
+    resurrections: int = fact("motions that leave it standing at a level above one that brings it down")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The fitted median is the capacity; levels are questions, not a demand."""
+        if not any(self.count):
+            return judge("No motion could be run.", outcome="open")
         unit = f" {self.intensity_unit}" if self.intensity_unit else ""
+        if self.median is None:
+            share = [p for p in self.collapse_probability if p is not None]
+            return judge(
+                f"{100.0 * share[-1]:.3g} % of the motions bring it down at the highest level of {self.intensity}; no curve "
+                "could be fitted.", None, None, self.intensity_unit, "none",
+            )  # fmt: skip
         return judge(
             f"Half of the motions bring it down at {self.intensity} {self.median:.3g}{unit}.",
-            None, self.median, self.intensity_unit, outcome,
+            None, self.median, self.intensity_unit, "none",
         )  # fmt: skip
 
 
 class OverDurations(KindResults):
-    """fragility: generated motions of several durations."""
+    """fragility: generated motions of several durations; lists hold one value a duration."""
 
     durations_s: list[float] = fact("durations of the motions", "s")
     mean_peak_rotation_ratio: list[float | None] = fact("mean of the greatest rotation over the critical one, at each")
     deviation_peak_rotation_ratio: list[float | None] = fact("standard deviation of that ratio")
-    collapse_probability: list[float | None] = fact("share of the runs that come down, at each")
-    uplift_probability: list[float | None] = fact("share of the runs that rock, at each")
+    collapse_probability: list[float | None] = fact("share of the motions that bring it down, at each")
+    uplift_probability: list[float | None] = fact("share of the motions that make it rock, at each")
     confidence_interval: list[list[float]] = fact("score intervals of the collapse probability", source="Wilson 1927")
-    count: int = fact("runs with a result")
-    failed: int = fact("runs without one")
-    collapsed: int = fact("runs that come down")
-    uplifted: int = fact("runs that rock")
+    confidence: float = fact("level of these intervals")
+    count: list[int] = fact("motions with a result, at each")
+    failed: int = fact("runs without a result")
+    collapsed: list[int] = fact("motions that bring it down, at each")
+    uplifted: list[int] = fact("motions that make it rock, at each")
     restitution: float = fact("rate after over before an impact")
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
 
     def judged(self, demand: Demand) -> Verdict:
-        """The share of all runs that come down; open unless they agree."""
-        if not self.count:
+        """The least and greatest share of motions that bring it down; open unless all runs agree."""
+        known = [(p, d) for p, d in zip(self.collapse_probability, self.durations_s, strict=True) if p is not None]
+        if not known:
             return judge("No motion could be run.", outcome="open")
-        share = self.collapsed / self.count
-        outcome: Outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
-        text = f"Over all durations {100.0 * share:.3g} % of {self.count} runs bring it down."
-        return judge(text, share, None, "probability", outcome)
+        (least, short), (most, long) = min(known), max(known)
+        outcome: Outcome = "stands" if most == 0.0 else "falls" if least == 1.0 else "open"
+        text = f"{100.0 * least:.3g} % of the motions of {short:g} s"
+        if len(known) > 1:
+            text += f" and {100.0 * most:.3g} % of those of {long:g} s"
+        return judge(f"{text} bring it down.", None, None, "probability", outcome)
 
 
-Fragility = Ensemble | OverDurations
+Fragility = Ensemble | OverLevels | OverDurations
 
 
 class Resonance(KindResults):

@@ -1,5 +1,6 @@
 """code-checks: rules of codes for rocking bodies, and for walls as piers, beside the computed rocking."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -8,16 +9,17 @@ from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, 
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
 from extrados.building.templates.block import BlockAssembly
-from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
-from extrados.motions.impulse import primary_impulses
+from extrados.motions.code_spectra import damping_factor
+from extrados.motions.from_deck import code_spectrum
+from extrados.motions.tables import Compatible
 from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
 
 def run(context: Context, options: CodeChecks) -> Result:
-    """All rules that apply, with the computed rocking of the deck's motion beside them."""
+    """All rules that apply to the code's own demand, with the computed rocking of the deck's motion beside them."""
     structure = context.deck.structure
     result = Result("code-checks")
     demands: dict[str, Any] = {}
@@ -32,7 +34,7 @@ def run(context: Context, options: CodeChecks) -> Result:
     checks = {
         line.rule: out.Check(
             capacity=line.capacity, demand=line.demand, unit=line.unit, verdict=line.verdict, source=line.source,
-            note=line.note,
+            note=line.note, code=line.code,
         ) for line in lines
     }  # fmt: skip
     r = out.CodeChecks(checks=checks, **demands)
@@ -42,14 +44,14 @@ def run(context: Context, options: CodeChecks) -> Result:
     result.tables["code_checks"] = TableData({
         "rule": [x.rule for x in lines], "quantity": [x.quantity for x in lines], "capacity": capacity, "demand": demand,
         "unit": [x.unit for x in lines], "verdict": [x.verdict for x in lines], "source": [x.source for x in lines],
-        "note": [x.note for x in lines],
+        "note": [x.note for x in lines], "code": [x.code for x in lines],
     })  # fmt: skip
     result.arrays = {
         "capacity": Array(capacity, ("rule",), "", "each in its unit, see code_checks.csv"),
         "demand": Array(demand, ("rule",)),
     }
     said = [f"{x.rule} {x.verdict} ({x.demand:.3g} against {x.capacity:.3g} {x.unit})" for x in lines if x.verdict]
-    words = ["; ".join(said) + "."] if said else []
+    words = [r.overall().statement, f"In detail: {'; '.join(said)}."] if said else []
     if r.dynamic_outcome:
         ratio = r.dynamic_peak_rotation_ratio
         spoken = {"collapse": "overturns", "recovery": f"rocks to {100 * ratio:.0f} % of its critical rotation and stays up",
@@ -59,7 +61,9 @@ def run(context: Context, options: CodeChecks) -> Result:
     if strengths:
         weakest = min(strengths, key=lambda x: x.capacity)
         words.append(f"As a pier its least strength is {weakest.capacity / 1e3:.4g} kN ({weakest.rule}).")
-    result.answer = " ".join(words) or "Capacities without a demand, see the table."
+    if not said:
+        words.insert(0, "Capacities without a demand: give spectrum or peak_acceleration, the values of the code.")
+    result.answer = " ".join(words)
     return result
 
 
@@ -69,43 +73,59 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     model = rocker.model
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
-    pga = options.peak_acceleration / GRAVITY if options.peak_acceleration else None
-    pgv, pulse, sd, sa = options.peak_velocity, None, None, None
-    beside: dict[str, Any] = {}
+    spectrum = _spectrum(context, options)
+    pga, sd, sa = None, None, None
+    if spectrum is not None:
+        pga = spectrum(0.0, 0.05) / GRAVITY
+
+        def sd(period: float, damping: float) -> float:
+            return spectrum(period, damping) * (period / (2.0 * np.pi)) ** 2
+
+        def sa(period: float, damping: float) -> float:
+            return spectrum(period, damping) / GRAVITY
+
+    if options.peak_acceleration is not None:
+        pga = options.peak_acceleration / GRAVITY
+    beside: dict[str, Any] = {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": options.peak_velocity}
     if context.deck.motion is not None:
         motion = context.motion
         context.warnings += motion.notes
-        time, values = motion.series()
-        step = float(time[1] - time[0])
-        measured = core_motion.measures(values, step)
-        pga = float(measured.pga[0]) / GRAVITY if pga is None else pga
-        pgv = float(measured.pgv[0]) if pgv is None else pgv
-
-        def spectra(period: float, damping: float) -> core_motion.Spectra:
-            return core_motion.response_spectra(values, step, [period], [damping], threads=context.threads)
-
-        def sd(period: float, damping: float) -> float:
-            return float(spectra(period, damping).sd.ravel()[0])
-
-        def sa(period: float, damping: float) -> float:
-            return float(spectra(period, damping).psa.ravel()[0]) / GRAVITY
-
-        found = primary_impulses(time, values, 1)
-        pulse = 2.0 * np.pi / found[0].period if found else None
         start = rocker.start_rotation
         dynamic = core_rocking.history(
             model.body, motion.ground, motion.end + 30.0 / float(model.frequency.min()), 0.01,
             start_side=1 if start >= 0.0 else -1, start_rotation=abs(start),
         )  # fmt: skip
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
-    beside |= {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
     alpha = float(model.alpha.min())
     lines = [
-        west(float(np.tan(alpha)), pga), housner(float(model.frequency[0]), alpha, pga, pulse),
-        *ishiyama(width, height, pga, pgv), *ntc(model, pga, options.behaviour_factor, options.confidence_factor, sd),
+        west(float(np.tan(alpha)), pga), *ishiyama(width, height, pga, options.peak_velocity), *ntc(model, pga, options.behaviour_factor, options.confidence_factor, sd),
         asce43(width, height, sa),
     ]  # fmt: skip
+    if options.pulse_period is not None:
+        lines.append(housner(float(model.frequency[0]), alpha, pga, options.pulse_period))
     return lines, beside
+
+
+def _spectrum(context: Context, options: CodeChecks) -> Callable[[float, float], float] | None:
+    """Pseudo-acceleration [m/s^2] of the code over period and damping ratio, whatever the seed of the motion; None
+    without a spectrum.
+    """
+    model = options.spectrum
+    if model is None and isinstance(context.deck.motion, Compatible):
+        model = context.deck.motion
+    if model is None:
+        return None
+
+    def at(period: float, damping: float) -> float:
+        try:
+            value = float(code_spectrum(model, context.deck.folder, damping)(np.array([period]))[0])
+        except ValueError as error:
+            raise Refused(f"spectrum: {error}") from None
+        # ASCE 7 and a table are of 5 %; at period zero the ground itself has no damping
+        five = model.code in ("ASCE7", "table") and period > 0.0
+        return value * (damping_factor(damping) if five else 1.0)
+
+    return at
 
 
 def _wall(context: Context, options: CodeChecks) -> list[Line]:

@@ -13,7 +13,10 @@ from extrados.schema.constants import GRAVITY
 
 @dataclass(frozen=True)
 class Line:
-    """One rule: its capacity and demand in `unit`, and where it comes from; verdict "" where there is no demand."""
+    """One rule: its capacity and demand in `unit`, and where it comes from; verdict "" where there is no demand.
+
+    code: whose check it is; of several checks of one code any that holds suffices. "": a formula for comparison.
+    """
 
     rule: str
     quantity: str
@@ -22,6 +25,7 @@ class Line:
     unit: str
     source: str
     note: str = ""
+    code: str = ""
 
     @property
     def verdict(self) -> str:
@@ -35,12 +39,10 @@ def west(tan_alpha: float, pga: float | None) -> Line:
     return Line("uplift", "PGA", tan_alpha, pga, "g", "West's formula, quoted by Milne 1882")
 
 
-def housner(p: float, alpha: float, pga: float | None, pulse: float | None) -> Line:
-    """Half sine of circular frequency w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
-    x = float(np.sqrt(1.0 + (pulse / p) ** 2)) if pulse else 1.0
-    note = (
-        "for the primary impulse of the motion taken as a half sine" if pulse else "static limit: no impulse was found"
-    )
+def housner(p: float, alpha: float, pga: float | None, period: float) -> Line:
+    """Half of a sine of period T = 2 pi/w: a = g tan alpha sqrt(1 + (w/p)^2); unconservative (see the theory page)."""
+    x = float(np.hypot(1.0, 2.0 * np.pi / (period * p)))
+    note = f"for half a sine of {period:.3g} s"
     return Line("Housner half sine", "PGA", x * np.tan(alpha), pga, "g", "Housner 1963, Eq. 15 (verify clause)", note)
 
 
@@ -50,8 +52,8 @@ def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) 
     speed = 10.0 * 100.0 * width / np.sqrt(100.0 * height) / 100.0
     note = "overturns only where both limits are passed"
     return (
-        Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note),
-        Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note),
+        Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note, "Ishiyama"),
+        Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note, "Ishiyama"),
     )
 
 
@@ -70,6 +72,7 @@ def ntc(model: BlockModel, pga: float | None, q: float, fc: float, sd) -> list[L
             pga,
             "g",
             "NTC 2018 C8.7.1.2.1: a0* >= a_g S/q (verify clause)",
+            code="NTC 2018",
         ),
     ]
     d_u = 0.4 * d0
@@ -78,7 +81,7 @@ def ntc(model: BlockModel, pga: float | None, q: float, fc: float, sd) -> list[L
     t_s = 2.0 * np.pi * float(np.sqrt(d_s / a_s))
     lines.append(
         Line("NTC nonlinear", "displacement", d_u, None if sd is None else sd(t_s, 0.05), "m",
-             "Circ. 617/2009 C8A.4.2.2: d_u* = 0.4 d_0* >= S_De(T_s) (verify clause)", f"T_s = {t_s:.3f} s")
+             "Circ. 617/2009 C8A.4.2.2: d_u* = 0.4 d_0* >= S_De(T_s) (verify clause)", f"T_s = {t_s:.3f} s", "NTC 2018")
     )  # fmt: skip
     return lines
 
@@ -97,7 +100,7 @@ def asce43(width: float, height: float, sa) -> Line:
     capacity = float(2.0 * f1 / (c3 * theta))
     demand = None if sa is None else sa(1.0 / frequency, damping)
     return Line("ASCE 43 rocking", "SA", capacity, demand, "g", "ASCE/SEI 43-05, App. A (verify clause)",
-                f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha")  # fmt: skip
+                f"equivalent frequency {frequency:.3f} Hz, damping {100 * damping:.1f} %, at rotation alpha", "ASCE 43")  # fmt: skip
 
 
 def piers(

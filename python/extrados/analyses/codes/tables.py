@@ -3,7 +3,8 @@
 from typing import ClassVar, Literal
 
 from extrados.analyses.table import BuildingAnalysis
-from extrados.schema.quantities import Acceleration, Force, Length, Velocity
+from extrados.schema.quantities import Acceleration, Force, Length, Time, Velocity
+from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import key
 
 
@@ -14,8 +15,12 @@ class CodeChecks(BuildingAnalysis):
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.cohesion", "joints.restitution")
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
-    peak_acceleration: Acceleration | None = key(None, "demand; default that of the motion", gt=0)
-    peak_velocity: Velocity | None = key(None, "demand; default that of the motion", gt=0)
+    spectrum: CodeSpectrum | None = key(
+        None, "the demand: elastic spectrum of the code at the site; default that of a `compatible` motion"
+    )
+    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
+    peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
+    pulse_period: Time | None = key(None, "period of the sine whose half Housner's formula takes; asks for it", gt=0)
     behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")
     confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="NTC 2018, C8.5.4")
     axial_load: Force | None = key(None, "vertical load on top of the wall; asks for the pier rules", ge=0)

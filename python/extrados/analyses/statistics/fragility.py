@@ -6,30 +6,23 @@ from typing import Any
 import numpy as np
 from scipy.stats import norm, qmc
 
-from extrados.analyses.batches import Swept, sweep
+from extrados.analyses.batches import Swept, Unfinished, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
 from extrados.analyses.rocking.common import rocker_of
-from extrados.analyses.statistics.summaries import Lognormal, NoFit, bootstrap, fit_lognormal, wilson
+from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe
+from extrados.analyses.statistics.sensitivity import sensitivity, spoken
+from extrados.analyses.statistics.summaries import shares
 from extrados.analyses.statistics.tables import UNCERTAIN, Fragility
 from extrados.building.rockers.rocker import Rocker, make_rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import FAILED, Body, Ground
+from extrados.motions.from_deck import is_set
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
-from extrados.results.rocking import COLLAPSE, NO_HINGING, RECOVERY
+from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
-
-#: Intensity -> (name in the results, unit of a level in SI, unit of the column)
-INTENSITIES = {
-    "pga": ("PGA", GRAVITY, "g"),
-    "pga-ratio": ("PGA/(g tan alpha)", 1.0, ""),
-    "pgv-ratio": ("p PGV/(g tan alpha)", 1.0, ""),
-    "sa": ("SA", GRAVITY, "g"),
-    "arias": ("Arias intensity", 1.0, "m/s"),
-    "scale": ("factor", 1.0, ""),
-}
 
 
 @dataclass(frozen=True)
@@ -105,16 +98,21 @@ class EnsembleJob:
 
 
 def sampled_models(context: Context, options: Fragility, base: Rocker, count: int) -> list[Rocker]:
-    """One model for each motion with lognormal factors of mean 1 on the uncertain keys, by a scrambled Sobol sequence."""
+    """One model for each motion with uncertain values drawn by a scrambled Sobol sequence."""
+    draws = qmc.Sobol(len(options.uncertain), scramble=True, seed=options.seed or 0).random_base2(
+        max(1, int(np.ceil(np.log2(count))))
+    )[:count]
+    return models_at(context, options, base, draws)
+
+
+def models_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> list[Rocker]:
+    """One model for each row of draws from the unit cube: lognormal factors of mean 1 on the uncertain keys, by name."""
     structure = context.deck.structure
     known = UNCERTAIN.get(base.what, ())
     for name in options.uncertain:
         if name not in known or (name != "restitution" and getattr(structure, name) is None):
             raise Refused(f"uncertain.{name} does not belong to this {base.word}; it has {', '.join(known) or 'none'}")
     names = sorted(options.uncertain)
-    draws = qmc.Sobol(len(names), scramble=True, seed=options.seed or 0).random_base2(
-        max(1, int(np.ceil(np.log2(count))))
-    )[:count]
     spread = np.sqrt(np.log1p(np.array([options.uncertain[n] for n in names]) ** 2))
     factors = np.exp(spread * norm.ppf(np.clip(draws, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
     made = []
@@ -176,35 +174,6 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
     return job, motions * (1 if levels is None else len(levels)), motions
 
 
-def shares(swept: Swept, confidence: float, initial: float) -> dict[str, Any]:
-    """Probabilities with Wilson intervals and the moments of the peak rotation; overturned members count as 1."""
-    ok = swept["outcome"] != FAILED
-    n = int(ok.sum())
-    collapsed = int((swept["outcome"] == COLLAPSE).sum())
-    # With a start off rest every member rocks: uplift then means that it rose beyond its start.
-    lifted = (
-        int((ok & (swept["outcome"] > NO_HINGING)).sum())
-        if initial == 0.0
-        else int((ok & (swept["peak_ratio"] > abs(initial) * (1 + 1e-9))).sum())
-    )
-    ratio = np.minimum(swept["peak_ratio"][ok], 1.0)
-    low, high = wilson(collapsed, n, confidence)
-    up_low, up_high = wilson(lifted, n, confidence)
-    return {
-        "count": n,
-        "failed": int((~ok).sum()),
-        "collapsed": collapsed,
-        "collapse_probability": collapsed / n if n else None,
-        "confidence_interval": [float(low), float(high)],
-        "uplifted": lifted,
-        "uplift_probability": lifted / n if n else None,
-        "uplift_confidence_interval": [float(up_low), float(up_high)],
-        "mean_peak_rotation_ratio": float(ratio.mean()) if n else None,
-        "deviation_peak_rotation_ratio": float(ratio.std(ddof=1)) if n > 1 else None,
-        "median_peak_rotation_ratio": float(np.median(ratio)) if n else None,
-    }
-
-
 def _describe(
     context: Context,
     options: Fragility,
@@ -219,16 +188,35 @@ def _describe(
         result.answer = "No member is finished."
         return
     initial = base.start_rotation / base.critical[0]
-    r = shares(swept, options.confidence, initial)
     per_motion = 1 if job.levels is None else len(job.levels)
     ok = swept["outcome"] != FAILED
-    r |= {
+    r: dict[str, Any] = {
+        "failed": int((~ok).sum()),
         "confidence": options.confidence,
         "restitution": base.restitution,
         "uplift_acceleration_g": base.uplift,
         "critical_rotation_rad": base.critical[0],
         "initial_rotation_ratio": initial,
         "motions": motions,
+    }
+    _tell_failures(job, swept, per_motion, result)
+    _tables(job, swept, per_motion, options, result)
+    if job.levels is not None:
+        seen = arranged(job.levels, swept.members, motions, swept.arrays)
+        r |= describe(
+            seen,
+            options.intensity,
+            base.word,
+            initial,
+            options.confidence,
+            options.bootstrap,
+            options.seed or 0,
+            result,
+        )
+        result.results = out.OverLevels(**r)
+        return
+    r |= shares(swept["outcome"], swept["peak_ratio"], options.confidence, initial)
+    r |= {
         "median_pga_g": float(np.nanmedian(swept["pga"])) / GRAVITY if ok.any() else None,
         "median_pgv_m_s": float(np.nanmedian(swept["pgv"])) if ok.any() else None,
         "median_arias_m_s": float(np.nanmedian(swept["arias"])) if ok.any() else None,
@@ -237,13 +225,43 @@ def _describe(
         expected = job.source.made.expected()
         r |= {"expected_pga_g": expected["pga"] / GRAVITY, "expected_pgv_m_s": expected["pgv"]}
         ratio = r["median_pga_g"] / r["expected_pga_g"]
-        if job.levels is None and not 0.5 <= ratio <= 2.0:
+        if not 0.5 <= ratio <= 2.0:
             result.warnings.append(
                 f"the median peak acceleration of the motions, {r['median_pga_g']:.2f} g, is {ratio:.1f} times the median observed "
                 f"at this intensity ({r['expected_pga_g']:.2f} g, Worden et al. 2012)"
             )
-    failures = swept.members[~ok]
-    told: set[str] = set()  # a motion that fails at one level fails at all
+    edges = np.linspace(0.0, 1.0, options.bins + 1)
+    upright = ok & (swept["outcome"] != COLLAPSE)
+    result.arrays |= {
+        "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
+        "bin_count": Array(
+            np.histogram(np.minimum(swept["peak_ratio"][upright], 1.0), edges)[0], ("bin",), "", "members that stay up"
+        ),
+    }
+    p, (low, high) = r["collapse_probability"], r["confidence_interval"]
+    result.answer = (
+        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down: probability of collapse {100 * p:.1f} % "
+        f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
+        f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
+        f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
+    ) if p is not None else "No motion could be run."  # fmt: skip
+    if options.sensitivity is not None and swept.complete:
+        try:
+            r |= sensitivity(
+                context, sorted(options.uncertain), lambda draws: models_at(context, options, base, draws), job.source,
+                motions if context.deck.motion is None or is_set(context.deck.motion) else 1, job.settle,
+                options.sensitivity, options.seed or 0, options.bootstrap, options.confidence, options.tolerance, result,
+            )  # fmt: skip
+            result.answer += f" {spoken(r['sensitivity'])}"
+        except Unfinished as stop:
+            result.status, result.reason = ("interrupted" if stop.interrupted else "failed"), str(stop)
+    result.results = out.Ensemble(**r)
+
+
+def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Result) -> None:
+    """Why members have no result; a motion that fails at one level fails at all and is told once."""
+    failures = swept.members[swept["outcome"] == FAILED]
+    told: set[str] = set()
     for k in failures:
         name = (
             job.source.names[k // per_motion % len(job.source.names)]
@@ -257,26 +275,6 @@ def _describe(
             result.warnings.append(f"{name} has no result: {swept['reason'][np.searchsorted(swept.members, k)]}")
     if len(told) > 5:
         result.warnings.append(f"{len(failures)} members in all have no result, see ensemble.csv")
-    _tables(job, swept, per_motion, options, result)
-    edges = np.linspace(0.0, 1.0, options.bins + 1)
-    upright = ok & (swept["outcome"] != COLLAPSE)
-    result.arrays |= {
-        "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
-        "bin_count": Array(
-            np.histogram(np.minimum(swept["peak_ratio"][upright], 1.0), edges)[0], ("bin",), "", "members that stay up"
-        ),
-    }
-    if job.levels is not None:
-        r |= _curves(options, base, job, swept, motions, result)
-    else:
-        p, (low, high) = r["collapse_probability"], r["confidence_interval"]
-        result.answer = (
-            f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down: probability of collapse {100 * p:.1f} % "
-            f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
-            f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
-            f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
-        ) if p is not None else "No motion could be run."  # fmt: skip
-    result.results = out.Ensemble(**r)
 
 
 def _stopped(swept: Swept, result: Result) -> None:
@@ -309,124 +307,21 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
     }
 
 
-def _curves(
-    options: Fragility, base: Rocker, job: EnsembleJob, swept: Swept, motions: int, result: Result
-) -> dict[str, Any]:
-    """Stripes, lognormal curves, two stages, incremental curves with their resurrections; the results of levels alone."""
-    levels, order = job.levels, np.argsort(job.levels, kind="stable")
-    n = len(levels)
-    outcome = np.full(motions * n, FAILED)
-    ratio = np.full(motions * n, np.nan)
-    outcome[swept.members] = swept["outcome"]
-    ratio[swept.members] = swept["peak_ratio"]
-    outcome, ratio = outcome.reshape(motions, n)[:, order], ratio.reshape(motions, n)[:, order]
-    levels = levels[order]
-    valid, over, up = outcome != FAILED, outcome == COLLAPSE, outcome >= RECOVERY
-    count, hits, lifted = valid.sum(axis=0), over.sum(axis=0), (up & valid).sum(axis=0)
-    low, high = wilson(hits, count, options.confidence)
-    up_low, up_high = wilson(lifted, count, options.confidence)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        table = {"level": levels, "count": count, "uplifted": lifted, "collapsed": hits,
-                 "collapse_probability": hits / count, "lower": low, "upper": high,
-                 "uplift_probability": lifted / count, "uplift_lower": up_low, "uplift_upper": up_high}  # fmt: skip
-    name, _, unit = INTENSITIES[options.intensity]
-    result.tables["fragility"] = TableData(table, {"level": unit})
-    grid = np.geomspace(levels[0] / 1.5, levels[-1] * 1.5, 200)
-    curves = {"grid": Array(grid, ("grid",), unit, name)}
-    r: dict[str, Any] = {"intensity": name, "intensity_unit": unit}
-    fits: dict[str, Lognormal | None] = {}
-    for stage, stage_hits, stage_count, text in (
-        ("", hits, count, "collapse"), ("uplift_", lifted, count, "uplift"), ("overturning_given_uplift_", hits, lifted, "collapse after uplift"),
-    ):  # fmt: skip
-        try:
-            fits[stage] = fit = fit_lognormal(levels, stage_hits, stage_count)
-            r |= {f"{stage}median": fit.median, f"{stage}dispersion": fit.dispersion, f"{stage}deviance": fit.deviance,
-                  f"{stage}degrees_of_freedom": fit.freedom, f"{stage}goodness_p_value": fit.p_value}  # fmt: skip
-            curves[f"{stage}curve"] = Array(fit.probability(grid), ("grid",), "", f"fitted probability of {text}")
-        except NoFit as error:
-            fits[stage] = None
-            r |= {f"{stage}median": None, f"{stage}dispersion": None}
-            result.warnings.append(f"no curve of {text}: {error}")
-    if fits["uplift_"] and fits["overturning_given_uplift_"]:
-        product = fits["uplift_"].probability(grid) * fits["overturning_given_uplift_"].probability(grid)
-        curves["two_stage_curve"] = Array(product, ("grid",), "", "P(uplift) P(collapse | uplift)")
-    if options.bootstrap and fits[""] is not None:
-        median, spread, lower, upper = bootstrap(
-            levels, over, valid, options.bootstrap, options.confidence, options.seed or 0, grid
-        )
-        r |= {"median_interval": [float(x) for x in median], "dispersion_interval": [float(x) for x in spread]}
-        curves |= {"curve_lower": Array(lower, ("grid",)), "curve_upper": Array(upper, ("grid",))}
-    # Incremental dynamic analysis: first level that brings each motion's structure down, and levels above that do not.
-    whole = valid.all(axis=1)
-    fell = over.any(axis=1)
-    first = np.where(fell, levels[over.argmax(axis=1)], np.nan)
-    later = (np.arange(n) > over.argmax(axis=1)[:, None]) & fell[:, None]
-    risen = later & valid & ~over
-    r |= {
-        "motions_that_collapse": int(fell.sum()),
-        "resurrections": int(risen.any(axis=1).sum()),
-        "first_collapse_median": float(np.exp(np.mean(np.log(first[fell])))) if fell.all() and whole.all() else None,
-        "first_collapse_dispersion": float(np.std(np.log(first[fell]), ddof=1))
-        if fell.all() and whole.all() and motions > 1
-        else None,
-    }
-    result.tables["incremental"] = TableData(
-        {"motion": np.arange(motions) + 1, "first_collapse": first, "resurrected_levels": risen.sum(axis=1)},
-        {"first_collapse": unit},
-    )
-    shown = min(motions, 200)
-    result.arrays |= {
-        **{
-            f"stripe_{k}": Array(np.asarray(v, float), ("stripe",), unit if k == "level" else "")
-            for k, v in table.items()
-        },
-        **curves,
-        "incremental_ratio": Array(ratio[:shown], ("shown", "stripe"), "", "peak rotation ratio of the first motions"),
-        "incremental_risen": Array(
-            risen[:shown].astype(np.int8), ("shown", "stripe"), "", "1: up again above a level that overturned it"
-        ),
-    }
-    fit = fits[""]
-    said = (
-        f"fitted median {fit.median:.4g}{' ' + unit if unit else ''}, dispersion {fit.dispersion:.3f}"
-        if fit
-        else "no curve could be fitted"
-    )
-    if fit and "median_interval" in r and np.isfinite(r["median_interval"][0]):
-        said += f" (median between {r['median_interval'][0]:.4g} and {r['median_interval'][1]:.4g} at {100 * options.confidence:g} %)"
-    if fit and fit.freedom > 0 and fit.p_value < 0.01:
-        result.warnings.append(
-            f"the lognormal curve fits badly (deviance {fit.deviance:.1f} at {fit.freedom} degrees of freedom, p = {fit.p_value:.2g})"
-        )
-    done = int(whole.sum())
-    whose = (
-        f"{motions} motions"
-        if done == motions
-        else f"{done} of {motions} motions (the rest has no result at some level)"
-    )
-    result.answer = (
-        f"{whose} at {n} levels of {name}: {said}. "
-        f"Collapse runs from {100 * np.nanmin(table['collapse_probability']):.1f} % at the lowest to {100 * table['collapse_probability'][-1]:.1f} % at the "
-        f"highest level. {r['resurrections']} motions leave the {base.word} standing at a level above one that overturns it."
-    )
-    return r
-
-
 def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[float, Swept]], result: Result) -> None:
     """Mean and deviation of the peak rotation against the duration (Fig. 6-8)."""
     _stopped(parts[-1][1], result)
     initial = base.start_rotation / base.critical[0]
     parts = [(d, s) for d, s in parts if len(s.members)]
-    rows = [shares(s, options.confidence, initial) for _, s in parts]
+    rows = [shares(s["outcome"], s["peak_ratio"], options.confidence, initial) for _, s in parts]
     durations = np.array([d for d, _ in parts])
     keys = ("mean_peak_rotation_ratio", "deviation_peak_rotation_ratio", "collapse_probability", "uplift_probability")
     values = {k: np.array([np.nan if row[k] is None else row[k] for row in rows], dtype=float) for k in keys}
-    total = {k: sum(row[k] for row in rows) for k in ("count", "failed", "collapsed", "uplifted")}
     result.results = out.OverDurations(
         durations_s=durations,
         **values,
-        confidence_interval=[row["confidence_interval"] for row in rows],
-        **total,
+        **{k: [row[k] for row in rows] for k in ("confidence_interval", "count", "collapsed", "uplifted")},
+        failed=sum(int((s["outcome"] == FAILED).sum()) for _, s in parts),
+        confidence=options.confidence,
         restitution=base.restitution,
         critical_rotation_rad=base.critical[0],
         initial_rotation_ratio=initial,

@@ -41,6 +41,10 @@ class Fragility(RockingTable):
     uncertain: dict[str, float] = key(
         {}, "coefficients of variation of width, height, thickness, restitution, ..., sampled by a Sobol sequence"
     )
+    sensitivity: int | None = key(
+        None, "samples, a power of 2, for Sobol indices of `uncertain` and of the motion: samples times (values + 2) runs",
+        ge=16, le=2**20, source="Saltelli and others 2010",
+    )  # fmt: skip
     confidence: float = key(0.95, "of all intervals", gt=0, lt=1)
     bootstrap: int = key(500, "draws for the band of the fitted curve", ge=0, le=100_000)
     bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
@@ -68,6 +72,11 @@ class Fragility(RockingTable):
             raise ValueError("give levels or durations, not both")
         if self.levels is not None and (self.intensity == "sa") != (self.sa_period is not None):
             raise ValueError('intensity = "sa" and sa_period go together')
+        if self.sensitivity is not None:
+            if not self.uncertain or self.levels is not None or self.durations is not None:
+                raise ValueError("sensitivity needs uncertain values, and neither levels nor durations")
+            if self.sensitivity & (self.sensitivity - 1):
+                raise ValueError(f"sensitivity is {self.sensitivity}, expected a power of 2")
         known = sorted({name for names in UNCERTAIN.values() for name in names})
         for name, value in self.uncertain.items():
             if name not in known:
