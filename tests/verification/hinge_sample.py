@@ -1,0 +1,142 @@
+"""Ten arches under twenty random pulses each, and how they end in discrete elements, which know no hinges.
+
+R 1 m, stiff joints (1e12 Pa/m), friction that does not let them slide. Amplitudes lie between 1.1 and 4 times the capacity,
+periods between 0.7 and 4 times the arch's own time (1/p of a block), both spread evenly over their logarithms.
+"""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+
+from extrados.analyses.dem import model as dem_model
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.templates.arch import ArchAssembly, make_arch
+from extrados.core import arch as core_arch
+from extrados.core import dem, rocking
+from extrados.decks.reader import make_deck
+from extrados.motions import pulses
+from extrados.motions.motion import Motion
+from extrados.schema.constants import GRAVITY
+
+#: t/R, embrace in degrees, voussoirs.
+ARCHES = [
+    (0.08, 120.0, 11), (0.10, 130.0, 12), (0.10, 145.0, 13), (0.12, 150.0, 13), (0.12, 160.0, 14),
+    (0.14, 157.5, 14), (0.15, 170.0, 16), (0.18, 165.0, 15), (0.18, 175.0, 17), (0.22, 175.0, 17),
+]  # fmt: skip
+SHAPES: dict[str, tuple[int, Callable[[float, float], Motion]]] = {
+    "sine": (10, pulses.sine_pulse),
+    "step": (4, lambda amplitude, period: pulses.step_pulse(amplitude, period / 3.0)),
+    "half-sine": (3, lambda amplitude, period: pulses.pulse("half-sine", amplitude, period)),
+    "ricker": (3, lambda amplitude, period: pulses.pulse("ricker", amplitude, period)),
+}
+RULES = ("thesis", "energy-safe", "inelastic")
+#: After the pulse, in times of the arch.
+REST = 40.0
+#: Of the arch's size: a displacement that is collapse.
+FALLEN = 0.2
+
+
+@dataclass(frozen=True)
+class Sample:
+    """An arch and its pulses: (shape, motion)."""
+
+    thickness: float
+    embrace: float
+    voussoirs: int
+    seed: int
+
+    @cached_property
+    def arch(self) -> ArchAssembly:
+        return make_arch(1.0, self.thickness, self.embrace, self.voussoirs)
+
+    @cached_property
+    def model(self) -> ArchModel:
+        return ArchModel(self.arch)
+
+    @cached_property
+    def time_unit(self) -> float:
+        return MechanismModel(self.arch).time_unit
+
+    @cached_property
+    def pulses(self) -> list[tuple[str, Motion]]:
+        draw = np.random.default_rng(self.seed)
+        capacity = self.model.collapse[0].gamma * GRAVITY
+        return [
+            (
+                shape,
+                make(
+                    capacity * 1.1 * (4.0 / 1.1) ** draw.random(), self.time_unit * 0.7 * (4.0 / 0.7) ** draw.random()
+                ),
+            )
+            for shape, (count, make) in SHAPES.items()
+            for _ in range(count)
+        ]
+
+    def rocks_down(self, rule: str, scale: float = 1.0) -> np.ndarray:
+        """Which pulses times `scale` bring it down by fixed hinges (pulses,); c_v of the rule held between 0 and 1."""
+        c_v = float(np.clip(self.model.impacts.by_rule[rule], 0.0, 1.0))
+        grounds = [motion.ground for _, motion in self.pulses]
+        ends = np.array([motion.end + REST * self.time_unit for _, motion in self.pulses])
+        runs = np.arange(len(grounds))
+        found = rocking.ensemble(
+            [rocking.arch_body(self.model.four_hinge, c_v)],
+            grounds,
+            np.zeros_like(runs),
+            runs,
+            np.full(len(runs), scale),
+            ends,
+        )
+        return np.array([rocking.OUTCOMES[k] == "collapse" for k in found.outcome])
+
+    def outside(self, motion: Motion) -> float:
+        """Share of the rocking time in which the dynamic thrust line leaves a joint by more than 1 % of it."""
+        run = rocking.history(self.model.body, motion.ground, motion.end + REST * self.time_unit, self.time_unit / 50.0)
+        side = np.sign(run.rotation)
+        moving = side != 0.0
+        if not moving.any():
+            return 0.0
+        s = side[moving]
+        line = core_arch.thrust_line(
+            self.model.four_hinge, self.arch, s * run.rotation[moving], s * run.rate[moving],
+            s * run.acceleration[moving], s * run.ground[moving], run.vertical[moving],
+        )  # fmt: skip
+        return float((np.abs(line.position - 0.5).max(axis=1) > 0.51).mean())
+
+    @cached_property
+    def elements(self) -> dem_model.Model:
+        building = make_deck(
+            {
+                "structure": {"kind": "arch", "radius": 1.0, "thickness": self.thickness, "embrace": self.embrace,
+                              "voussoirs": self.voussoirs},
+                "joints": {"friction": 2.0, "normal_stiffness": 1e12},
+                "analysis": [{"kind": "tilt"}],
+            }
+        ).building  # fmt: skip
+        return dem_model.Model(building.blocks(), building.rigid(), dem_model.joint_values(building))
+
+    def falls(self, motion: Motion) -> bool:
+        """Does it fall in discrete elements?"""
+        end = motion.end + REST * self.time_unit
+        options = dem.Options(end_time=end, output_step=0.02, collapse=FALLEN * self.elements.size, stop_at_rest=True)
+        run = dem.run(self.elements.bodies(), options, motion.ground)
+        assert run.reason in ("collapse", "left", "end", "rest"), run.reason
+        return run.reason in ("collapse", "left")
+
+
+@cache
+def fell() -> np.ndarray:
+    """Which of the arches fall under which of their pulses in discrete elements (arches, pulses)."""
+    for one in SAMPLES:
+        one.elements  # noqa: B018  the first look makes it, before threads share it
+    runs = [(one, motion) for one in SAMPLES for _, motion in one.pulses]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        found = list(pool.map(lambda run: run[0].falls(run[1]), runs))
+    return np.array(found).reshape(len(SAMPLES), -1)
+
+
+SAMPLES = [Sample(*one, seed) for seed, one in enumerate(ARCHES)]
