@@ -14,7 +14,7 @@ from extrados.building.geometry.drawing import read_dxf
 from extrados.building.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, signed_area
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Polygon, make_blocks, read_json
-from extrados.limit.interior import collapse_load
+from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.programme import Immovable, LimitAnalysis
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -94,14 +94,17 @@ def test_interior_point_method_on_a_wall(friction: float) -> None:
     """Against HiGHS on the reduced form: capacity, bounds both ways, laws of the joints, work of the mechanism."""
     section = make_blocks(wall(10, 6), None)
     exact, _ = LimitAnalysis(section, friction, form="reduced").collapse()
-    inner = collapse_load(LimitAnalysis(section, friction, form="sparse").system, np.full(len(section.a), friction), 1)
-    assert inner is not None and inner.gamma == pytest.approx(exact.gamma, abs=2e-9)
-    assert inner.corners[:, :2].min() > 0.0
-    assert (np.abs(inner.corners[:, 2]) <= friction * inner.corners[:, :2].sum(axis=1)).all()
     system = LimitAnalysis(section, friction, form="sparse").system
-    assert system.matrix @ np.append(inner.corners.ravel(), inner.gamma) == pytest.approx(system.right, abs=3e-8)
+    problem = CollapseProblem(system, np.full(len(section.a), friction), 1, dilates=True)
+    inner, misfit = problem.state()
+    assert misfit < 10.0 * RESIDUAL and inner.gamma == pytest.approx(exact.gamma, abs=5e-9)
+    assert problem.residuals(inner.gamma, inner.corners, inner.u).worst < 1e-6
+    assert inner.n.min() > 0.0
+    assert (np.abs(inner.s) <= friction * inner.n.sum(axis=1)).all()
+    assert system.matrix @ np.append(inner.corners.ravel(), inner.gamma) == pytest.approx(system.right, abs=1e-9)
     # Openings dilate at least as much as they slide: the flow rule of the bound.
-    assert (inner.motion[:, :2].min(axis=1) >= friction * np.abs(inner.motion[:, 2]) - 1e-9).all()
+    motion = problem.motion(inner.u)
+    assert (motion[:, :2].min(axis=1) >= friction * np.abs(motion[:, 2]) - 1e-9).all()
     for direction in (1, -1):
         state, mechanism = LimitAnalysis(section, friction, form="sparse").collapse(direction)
         assert abs(state.gamma - mechanism.upper_bound) < 1e-9 and mechanism.defect < 1e-9

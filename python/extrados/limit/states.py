@@ -80,16 +80,18 @@ def read_mechanism(
     twist: np.ndarray,
     defect: float,
     at_rest: float = AT_REST,
+    taken: float = 0.0,
 ) -> Mechanism:
     """Mechanism from the scaled twists about the origin and the duals of the constraints.
 
-    Virtual work gives the bound: -(dead . u + sum dual * lower) / (live . u).
+    Virtual work gives the bound: (taken - dead . u - sum dual * lower) / (live . u); taken is the work that the
+    joints take up by sliding and crushing, where no constraint says so.
     """
     size = assembly.size
     unit = loads.scale * np.array([1.0, 1.0, size])
     live = float((loads.live / unit * twist).sum())
     dead = float((loads.dead / unit * twist).sum())
-    upper = -(dead + float(dual @ constraints.lower)) / live
+    upper = (taken - dead - float(dual @ constraints.lower)) / live
     x, y = (assembly.centroid / size).T
     velocity = np.column_stack([twist[:, 0] - twist[:, 2] * y, twist[:, 1] + twist[:, 2] * x, twist[:, 2]])
 

@@ -98,7 +98,8 @@ class Sparse:
             moment = point[:, 0] * direction[:, 1] - point[:, 1] * direction[:, 0]
             return np.column_stack([direction, moment])
 
-        on_a = np.stack([wrench(n, p), wrench(n, q), wrench(t, 0.5 * (p + q))], axis=1)  # (m, corner, equation)
+        on_a = np.stack([wrench(n, p), wrench(n, q), wrench(t, 0.5 * (p + q))], axis=1)
+        self.wrench = on_a  # of unit corner forces on block a (m, corner, equation)
         row, column, value = [], [], []
         for ends, sign in ((assembly.a, 1.0), (assembly.b, -1.0)):
             held = np.flatnonzero(ends != GROUND)

@@ -256,7 +256,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
     with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
         stone(ax, blocks)
-        ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
+        ground(ax, run, name, [reaction.joint for reaction in (r.central or r.least).reactions])
         for which, colour in colours.items():
             if arched:
                 label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m"

@@ -61,6 +61,29 @@ class Fracture(ResultModel):
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
 
 
+class NonDilatant(ResultModel):
+    """Collapse to one side by sliding that does not dilate: the least state found, its bounds and residuals."""
+
+    associated_g: float | None = fact(
+        "upper bound: the same with sliding that dilates; null where that cannot be brought down",
+        "g",
+        source="Drucker 1954",
+    )
+    frictionless_g: float | None = fact(
+        "lower bound: the same without friction; null where nothing stands then", "g", source="Drucker 1954"
+    )
+    starts_g: list[float] = fact("load that each start led to; the least is the answer", "g")
+    spread_g: float = fact("greatest less least of them: such states are not unique", "g")
+    equilibrium_residual: float = fact("greatest force left over at a stone, over the total load")
+    friction_residual: float = fact("greatest excess of |s| over mu N, over the total load")
+    tension_residual: float = fact("greatest tension (or crushing beyond the strength), over the total load")
+    overlap_residual: float = fact("greatest overlap of the motion, over the fastest joint")
+    complementarity_residual: float = fact(
+        "greatest lesser of force and motion where a joint presses and opens, or holds and slides"
+    )
+    work_residual: float = fact("work of the load less what weight and friction take, over the former")
+
+
 class Tilt(KindResults):
     """tilt: the constant horizontal acceleration at which a structure becomes a mechanism."""
 
@@ -95,6 +118,8 @@ class Tilt(KindResults):
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     fracture: Fracture = maybe("collapse with the leeward buttress cracked")
+    non_dilatant: NonDilatant = maybe("non-associated friction: what the collapse to +x rests on")
+    non_dilatant_opposite: NonDilatant = maybe("non-associated friction: what the collapse to -x rests on")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
@@ -123,17 +148,19 @@ class Thrust(KindResults):
     geometric_safety_factor: float | None = fact(
         "one over the least part of the joints that holds a thrust line; null where one runs through all middles"
     )
-    least_part_of_joints: float = fact("the part of the joints, about their middles, that the most central line needs")
+    least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
-    central: ThrustLine = fact("the most central line")
+    central: ThrustLine = maybe("the most central line; a warning says why where it is missing")
 
     def judged(self, demand: Demand) -> Verdict:
         """The part of the joints that the most central line needs against the whole; the ratio is the safety factor."""
         part = self.least_part_of_joints
+        if part is None:
+            return judge("The most central thrust line was not found.", None, None)
         return judge(
             f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0
         )  # fmt: skip

@@ -60,24 +60,26 @@ def loads_of(assembly: Assembly, options: Any) -> Loads:
     return loads.with_dead(extra)
 
 
-def limit_of(building: Building, options: LimitAnalysisTable) -> LimitAnalysis:
-    """The programmes of a building's stones under its joint laws."""
+def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bool = False) -> LimitAnalysis:
+    """The programmes of a building's stones under its joint laws; forces_only: where no motion is asked for, so that how
+    sliding dilates does not matter."""
     assembly = building.blocks()
     try:
         return LimitAnalysis(
             assembly,
             building.friction(),
             strength=building.material.compressive_strength,
-            associated=options.friction_rule == "associated",
+            associated=forces_only or options.friction_rule == "associated",
             loads=loads_of(assembly, options),
+            starts=options.starts,
         )
     except Disconnected as error:
         raise Refused(str(error)) from None
 
 
-def answer_of(building: Building, options: LimitAnalysisTable) -> Answer:
+def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnalysis | None = None) -> Answer:
     """The whole answer; Refused with the reason where the structure cannot stand."""
-    assembly, limit = building.blocks(), limit_of(building, options)
+    assembly, limit = building.blocks(), limit or limit_of(building, options)
     try:
         answer = assess(assembly, limit=limit)
     except CannotStand as error:
@@ -86,7 +88,7 @@ def answer_of(building: Building, options: LimitAnalysisTable) -> Answer:
         raise Refused(f"the structure cannot stand under its own weight: {error}") from None
     except NoEquilibrium as error:
         raise Refused(str(error)) from None
-    if answer.gap > GAP * max(1.0, abs(answer.gamma)):
+    if limit.associated and answer.gap > GAP * max(1.0, abs(answer.gamma)):
         raise NoAnswer(f"the bounds from equilibrium and from the mechanism differ by {answer.gap:.2e} g")
     return answer
 

@@ -24,9 +24,10 @@ class LimitAnalysisTable(BuildingAnalysis):
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
-        "associated sliding dilates (an upper bound); non-associated is found by iteration",
-        source="Gilbert, Casapulla and Ahmed 2006",
+        "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
+        source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
+    starts: int = key(6, "non-associated: starts from which states are sought, the least of them counts", ge=1, le=1000)
     load: list[PointLoad] = key([], "vertical point loads at rest, which do not sway", max_length=1000)
 
 
