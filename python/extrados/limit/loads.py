@@ -21,9 +21,6 @@ class Loads:
         """The force by which the programmes are scaled [N]."""
         return float(np.abs(self.dead[:, :2]).sum())
 
-    def with_dead(self, extra: np.ndarray) -> "Loads":
-        return Loads(self.dead + extra, self.live)
-
 
 def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, float]) -> np.ndarray:
     """One force [N] at a point [m] of one of `count` blocks, as (count, 3)."""

@@ -1,13 +1,15 @@
 """What the drivers of limit analysis share: loads, refusals, arrays of geometry, lines and polygons."""
 
+import itertools
 from typing import Any
 
 import numpy as np
 
 from extrados.analyses.context import Refused
-from extrados.analyses.limit.tables import LimitAnalysisTable
+from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.polygons import inside
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
@@ -50,14 +52,47 @@ def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
     return best, height
 
 
+def _block_at(assembly: Assembly, x: float, y: float) -> int:
+    """The block that holds a point, or has it on its face."""
+    hair = 1e-6 * assembly.size
+    around = np.array([[x, y], [x - hair, y], [x + hair, y], [x, y - hair], [x, y + hair]])
+    for point in around:
+        for i, outline in enumerate(assembly.outlines):
+            if inside(outline, point[None])[0]:
+                return i
+    raise Refused(f"a load at x = {x:.4g}, y = {y:.4g} m acts on no block")
+
+
+def _pieces(assembly: Assembly, load: AppliedLoad) -> list[tuple[int, np.ndarray, float]]:
+    """Blocks, points and shares of a load: one, or of a spread load a piece for each block it rests on.
+
+    A spread load is cut where the outlines below have their vertices; on each piece it acts at the middle.
+    """
+    if load.x_end is None:
+        block, y = block_under(assembly, load.x) if load.y is None else (_block_at(assembly, load.x, load.y), load.y)
+        return [(block, np.array([load.x, y]), 1.0)]
+    vertices = np.concatenate(assembly.outlines)[:, 0]
+    cuts = np.unique(np.concatenate([[load.x, load.x_end], vertices[(vertices > load.x) & (vertices < load.x_end)]]))
+    cuts = cuts[np.append(True, np.diff(cuts) > 1e-9 * assembly.size)]
+    cuts[-1] = load.x_end
+    found = []
+    for left, right in itertools.pairwise(cuts.tolist()):
+        x = 0.5 * (left + right)
+        block, y = block_under(assembly, x) if load.y is None else (_block_at(assembly, x, load.y), load.y)
+        found.append((block, np.array([x, y]), (right - left) / (load.x_end - load.x)))
+    return found
+
+
 def loads_of(assembly: Assembly, options: Any) -> Loads:
-    """Weight, fill and the point loads of an analysis; what sways is the weight and the fill."""
+    """Weight, fill and the loads of an analysis; what sways is the weight, the fill and the loads that say so."""
     loads = tilt_loads(assembly)
-    extra = np.zeros_like(loads.dead)
+    dead, live = np.zeros_like(loads.dead), np.zeros_like(loads.live)
     for load in getattr(options, "load", []):
-        block, y = block_under(assembly, load.x)
-        extra += forces_at(len(extra), block, np.array([load.x, y]), (0.0, -load.force))
-    return loads.with_dead(extra)
+        for block, point, share in _pieces(assembly, load):
+            dead += forces_at(len(dead), block, point, (share * load.horizontal, -share * load.force))
+            if load.sways:
+                live += forces_at(len(live), block, point, (share * load.force, 0.0))
+    return Loads(loads.dead + dead, loads.live + live)
 
 
 def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bool = False) -> LimitAnalysis:

@@ -11,11 +11,25 @@ from extrados.schema.table import Table, key
 ARCHES = ("arch", "pointed-arch", "elliptical-arch")
 
 
-class PointLoad(Table):
-    """A vertical load that rests on the structure."""
+class AppliedLoad(Table):
+    """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
-    x: Length = key(about="where it stands; it acts on the highest block below")
-    force: Force = key(about="its weight, downward", gt=0)
+    x: Length = key(about="where it stands; it acts on the highest block below, or on the block at y")
+    force: Force = key(0.0, "its weight, downward; of a spread load all of it")
+    horizontal: Force = key(0.0, "its part to +x; of a spread load all of it")
+    x_end: Length | None = key(None, "where a spread load ends, even per length of plan; it starts at x")
+    y: Length | None = key(None, "height at which it acts; default the surface below")
+    sways: bool = key(False, "whether its weight is accelerated with the ground, as a floor's or a roof's is")
+
+    @model_validator(mode="after")
+    def _acts(self) -> "AppliedLoad":
+        if self.force == 0.0 and self.horizontal == 0.0:
+            raise ValueError("give force, horizontal, or both")
+        if self.x_end is not None and self.x_end <= self.x:
+            raise ValueError("x_end must lie to the right of x")
+        if self.sways and self.force <= 0.0:
+            raise ValueError("what sways is the weight: give a force above 0")
+        return self
 
 
 class LimitAnalysisTable(BuildingAnalysis):
@@ -28,7 +42,7 @@ class LimitAnalysisTable(BuildingAnalysis):
         source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
     starts: int = key(6, "non-associated: starts from which states are sought, the least of them counts", ge=1, le=1000)
-    load: list[PointLoad] = key([], "vertical point loads at rest, which do not sway", max_length=1000)
+    load: list[AppliedLoad] = key([], "loads at rest beside weight and fill, of which some may sway", max_length=1000)
 
 
 class Tilt(LimitAnalysisTable):
