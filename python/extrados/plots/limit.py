@@ -310,6 +310,9 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         if "fractured" in run.arrays[name]:
             cracked = np.degrees(np.arctan(run.array(name, "fractured")))
             ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
+        if "buttress_alone" in run.arrays[name]:
+            alone = np.degrees(np.arctan(run.array(name, "buttress_alone")))
+            ax.plot(value, alone, "-.", color=style.GROUND, linewidth=1.0, label="buttress alone")
         crowded = 0.04 * (value[-1] - value[0])
         shown = -np.inf
         for change in r.changes:

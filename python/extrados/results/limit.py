@@ -265,6 +265,9 @@ class Sweep(KindResults):
     fractured_collapse_accelerations_g: list[float | None] = maybe(
         "collapse accelerations with the leeward buttress cracked", "g"
     )
+    buttress_alone_accelerations_g: list[float | None] = maybe(
+        "collapse accelerations of the leeward buttress by itself", "g", source="thesis Fig. 3-4b"
+    )
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest capacity [g]; a sweep compares, it asks for no demand."""

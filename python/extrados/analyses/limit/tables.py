@@ -74,6 +74,7 @@ class Sweep(LimitAnalysisTable):
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
     values: list[float] | None = key(None, "the values, in place of start and stop", min_length=2, max_length=2000)
     fracture: bool = key(False, "also with the leeward buttress cracked")
+    buttress_alone: bool = key(False, "also the leeward buttress by itself", source="thesis Fig. 3-4b")
     locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
 
     @model_validator(mode="after")
