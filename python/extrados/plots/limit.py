@@ -12,6 +12,7 @@ from extrados.results.limit import Hinge, Tilt
 from extrados.results.store import Stored
 
 MOST_FLOW = 3.0  # points: width of the greatest force between stones
+MOST_OPENINGS = 12  # openings that are written beside their joints
 HATCH = "#cfc6b2"
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
@@ -386,9 +387,11 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
 
 
 def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """The arch on the way to its fall, and how the thrust changes."""
+    """The arch on the way to its fall, and how the thrust changes; of any structure, the joints that open."""
     r = run[name]
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
+    if "settled_pose" in run.arrays[name]:
+        return [_draw_settled(run, name, folder, blocks, centroid)]
     movement, pose, points = (run.array(name, f"shown_{what}") for what in ("movement", "pose", "point"))
     with style.figure(11.0, 5.6, rows=2, columns=3) as (fig, axes):
         for ax in axes[len(movement) :]:
@@ -420,6 +423,43 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             )
         )
     return found
+
+
+def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tuple[str, str]:
+    """The structure before and after its supports gave way, magnified, with the widest openings in mm."""
+    r, pose = run[name], run.array(name, "settled_pose")
+    place = np.column_stack([centroid, np.zeros(len(centroid))])
+    size = float(np.ptp(np.concatenate(blocks), axis=0).max())
+    raw = 0.05 * size / max(float(np.hypot(*(pose - place)[:, :2].T).max()), 1e-300)
+    power = 10.0 ** np.floor(np.log10(raw))
+    factor = max(1.0, power * max(step for step in (1.0, 2.0, 5.0) if step * power <= raw * (1.0 + 1e-9)))
+    moved = place + factor * (pose - place)
+    openings = run.array(name, "settled_opening")
+    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
+    with style.figure(7.5, 5.2) as (fig, (ax,)):
+        stone(ax, blocks, ghost=True)
+        stone(ax, carried(blocks, centroid, moved))
+        sides = run.array(name, "joint_block")
+        for o in [o for o in r.openings if o.opening_mm > 0.0][:MOST_OPENINGS]:
+            end = (p if openings[o.joint, 0] > openings[o.joint, 1] else q)[o.joint]
+            block = int(sides[o.joint].max())
+            cos, sin = np.cos(moved[block, 2]), np.sin(moved[block, 2])
+            arm = end - centroid[block]
+            at = moved[block, :2] + (cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1])
+            other = (q if end is p[o.joint] or np.array_equal(end, p[o.joint]) else p)[o.joint]
+            away = (end - other) / max(float(np.hypot(*(end - other))), 1e-300)
+            ax.annotate(
+                f"{o.opening_mm:.3g} mm", at, textcoords="offset points", xytext=tuple(22.0 * away), ha="center",
+                va="center", fontsize=7, color=style.HINGE,
+                arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": style.HINGE},
+            )  # fmt: skip
+        ax.set_title(f"Supports that give way: movements and openings {factor:g} times as large")
+        style.section_axes(ax)
+        ax.margins(0.08)
+        return (
+            style.save(fig, folder, f"{name}-openings"),
+            f"Where supports give way joints open; movements and openings are drawn {factor:g} times as large, dotted: before.",
+        )
 
 
 def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

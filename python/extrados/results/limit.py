@@ -198,22 +198,38 @@ class Stage(ResultModel):
     hinges: list[str] = fact("the three hinges")
 
 
-class Supports(KindResults):
-    """supports: an arch whose right support spreads or settles until it falls."""
+class JointOpening(ResultModel):
+    """A joint that opens or slides while supports give way."""
 
-    movement_at_fall_m: float = fact("movement of the support at which the arch falls", "m")
-    movement_at_fall_over_span: float = fact("movement at the fall over the span")
-    span_change_at_fall_ratio: float = fact("growth of the span at the fall, over the span")
-    thrust_at_rest_N: float = fact("horizontal thrust at the start", "N")
-    thrust_at_fall_N: float = fact("horizontal thrust at the fall", "N")
-    hinges_at_rest: list[JointHinge] = fact("the three hinges at the start")
-    hinges_at_fall: list[JointHinge] = fact("the three hinges at the fall")
-    joints_touched_at_fall: list[int] = fact("joints where the thrust line touches a further end at the fall")
-    stages: list[Stage] = fact("from the start on, each change of hinges")
+    joint: int = fact("number of the joint")
+    name: str = fact("its name")
+    opening_mm: float = fact("how far its wider end opens", "mm")
+    side: Side | Literal["first end", "second end"] = fact("end that opens more: of arches intrados or extrados")
+    slip_mm: float = fact("how far it slides", "mm")
+
+
+class Supports(KindResults):
+    """supports: what opens where supports give way; of an arch, until it falls."""
+
+    movement_at_fall_m: float = maybe("movement of the support at which the arch falls", "m")
+    movement_at_fall_over_span: float = maybe("movement at the fall over the span")
+    span_change_at_fall_ratio: float = maybe("growth of the span at the fall, over the span")
+    thrust_at_rest_N: float = maybe("horizontal thrust at the start", "N")
+    thrust_at_fall_N: float = maybe("horizontal thrust at the fall", "N")
+    hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start")
+    hinges_at_fall: list[JointHinge] = maybe("the three hinges at the fall")
+    joints_touched_at_fall: list[int] = maybe("joints where the thrust line touches a further end at the fall")
+    stages: list[Stage] = maybe("from the start on, each change of hinges")
+    openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]], the widest first")
+    work_J: float = maybe("work of the weight in the movements of [[initial.movements]]", "J")
+    work_gap_J: float = maybe("difference between that and the work on the supports, which should be none", "J")
+    reactions: list[Reaction] = maybe("forces of the ground while its supports give way")
 
     def judged(self, demand: Demand) -> Verdict:
         """The movement that the arch can follow [m]; the deck asks for none."""
         move = self.movement_at_fall_m
+        if move is None:
+            return judge("Under the given movements it stands and cracks; no limit is sought.", None, None, "m")
         return judge(
             f"The arch follows its support by {move:.4g} m, {100.0 * self.movement_at_fall_over_span:.3g} % of the span, "
             "before it falls.", None, move, "m",

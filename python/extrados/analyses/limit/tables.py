@@ -8,8 +8,6 @@ from extrados.analyses.table import BuildingAnalysis
 from extrados.schema.quantities import Force, Length
 from extrados.schema.table import Table, key
 
-ARCHES = ("arch", "pointed-arch", "elliptical-arch")
-
 
 class AppliedLoad(Table):
     """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
@@ -94,10 +92,9 @@ class Survey(LimitAnalysisTable):
 
 
 class Supports(BuildingAnalysis):
-    """An arch whose supports spread or settle: three-hinge states on the way, until it falls."""
+    """Supports that give way: any structure under [[initial.movements]]; an arch through its three-hinge states to its fall."""
 
     kind: Literal["supports"]
-    structures: ClassVar = ARCHES
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     steps: int = key(200, "steps from rest to the fall", ge=10, le=5000)
