@@ -40,6 +40,8 @@ INNER_REST = 1e-5
 
 # Of the total load: joints pressed by less carry nothing but rounding.
 CARRIES = 1e-7
+# Of a step's gain to that of the step before: more is creeping.
+CREEPS = 0.25
 # Of the joints' length: where the search for the most central line may end.
 SETTLED = 1e-9
 
@@ -346,7 +348,7 @@ class LimitAnalysis:
             leans = [s.normal * (2.0 * s.position - 1.0) for s in start]
             lean = np.sum(leans, axis=0) / len(start) / self.loads.scale
             part, share = _eccentric(lean, normal), np.maximum(normal, CARRIES)
-        programme, best, low, high = None, None, 0.0, np.inf
+        programme, best, low, high, last = None, None, 0.0, np.inf, np.inf
         for _ in range(ROUNDS):
             rows = self._rows(self._joints, (part + 1.0, part - 1.0, 0.0)) + self._rows(
                 self._joints, (part - 1.0, part + 1.0, 0.0)
@@ -363,7 +365,9 @@ class LimitAnalysis:
             new = _eccentric(corners[:, 1] - corners[:, 0], normal)
             if solution.x[-1] < -SETTLED:
                 low = part
-            creeps = best is not None and new > 0.5 * (low + high)
+            # It gains ever more per step, or creeps.
+            gain = part - new
+            creeps, last = best is not None and gain > CREEPS * last, gain
             if new < high:
                 best, high, share = self._unclipped(solution, corners), new, np.maximum(normal, CARRIES)
             if best is not None and (abs(part - new) < SETTLED or high - low < SETTLED):
