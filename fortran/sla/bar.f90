@@ -87,46 +87,46 @@ contains
       status = status_ok
    end subroutine bar_group_new
 
-   pure subroutine bar_matrix(self, element, k)
-      class(bar_group), intent(in) :: self
+   pure subroutine bar_matrix(group, element, k)
+      class(bar_group), intent(in) :: group
       integer, intent(in) :: element
       real(wp), intent(out) :: k(:, :)
       integer :: i
       k = 0.0_wp
       do i = 1, 4
-         k(1:4, i) = self%volume(element) * self%modulus(element) * self%gradient(:, element) &
-            * self%gradient(i, element)
+         k(1:4, i) = group%volume(element) * group%modulus(element) * group%gradient(:, element) &
+            * group%gradient(i, element)
       end do
    end subroutine bar_matrix
 
-   pure subroutine bar_force(self, u, f)
-      class(bar_group), intent(in) :: self
+   pure subroutine bar_force(group, u, f)
+      class(bar_group), intent(in) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: f(0:)
       real(wp) :: part(4), local(4)
       integer :: e, i
-      do e = 1, self%elements
-         call self%gather(e, u, local)
-         part = self%volume(e) * self%modulus(e) * dot_product(self%gradient(:, e), local) * self%gradient(:, e)
+      do e = 1, group%elements
+         call group%gather(e, u, local)
+         part = group%volume(e) * group%modulus(e) * dot_product(group%gradient(:, e), local) * group%gradient(:, e)
          do i = 1, 4
-            f(self%equation(i, e)) = f(self%equation(i, e)) + part(i) * self%factor(i, e)
+            f(group%equation(i, e)) = f(group%equation(i, e)) + part(i) * group%factor(i, e)
          end do
       end do
    end subroutine bar_force
 
    !> Strengths in tension and compression [Pa]
-   pure function bar_limits(self, e) result(limit)
-      class(bar_group), intent(in) :: self
+   pure function bar_limits(group, e) result(limit)
+      class(bar_group), intent(in) :: group
       integer, intent(in) :: e
       real(wp) :: limit(2), tension, compression
-      tension = self%teeth%modulus_of(self%table(e), self%tooth(1, e), self%young(e), self%options%floor)
-      compression = self%teeth%modulus_of(self%crush_table(e), self%tooth(2, e), self%young(e), self%options%floor)
-      limit(1) = self%teeth%strength_of(self%table(e), self%tooth(1, e), self%modulus(e) / tension)
-      limit(2) = self%teeth%strength_of(self%crush_table(e), self%tooth(2, e), self%modulus(e) / compression)
+      tension = group%teeth%modulus_of(group%table(e), group%tooth(1, e), group%young(e), group%options%floor)
+      compression = group%teeth%modulus_of(group%crush_table(e), group%tooth(2, e), group%young(e), group%options%floor)
+      limit(1) = group%teeth%strength_of(group%table(e), group%tooth(1, e), group%modulus(e) / tension)
+      limit(2) = group%teeth%strength_of(group%crush_table(e), group%tooth(2, e), group%modulus(e) / compression)
    end function bar_limits
 
-   pure subroutine bar_scan(self, first, last, ua, ub, lambda, noise, found)
-      class(bar_group), intent(in) :: self
+   pure subroutine bar_scan(group, first, last, ua, ub, lambda, noise, found)
+      class(bar_group), intent(in) :: group
       integer, intent(in) :: first
       integer, intent(in) :: last
       real(wp), intent(in) :: ua(0:)
@@ -137,12 +137,12 @@ contains
       real(wp) :: la(4), lb(4), sa, sb, limit(2)
       integer :: e
       do e = first, last
-         if (self%table(e) == 0 .and. self%crush_table(e) == 0) cycle
-         call self%gather(e, ua, la)
-         call self%gather(e, ub, lb)
-         sa = self%modulus(e) * dot_product(self%gradient(:, e), la)
-         sb = self%modulus(e) * dot_product(self%gradient(:, e), lb)
-         limit = bar_limits(self, e)
+         if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         sa = group%modulus(e) * dot_product(group%gradient(:, e), la)
+         sb = group%modulus(e) * dot_product(group%gradient(:, e), lb)
+         limit = bar_limits(group, e)
          if (limit(1) < unbounded) then
            call linear_bound(sa, sb, limit(1), limit(1), lambda, noise, e, code_tension, found)
          end if
@@ -152,8 +152,8 @@ contains
       end do
    end subroutine bar_scan
 
-   pure subroutine bar_damage(self, point, code, lambda, ua, ub, event, tooth)
-      class(bar_group), intent(inout) :: self
+   pure subroutine bar_damage(group, point, code, lambda, ua, ub, event, tooth)
+      class(bar_group), intent(inout) :: group
       integer, intent(in) :: point
       integer, intent(in) :: code
       real(wp), intent(in) :: lambda
@@ -166,46 +166,46 @@ contains
       associate (unused_load => lambda, unused_a => ua, unused_b => ub)   ! a bar's axis is known beforehand
       end associate
       k = merge(1, 2, code == code_tension)
-      before = self%modulus(point)
-      self%tooth(k, point) = self%tooth(k, point) + 1_c_int
-      tooth = int(self%tooth(k, point))
-      call bar_refresh(self, point)
+      before = group%modulus(point)
+      group%tooth(k, point) = group%tooth(k, point) + 1_c_int
+      tooth = int(group%tooth(k, point))
+      call bar_refresh(group, point)
       event%rank = 1
-      event%sign(1) = sign(1.0_wp, before - self%modulus(point))
-      call self%spread(point, sqrt(self%volume(point) * abs(before - self%modulus(point))) * self%gradient(:, point), &
-         event, 1)
+      event%sign(1) = sign(1.0_wp, before - group%modulus(point))
+      call group%spread(point, sqrt(group%volume(point) * abs(before - group%modulus(point))) &
+         * group%gradient(:, point), event, 1)
    end subroutine bar_damage
 
    !> Modulus of a bar from its damage
-   pure subroutine bar_refresh(self, e)
-      class(bar_group), intent(inout) :: self
+   pure subroutine bar_refresh(group, e)
+      class(bar_group), intent(inout) :: group
       integer, intent(in) :: e
-      self%modulus(e) = min( &
-         self%teeth%modulus_of(self%table(e), self%tooth(1, e), self%young(e), self%options%floor), &
-         self%teeth%modulus_of(self%crush_table(e), self%tooth(2, e), self%young(e), self%options%floor))
+      group%modulus(e) = min( &
+         group%teeth%modulus_of(group%table(e), group%tooth(1, e), group%young(e), group%options%floor), &
+         group%teeth%modulus_of(group%crush_table(e), group%tooth(2, e), group%young(e), group%options%floor))
    end subroutine bar_refresh
 
-   pure subroutine bar_state(self, store, values)
-      class(bar_group), intent(inout) :: self
+   pure subroutine bar_state(group, store, values)
+      class(bar_group), intent(inout) :: group
       logical, intent(in) :: store
       real(wp), intent(inout) :: values(:, :)
       integer :: e
       if (store) then
          values = 0.0_wp
-         values(4, :) = real(self%tooth(1, :), wp)
-         values(6, :) = real(self%tooth(2, :), wp)
+         values(4, :) = real(group%tooth(1, :), wp)
+         values(6, :) = real(group%tooth(2, :), wp)
       else
-         self%tooth(1, :) = nint(values(4, :), c_int)
-         self%tooth(2, :) = nint(values(6, :), c_int)
-         do e = 1, self%elements
-            call bar_refresh(self, e)
+         group%tooth(1, :) = nint(values(4, :), c_int)
+         group%tooth(2, :) = nint(values(6, :), c_int)
+         do e = 1, group%elements
+            call bar_refresh(group, e)
          end do
       end if
    end subroutine bar_state
 
    !> Rows as of a plane point: the strain, the stress and the moduli of the bar's axis
-   pure subroutine bar_report(self, ua, ub, lambda, noise, values)
-      class(bar_group), intent(in) :: self
+   pure subroutine bar_report(group, ua, ub, lambda, noise, values)
+      class(bar_group), intent(in) :: group
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda
@@ -215,22 +215,22 @@ contains
       type(scan_result) :: found
       integer :: e
       values = 0.0_wp
-      do e = 1, self%elements
-         call self%gather(e, ua, la)
-         call self%gather(e, ub, lb)
-         values(1, e) = dot_product(self%gradient(:, e), la + lambda * lb)
-         values(4, e) = self%modulus(e) * values(1, e)
-         length = 1.0_wp / hypot(self%gradient(3, e), self%gradient(4, e))
-         values(7:8, e) = self%gradient(3:4, e) * length
-         values(9, e) = self%modulus(e) / self%young(e)
+      do e = 1, group%elements
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         values(1, e) = dot_product(group%gradient(:, e), la + lambda * lb)
+         values(4, e) = group%modulus(e) * values(1, e)
+         length = 1.0_wp / hypot(group%gradient(3, e), group%gradient(4, e))
+         values(7:8, e) = group%gradient(3:4, e) * length
+         values(9, e) = group%modulus(e) / group%young(e)
          values(10, e) = 1.0_wp
-         values(11, e) = real(self%tooth(1, e), wp)
+         values(11, e) = real(group%tooth(1, e), wp)
          values(12, e) = 1.0_wp
          found = scan_result()
-         call bar_scan(self, e, e, ua, ub, lambda, noise, found)
+         call bar_scan(group, e, e, ua, ub, lambda, noise, found)
          values(13:14, e) = [found%lo%value, found%hi%value]
-         values(15, e) = self%volume(e)
-         values(16, e) = real(self%tooth(2, e), wp)
+         values(15, e) = group%volume(e)
+         values(16, e) = real(group%tooth(2, e), wp)
          values(17, e) = 1.0_wp
       end do
    end subroutine bar_report
@@ -248,25 +248,25 @@ contains
       if (info == 0) group%stiffness(:) = stiffness
    end subroutine spring_group_new
 
-   pure subroutine spring_matrix(self, element, k)
-      class(spring_group), intent(in) :: self
+   pure subroutine spring_matrix(group, element, k)
+      class(spring_group), intent(in) :: group
       integer, intent(in) :: element
       real(wp), intent(out) :: k(:, :)
       k = 0.0_wp
-      k(1:2, 1:2) = self%stiffness(element) * reshape([1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp], [2, 2])
+      k(1:2, 1:2) = group%stiffness(element) * reshape([1.0_wp, -1.0_wp, -1.0_wp, 1.0_wp], [2, 2])
    end subroutine spring_matrix
 
-   pure subroutine spring_force(self, u, f)
-      class(spring_group), intent(in) :: self
+   pure subroutine spring_force(group, u, f)
+      class(spring_group), intent(in) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: f(0:)
       real(wp) :: local(2), pull
       integer :: e
-      do e = 1, self%elements
-         call self%gather(e, u, local)
-         pull = self%stiffness(e) * (local(1) - local(2))
-         f(self%equation(1, e)) = f(self%equation(1, e)) + pull * self%factor(1, e)
-         f(self%equation(2, e)) = f(self%equation(2, e)) - pull * self%factor(2, e)
+      do e = 1, group%elements
+         call group%gather(e, u, local)
+         pull = group%stiffness(e) * (local(1) - local(2))
+         f(group%equation(1, e)) = f(group%equation(1, e)) + pull * group%factor(1, e)
+         f(group%equation(2, e)) = f(group%equation(2, e)) - pull * group%factor(2, e)
       end do
    end subroutine spring_force
 

@@ -13,7 +13,7 @@ module sla_events
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
    use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
-   use sla_model, only : model, model_factor, model_solve
+   use sla_model, only : element_model, model_factor, model_solve
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -45,8 +45,8 @@ module sla_events
 contains
 
    !> Run up to `room` events and record them; the last one is chosen but not applied yet
-   subroutine run_events(made, rules, first, equation, share, log, reason, status)
-      type(model), intent(inout) :: made
+   subroutine run_events(model, rules, first, equation, share, log, reason, status)
+      type(element_model), intent(inout) :: model
       type(stop_rules), intent(in) :: rules
       integer(c_int), intent(in) :: first(:)      !! (monitors + 1) first entry of each monitor
       integer(c_int), intent(in) :: equation(:)   !! (entries), factor order
@@ -65,15 +65,15 @@ contains
             status = status_cancelled
             return
          end if
-         if (made%pending(1) /= 0) then
-            call apply_event(made, reason, status)
+         if (model%pending(1) /= 0) then
+            call apply_event(model, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
-         call scan_model(made, found)
-         made%hot(:, 1) = [found%hi%group, found%hi%point]
-         made%hot(:, 2) = [found%lo%group, found%lo%point]
+         call scan_model(model, found)
+         model%hot(:, 1) = [found%hi%group, found%hi%point]
+         model%hot(:, 2) = [found%lo%group, found%lo%point]
          equilibrium = found%empty%point == 0 .and. found%hi%value >= found%lo%value
-         if (rules%refuse_overload .and. .not. made%recorded .and. .not. equilibrium) then
+         if (rules%refuse_overload .and. .not. model%recorded .and. .not. equilibrium) then
             status = status_beyond_strength
             return
          end if
@@ -82,75 +82,77 @@ contains
              found%lo%value <= rules%lambda) then
             reason = stop_load
          else if (found%empty%point /= 0) then
-            found%empty%value = made%lambda
+            found%empty%value = model%lambda
             if (found%hi%point == 0 .and. found%lo%point == 0) reason = stop_all_empty
-            call choose(made, found%empty)
+            call choose(model, found%empty)
          else if (equilibrium .and. found%hi%value < unbounded) then
-            call choose(made, found%hi)
+            call choose(model, found%hi)
          else if (found%lo%value > -unbounded .and. .not. equilibrium) then
-            call choose(made, found%lo)
+            call choose(model, found%lo)
          else
             reason = stop_unbounded    ! only lower limits: the load can grow for ever
          end if
          if (reason == stop_load) then
-            made%pending = 0
-            call account(made, rules%lambda)
+            model%pending = 0
+            call account(model, rules%lambda)
          else if (reason == stop_unbounded) then
             return
          else
-            call account(made, made%lambda)
+            call account(model, model%lambda)
          end if
-         call record(made, found, equilibrium, first, equation, share, log)
+         call record(model, found, equilibrium, first, equation, share, log)
          if (reason /= stop_none) return
          if (equilibrium) then
-            if (made%lambda > made%peak) then
-               made%peak = made%lambda
-               made%peak_displacement = log%monitors(1, log%count)
+            if (model%lambda > model%peak) then
+               model%peak = model%lambda
+               model%peak_displacement = log%monitors(1, log%count)
             end if
             if (abs(log%monitors(1, log%count)) >= rules%displacement) reason = stop_displacement
             ! A drop on the way back from a small crack is no end: the wall must have gone further than at its peak.
-            if (rules%fraction >= 0.0_wp .and. made%peak > 0.0_wp .and. made%lambda < rules%fraction * made%peak .and. &
-                (log%monitors(1, log%count) - made%peak_displacement) * made%slope > 0.0_wp) reason = stop_fraction
+            if (rules%fraction >= 0.0_wp .and. model%peak > 0.0_wp .and. &
+                model%lambda < rules%fraction * model%peak .and. &
+                (log%monitors(1, log%count) - model%peak_displacement) * model%slope > 0.0_wp) reason = stop_fraction
          end if
-         if (made%work(3) > rules%compliance * made%first_compliance) reason = stop_mechanism
+         if (model%work(3) > rules%compliance * model%first_compliance) reason = stop_mechanism
          if (reason /= stop_none) return
       end do
    end subroutine run_events
 
    !> Limits over all points, the same for any number of threads: pieces are joined in their order
-   subroutine scan_model(made, found)
-      type(model), intent(inout) :: made
+   subroutine scan_model(model, found)
+      type(element_model), intent(inout) :: model
       type(scan_result), intent(out) :: found
       type(scan_result) :: guess
       integer :: k
 
       ! The limits of the point damaged last are near the new ones: loosened, they spare most points the roots.
-      call guess_limits(made, guess)
-      !$omp parallel do schedule(static) default(none) shared(made, guess) private(k) &
-      !$omp num_threads(made%threads) if(made%threads > 1)
-      do k = 1, size(made%piece, 2)
-         made%part(k) = guess
-         select type (group => made%holders(made%piece(1, k))%group)
+      call guess_limits(model, guess)
+      !$omp parallel do schedule(static) default(none) shared(model, guess) private(k) &
+      !$omp num_threads(model%threads) if(model%threads > 1)
+      do k = 1, size(model%piece, 2)
+         model%part(k) = guess
+         select type (group => model%holders(model%piece(1, k))%group)
          class is (point_group)
-            call group%scan(made%piece(2, k), made%piece(3, k), made%ua, made%ub, made%lambda, made%noise, made%part(k))
+            call group%scan(model%piece(2, k), model%piece(3, k), model%ua, model%ub, model%lambda, model%noise, &
+               model%part(k))
          end select
       end do
       !$omp end parallel do
       found = scan_result()
-      do k = 1, size(made%part)
-         associate (g => made%piece(1, k))
-            found%bounded = found%bounded .or. made%part(k)%bounded
-            if (made%part(k)%hi%point /= 0 .and. below(made%part(k)%hi%value, found%hi%value)) then
-               found%hi = made%part(k)%hi
+      do k = 1, size(model%part)
+         associate (g => model%piece(1, k))
+            found%bounded = found%bounded .or. model%part(k)%bounded
+            if (model%part(k)%hi%point /= 0 .and. below(model%part(k)%hi%value, found%hi%value)) then
+               found%hi = model%part(k)%hi
                found%hi%group = g
             end if
-            if (made%part(k)%lo%point /= 0 .and. below(-made%part(k)%lo%value, -found%lo%value)) then
-               found%lo = made%part(k)%lo
+            if (model%part(k)%lo%point /= 0 .and. below(-model%part(k)%lo%value, -found%lo%value)) then
+               found%lo = model%part(k)%lo
                found%lo%group = g
             end if
-            if (made%part(k)%empty%point /= 0 .and. &
-                (found%empty%point == 0 .or. made%part(k)%empty%value > found%empty%value)) then
-               found%empty = made%part(k)%empty
+            if (model%part(k)%empty%point /= 0 .and. &
+                (found%empty%point == 0 .or. model%part(k)%empty%value > found%empty%value)) then
+               found%empty = model%part(k)%empty
                found%empty%group = g
             end if
          end associate
@@ -158,21 +160,21 @@ contains
    end subroutine scan_model
 
    !> Loosened limits of the points that set the last ones
-   subroutine guess_limits(made, guess)
-      type(model), intent(in) :: made
+   subroutine guess_limits(model, guess)
+      type(element_model), intent(in) :: model
       type(scan_result), intent(out) :: guess
       type(scan_result) :: found
       integer :: k, g, e
 
       guess = scan_result()
-      do k = 1, size(made%hot, 2)
-         g = made%hot(1, k)
+      do k = 1, size(model%hot, 2)
+         g = model%hot(1, k)
          if (g == 0) cycle
-         select type (group => made%holders(g)%group)
+         select type (group => model%holders(g)%group)
          class is (point_group)
-            e = 1 + (made%hot(2, k) - 1) / (group%points / group%elements)
+            e = 1 + (model%hot(2, k) - 1) / (group%points / group%elements)
             found = scan_result()
-            call group%scan(e, e, made%ua, made%ub, made%lambda, made%noise, found)
+            call group%scan(e, e, model%ua, model%ub, model%lambda, model%noise, found)
             if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, &
                found%hi%value + 1.0e-9_wp * abs(found%hi%value))
             if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, &
@@ -182,16 +184,16 @@ contains
    end subroutine guess_limits
 
    !> The point to damage next and its multiplier
-   pure subroutine choose(made, chosen)
-      type(model), intent(inout) :: made
+   pure subroutine choose(model, chosen)
+      type(element_model), intent(inout) :: model
       type(bound), intent(in) :: chosen
-      made%pending = [chosen%group, chosen%point, chosen%code]
-      made%lambda = chosen%value
+      model%pending = [chosen%group, chosen%point, chosen%code]
+      model%lambda = chosen%value
    end subroutine choose
 
    !> Damage the pending point; the displacements and the factor follow
-   subroutine apply_event(made, reason, status)
-      type(model), intent(inout) :: made
+   subroutine apply_event(model, reason, status)
+      type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: reason
       integer(c_int), intent(out) :: status
       real(wp) :: m(most_rank, most_rank), wa(most_rank), wb(most_rank)
@@ -200,24 +202,24 @@ contains
 
       reason = stop_none
       status = status_ok
-      n = made%equations
-      select type (group => made%holders(made%pending(1))%group)
+      n = model%equations
+      select type (group => model%holders(model%pending(1))%group)
       class is (point_group)
-         call group%damage(made%pending(2), made%pending(3), made%lambda, made%ua, made%ub, made%event, tooth)
+         call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
       end select
-      made%pending = 0
-      made%events = made%events + 1
-      associate (event => made%event)
+      model%pending = 0
+      model%events = model%events + 1
+      associate (event => model%event)
          r = event%rank
          if (r == 0) return
          do i = 1, r
-            made%before(i) = dot_product(event%w(1:event%entries, i), made%ua(event%index(1:event%entries)) + &
-               made%lambda * made%ub(event%index(1:event%entries)))
-            made%cracked = made%cracked + 0.5_wp * event%sign(i) * made%before(i)**2
+            model%before(i) = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
+               model%lambda * model%ub(event%index(1:event%entries)))
+            model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
-         if (made%refactor) then
-            call add_event(event, made%start, made%row, made%value)
-            call model_solve(made, status)
+         if (model%refactor) then
+            call add_event(event, model%start, model%row, model%value)
+            call model_solve(model, status)
             if (status == status_not_positive_definite) then
                status = status_ok
                reason = stop_mechanism
@@ -225,28 +227,28 @@ contains
             return
          end if
          index0 = event%index - 1_c_int
-         status = extrados_sparse_event(made%handle, int(r, c_int), int(event%entries, c_int), index0, &
-            reshape(event%w(1:event%entries, 1:r), [event%entries * r]), made%z)
+         status = extrados_sparse_event(model%handle, int(r, c_int), int(event%entries, c_int), index0, &
+            reshape(event%w(1:event%entries, 1:r), [event%entries * r]), model%z)
          if (status /= status_ok) return
          do j = 1, r
             do i = 1, r
-               m(i, j) = -dot_product(event%w(1:event%entries, i), made%z(event%index(1:event%entries), j))
+               m(i, j) = -dot_product(event%w(1:event%entries, i), model%z(event%index(1:event%entries), j))
             end do
             m(j, j) = m(j, j) + event%sign(j)
-            wa(j) = dot_product(event%w(1:event%entries, j), made%ua(event%index(1:event%entries)))
-            wb(j) = dot_product(event%w(1:event%entries, j), made%ub(event%index(1:event%entries)))
+            wa(j) = dot_product(event%w(1:event%entries, j), model%ua(event%index(1:event%entries)))
+            wb(j) = dot_product(event%w(1:event%entries, j), model%ub(event%index(1:event%entries)))
          end do
          call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), reason)
          if (reason /= stop_none) return
          do j = 1, r
-            made%ua(1:n) = made%ua(1:n) + wa(j) * made%z(:, j)
-            made%ub(1:n) = made%ub(1:n) + wb(j) * made%z(:, j)
+            model%ua(1:n) = model%ua(1:n) + wa(j) * model%z(:, j)
+            model%ub(1:n) = model%ub(1:n) + wb(j) * model%z(:, j)
          end do
          ! Stiffening first: no way-station is less definite than the ends.
          do j = 1, 2
             do i = 1, r
                if ((event%sign(i) > 0.0_wp) .eqv. (j == 1)) cycle
-               status = extrados_sparse_rank1(made%handle, int(-sign(1.0_wp, event%sign(i)), c_int), &
+               status = extrados_sparse_rank1(model%handle, int(-sign(1.0_wp, event%sign(i)), c_int), &
                   int(event%entries, c_int), index0, event%w(1:event%entries, i))
                if (status == status_not_positive_definite) then
                   status = status_ok
@@ -256,7 +258,7 @@ contains
             end do
          end do
       end associate
-      if (mod(made%events, guard_every) == 0) call guard_residual(made, status)
+      if (mod(model%events, guard_every) == 0) call guard_residual(model, status)
    end subroutine apply_event
 
    !> Solve m x = wa, m y = wb by elimination without pivoting: m is positive definite for softening events
@@ -288,88 +290,89 @@ contains
    end subroutine small
 
    !> Residuals of both displacements by the elements; refine, then factorise anew, only where they ask for it
-   subroutine guard_residual(made, status)
-      type(model), intent(inout) :: made
+   subroutine guard_residual(model, status)
+      type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer(c_int) :: node, direction
       real(wp) :: ratio
       integer :: n
 
       status = status_ok
-      n = made%equations
-      made%guard(1) = made%guard(1) + 1
-      call residual(made)
-      if (made%residual <= most_residual) return
-      made%guard(2) = made%guard(2) + 1
-      status = extrados_sparse_solve(made%handle, 2_c_int, made%z)
+      n = model%equations
+      model%guard(1) = model%guard(1) + 1
+      call residual(model)
+      if (model%residual <= most_residual) return
+      model%guard(2) = model%guard(2) + 1
+      status = extrados_sparse_solve(model%handle, 2_c_int, model%z)
       if (status /= status_ok) return
-      made%ua(1:n) = made%ua(1:n) + made%z(:, 1)
-      made%ub(1:n) = made%ub(1:n) + made%z(:, 2)
-      call residual(made)
-      if (made%residual <= most_residual) return
-      made%guard(3) = made%guard(3) + 1
-      call model_factor(made, node, direction, ratio, status)
-      if (status == status_ok) call model_solve(made, status)
-      if (status == status_ok) call residual(made)
+      model%ua(1:n) = model%ua(1:n) + model%z(:, 1)
+      model%ub(1:n) = model%ub(1:n) + model%z(:, 2)
+      call residual(model)
+      if (model%residual <= most_residual) return
+      model%guard(3) = model%guard(3) + 1
+      call model_factor(model, node, direction, ratio, status)
+      if (status == status_ok) call model_solve(model, status)
+      if (status == status_ok) call residual(model)
    end subroutine guard_residual
 
    !> Residual forces into z, the larger relative norm into made%residual
-   subroutine residual(made)
-      type(model), intent(inout) :: made
+   subroutine residual(model)
+      type(element_model), intent(inout) :: model
       real(wp) :: load
       integer :: k, g, n
-      n = made%equations
-      made%residual = 0.0_wp
+      n = model%equations
+      model%residual = 0.0_wp
       do k = 1, 2
-         made%force = 0.0_wp
-         do g = 1, size(made%holders)
-            if (k == 1) call made%holders(g)%group%force(made%ua, made%force)
-            if (k == 2) call made%holders(g)%group%force(made%ub, made%force)
+         model%force = 0.0_wp
+         do g = 1, size(model%holders)
+            if (k == 1) call model%holders(g)%group%force(model%ua, model%force)
+            if (k == 2) call model%holders(g)%group%force(model%ub, model%force)
          end do
-         if (k == 1) made%z(:, k) = made%fa(1:n) - made%force(1:n)
-         if (k == 2) made%z(:, k) = made%fb(1:n) - made%force(1:n)
-         load = merge(norm2(made%fa), norm2(made%fb), k == 1)
-         if (load > 0.0_wp) made%residual = max(made%residual, norm2(made%z(:, k)) / load)
+         if (k == 1) model%z(:, k) = model%fa(1:n) - model%force(1:n)
+         if (k == 2) model%z(:, k) = model%fb(1:n) - model%force(1:n)
+         load = merge(norm2(model%fa), norm2(model%fb), k == 1)
+         if (load > 0.0_wp) model%residual = max(model%residual, norm2(model%z(:, k)) / load)
       end do
    end subroutine residual
 
    !> Energy ledger up to the state lambda: external work by the trapezium between successive states,
    !> dissipation at the damaged points alone; the stored energy must close the balance
-   subroutine account(made, lambda)
-      type(model), intent(inout) :: made
+   subroutine account(model, lambda)
+      type(element_model), intent(inout) :: model
       real(wp), intent(in) :: lambda
       real(wp) :: new(3), after, was
       integer :: i
 
-      was = made%lambda_recorded
-      new = [dot_product(made%fa, made%ua), dot_product(made%fa, made%ub), dot_product(made%fb, made%ub)]
-      if (.not. made%recorded) then
+      was = model%lambda_recorded
+      new = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), dot_product(model%fb, model%ub)]
+      if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
-         if (.not. made%carried) made%external = made%external + 0.5_wp * new(1)
-         made%external = made%external + lambda * new(2) + 0.5_wp * lambda**2 * new(3)
-         made%recorded = .true.
+         if (.not. model%carried) model%external = model%external + 0.5_wp * new(1)
+         model%external = model%external + lambda * new(2) + 0.5_wp * lambda**2 * new(3)
+         model%recorded = .true.
       else
-         associate (event => made%event)
+         associate (event => model%event)
             do i = 1, event%rank
-               after = dot_product(event%w(1:event%entries, i), made%ua(event%index(1:event%entries)) + &
-                  lambda * made%ub(event%index(1:event%entries)))
-               made%dissipated = made%dissipated + 0.5_wp * event%sign(i) * made%before(i) * after
+               after = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
+                  lambda * model%ub(event%index(1:event%entries)))
+               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i) * after
             end do
          end associate
          ! (f_old + f_new) . (u_new - u_old) / 2 with f = A + lambda B, u = ua + lambda ub
-         made%external = made%external + 0.5_wp * ( &
+         model%external = model%external + 0.5_wp * ( &
             2.0_wp * new(1) + (was + 3.0_wp * lambda) * new(2) + (was * lambda + lambda**2) * new(3) &
-            - 2.0_wp * made%work(1) - (lambda + 3.0_wp * was) * made%work(2) - (was * lambda + was**2) * made%work(3))
+            - 2.0_wp * model%work(1) - (lambda + 3.0_wp * was) * model%work(2) &
+            - (was * lambda + was**2) * model%work(3))
       end if
-      made%event%rank = 0
-      made%work = new
-      made%lambda_recorded = lambda
-      made%lambda = lambda
+      model%event%rank = 0
+      model%work = new
+      model%lambda_recorded = lambda
+      model%lambda = lambda
    end subroutine account
 
    !> One row of the log
-   subroutine record(made, found, equilibrium, first, equation, share, log)
-      type(model), intent(inout) :: made
+   subroutine record(model, found, equilibrium, first, equation, share, log)
+      type(element_model), intent(inout) :: model
       type(scan_result), intent(in) :: found
       logical, intent(in) :: equilibrium
       integer(c_int), intent(in) :: first(:)
@@ -380,24 +383,24 @@ contains
       integer :: k, i, offset
 
       log%count = log%count + 1
-      stored = 0.5_wp * (made%work(1) + made%lambda * (2.0_wp * made%work(2) + made%lambda * made%work(3)))
-      log%reals(:, log%count) = [made%lambda, found%hi%value, found%lo%value, stored, made%external, made%dissipated, &
-         made%cracked, made%work(3), made%residual]
+      stored = 0.5_wp * (model%work(1) + model%lambda * (2.0_wp * model%work(2) + model%lambda * model%work(3)))
+      log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored, model%external, &
+         model%dissipated, model%cracked, model%work(3), model%residual]
       offset = 0
-      if (made%pending(1) /= 0) then
-         select type (group => made%holders(made%pending(1))%group)
+      if (model%pending(1) /= 0) then
+         select type (group => model%holders(model%pending(1))%group)
          class is (point_group)
             offset = group%offset
          end select
       end if
-      log%integers(:, log%count) = [int(offset + made%pending(2), c_int), int(made%pending(3), c_int), &
-         int(made%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
+      log%integers(:, log%count) = [int(offset + model%pending(2), c_int), int(model%pending(3), c_int), &
+         int(model%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
       do k = 1, size(log%monitors, 1)
          log%monitors(k, log%count) = 0.0_wp
          do i = int(first(k)), int(first(k + 1)) - 1
             log%monitors(k, log%count) = log%monitors(k, log%count) + &
-               share(i) * (made%ua(equation(i)) + made%lambda * made%ub(equation(i)))
-            if (k == 1) made%slope = merge(0.0_wp, made%slope, i == first(1)) + share(i) * made%ub(equation(i))
+               share(i) * (model%ua(equation(i)) + model%lambda * model%ub(equation(i)))
+            if (k == 1) model%slope = merge(0.0_wp, model%slope, i == first(1)) + share(i) * model%ub(equation(i))
          end do
       end do
    end subroutine record

@@ -89,28 +89,28 @@ module sla_group
    abstract interface
 
       !> Stiffness matrix of an element in its own freedoms
-      pure subroutine matrix_interface(self, element, k)
+      pure subroutine matrix_interface(group, element, k)
          import :: element_group, wp
          implicit none (type, external)
-         class(element_group), intent(in) :: self
+         class(element_group), intent(in) :: group
          integer, intent(in) :: element
          real(wp), intent(out) :: k(:, :)
       end subroutine matrix_interface
 
       !> Add the internal forces of all elements under the displacements u
-      pure subroutine force_interface(self, u, f)
+      pure subroutine force_interface(group, u, f)
          import :: element_group, wp
          implicit none (type, external)
-         class(element_group), intent(in) :: self
+         class(element_group), intent(in) :: group
          real(wp), intent(in) :: u(0:)
          real(wp), intent(inout) :: f(0:)
       end subroutine force_interface
 
       !> Limits of the load multiplier over a range of elements
-      pure subroutine scan_interface(self, first, last, ua, ub, lambda, noise, found)
+      pure subroutine scan_interface(group, first, last, ua, ub, lambda, noise, found)
          import :: point_group, wp, scan_result
          implicit none (type, external)
-         class(point_group), intent(in) :: self
+         class(point_group), intent(in) :: group
          integer, intent(in) :: first
          integer, intent(in) :: last
          real(wp), intent(in) :: ua(0:)
@@ -121,10 +121,10 @@ module sla_group
       end subroutine scan_interface
 
       !> Damage (or close, or open) a point in the state ua + lambda ub
-      pure subroutine damage_interface(self, point, code, lambda, ua, ub, event, tooth)
+      pure subroutine damage_interface(group, point, code, lambda, ua, ub, event, tooth)
          import :: point_group, wp, event_vectors
          implicit none (type, external)
-         class(point_group), intent(inout) :: self
+         class(point_group), intent(inout) :: group
          integer, intent(in) :: point
          integer, intent(in) :: code
          real(wp), intent(in) :: lambda
@@ -135,10 +135,10 @@ module sla_group
       end subroutine damage_interface
 
       !> State of all points at ua + lambda ub, rows as documented in the group
-      pure subroutine report_interface(self, ua, ub, lambda, noise, values)
+      pure subroutine report_interface(group, ua, ub, lambda, noise, values)
          import :: point_group, wp
          implicit none (type, external)
-         class(point_group), intent(in) :: self
+         class(point_group), intent(in) :: group
          real(wp), intent(in) :: ua(0:)
          real(wp), intent(in) :: ub(0:)
          real(wp), intent(in) :: lambda
@@ -147,10 +147,10 @@ module sla_group
       end subroutine report_interface
 
       !> Put the damage of all points into `values`, or take it from there
-      pure subroutine state_interface(self, store, values)
+      pure subroutine state_interface(group, store, values)
          import :: point_group, wp
          implicit none (type, external)
-         class(point_group), intent(inout) :: self
+         class(point_group), intent(inout) :: group
          logical, intent(in) :: store
          real(wp), intent(inout) :: values(:, :)   !! (state_rows, points)
       end subroutine state_interface
@@ -160,29 +160,29 @@ module sla_group
 contains
 
    !> Displacements of an element's own freedoms
-   pure subroutine gather(self, element, u, local)
-      class(element_group), intent(in) :: self
+   pure subroutine gather(group, element, u, local)
+      class(element_group), intent(in) :: group
       integer, intent(in) :: element
       real(wp), intent(in) :: u(0:)
       real(wp), intent(out) :: local(:)
       integer :: i
-      do i = 1, self%freedoms
-         local(i) = u(self%equation(i, element))
+      do i = 1, group%freedoms
+         local(i) = u(group%equation(i, element))
       end do
-      if (self%tied) local(1:self%freedoms) = local(1:self%freedoms) * self%factor(1:self%freedoms, element)
+      if (group%tied) local(1:group%freedoms) = local(1:group%freedoms) * group%factor(1:group%freedoms, element)
    end subroutine gather
 
    !> A vector over the element's freedoms as entries by equation, those of one equation merged
-   pure subroutine spread(self, element, local, event, k)
-      class(element_group), intent(in) :: self
+   pure subroutine spread(group, element, local, event, k)
+      class(element_group), intent(in) :: group
       integer, intent(in) :: element
       real(wp), intent(in) :: local(:)
       type(event_vectors), intent(inout) :: event
       integer, intent(in) :: k              !! which vector
       integer :: i, j
       integer(c_int) :: equation
-      do i = 1, self%freedoms
-         equation = self%equation(i, element)
+      do i = 1, group%freedoms
+         equation = group%equation(i, element)
          if (equation == 0) cycle
          do j = 1, event%entries
             if (event%index(j) == equation) exit
@@ -191,7 +191,7 @@ contains
             event%entries = j
             event%index(j) = equation
          end if
-         event%w(j, k) = event%w(j, k) + local(i) * self%factor(i, element)
+         event%w(j, k) = event%w(j, k) + local(i) * group%factor(i, element)
       end do
    end subroutine spread
 

@@ -3,7 +3,7 @@ module sla_handle
    use common_handles, only : handle_new, handle_take, handle_leave
    use common_lists, only : handle_sla
    use common_status, only : status_ok, status_bad_index, status_not_ready, status_out_of_memory
-   use sla_model, only : model, model_free
+   use sla_model, only : element_model, model_free
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
@@ -16,49 +16,49 @@ module sla_handle
 contains
 
    !> Hand a model over to the registry
-   subroutine model_register(made, handle, status)
-      type(model), pointer, intent(inout) :: made    !! null after a failure
+   subroutine model_register(model, handle, status)
+      type(element_model), pointer, intent(inout) :: model    !! null after a failure
       integer(c_int64_t), intent(out) :: handle
       integer(c_int), intent(out) :: status
-      call handle_new(handle_sla, c_loc(made), c_funloc(model_destroy), handle, status)
-      if (status /= status_ok) deallocate (made)
+      call handle_new(handle_sla, c_loc(model), c_funloc(model_destroy), handle, status)
+      if (status /= status_ok) deallocate (model)
    end subroutine model_register
 
    !> Called by the registry
    subroutine model_destroy(object) bind(c, name='extrados_sla_destroy')
       type(c_ptr), value, intent(in) :: object
-      type(model), pointer :: made
-      call c_f_pointer(object, made)
-      call model_free(made)
-      deallocate (made)
+      type(element_model), pointer :: model
+      call c_f_pointer(object, model)
+      call model_free(model)
+      deallocate (model)
    end subroutine model_destroy
 
    !> The model of a handle, for this call alone, until handle_leave; null where the status is not ok
-   subroutine model_take(handle, least, most, made, status)
+   subroutine model_take(handle, least, most, model, status)
       integer(c_int64_t), intent(in) :: handle
       integer, intent(in) :: least                   !! stage_... it must have reached
       integer, intent(in) :: most                    !! stage_... it must not have passed
-      type(model), pointer, intent(out) :: made
+      type(element_model), pointer, intent(out) :: model
       integer(c_int), intent(out) :: status
       type(c_ptr) :: object
-      made => null()
+      model => null()
       object = c_null_ptr
       call handle_take(handle, handle_sla, .true., object, status)
       if (status /= status_ok) return
-      call c_f_pointer(object, made)
-      if (made%stage >= least .and. made%stage <= most) return
+      call c_f_pointer(object, model)
+      if (model%stage >= least .and. model%stage <= most) return
       status = status_not_ready
-      made => null()
+      model => null()
       call handle_leave(handle)
    end subroutine model_take
 
    !> Do all entries name a node of the model?
-   pure subroutine check_nodes(made, node, lowest, status)
-      type(model), intent(in) :: made
+   pure subroutine check_nodes(model, node, lowest, status)
+      type(element_model), intent(in) :: model
       integer(c_int), intent(in) :: node(:, :)       !! 1-based
       integer(c_int), intent(in) :: lowest           !! 1, or 0 where 0 is the ground
       integer(c_int), intent(out) :: status
-      status = merge(status_bad_index, status_ok, any(node < lowest) .or. any(node > made%nodes))
+      status = merge(status_bad_index, status_ok, any(node < lowest) .or. any(node > model%nodes))
    end subroutine check_nodes
 
    !> Node and direction of each freedom of elements whose nodes move in x and y

@@ -14,7 +14,7 @@ module sla_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
    implicit none
    private
-   public :: model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
+   public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
    public :: model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
@@ -24,7 +24,7 @@ module sla_model
    integer, parameter :: standing_values = 27   !! numbers that tell where the event loop stands
    integer, parameter :: chunk = 128   !! elements scanned in one piece, whatever the threads
 
-   type :: model
+   type :: element_model
       integer :: stage = 0                               !! how far it is built, see sla_handle
       integer :: nodes = 0
       integer :: equations = 0
@@ -69,37 +69,37 @@ module sla_model
       logical :: carried = .false.                       !! the work of the constant loads is counted already
       real(wp) :: lambda_recorded = 0.0_wp               !! of the last state
       integer :: hot(2, 2) = 0                           !! group and point of the last upper and lower limit
-   end type model
+   end type element_model
 
 contains
 
    !> An empty model on nodes whose freedoms belong to equations
-   subroutine model_new(xy, equation, factor, options, made, status)
+   subroutine model_new(xy, equation, factor, options, model, status)
       real(wp), intent(in) :: xy(:, :)               !! (2, nodes) [m]
       integer(c_int), intent(in) :: equation(:, :)   !! (2, nodes), 0 held
       real(wp), intent(in) :: factor(:, :)           !! (2, nodes)
       type(material_options), intent(in) :: options
-      type(model), intent(inout) :: made
+      type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer :: info
 
-      made%nodes = size(xy, 2)
-      made%equations = int(maxval(equation))
-      made%options = options
+      model%nodes = size(xy, 2)
+      model%equations = int(maxval(equation))
+      model%options = options
       status = status_invalid_argument
-      if (made%equations < 1 .or. minval(equation) < 0) return
-      allocate (made%xy(2, made%nodes), made%equation(2, made%nodes), made%factor(2, made%nodes), made%holders(0), &
-         stat=info)
+      if (model%equations < 1 .or. minval(equation) < 0) return
+      allocate (model%xy(2, model%nodes), model%equation(2, model%nodes), model%factor(2, model%nodes), &
+         model%holders(0), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
-      made%xy(:, :) = xy
-      made%equation(:, :) = equation
-      made%factor(:, :) = factor
+      model%xy(:, :) = xy
+      model%equation(:, :) = equation
+      model%factor(:, :) = factor
    end subroutine model_new
 
    !> Take a group over; freedom i of an element is freedom `of` (node, direction) or held where it is 0
-   subroutine model_add(made, group, node, direction, status)
-      type(model), intent(inout) :: made
+   subroutine model_add(model, group, node, direction, status)
+      type(element_model), intent(inout) :: model
       class(element_group), allocatable, intent(inout) :: group
       integer(c_int), intent(in) :: node(:, :)       !! (freedoms, elements), 1-based, 0 ground
       integer(c_int), intent(in) :: direction(:, :)  !! (freedoms, elements), 1 or 2
@@ -108,10 +108,10 @@ contains
       integer :: i, e, info
 
       status = status_bad_index
-      if (any(node < 0) .or. any(node > made%nodes)) return
+      if (any(node < 0) .or. any(node > model%nodes)) return
       if (any((direction < 1 .or. direction > 2) .and. node > 0)) return
       allocate (group%equation(group%freedoms, group%elements), group%factor(group%freedoms, group%elements), &
-         longer(size(made%holders) + 1), stat=info)
+         longer(size(model%holders) + 1), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
@@ -121,27 +121,27 @@ contains
             group%equation(i, e) = 0
             group%factor(i, e) = 1.0_wp
             if (node(i, e) == 0) cycle
-            group%equation(i, e) = made%equation(direction(i, e), node(i, e))
-            group%factor(i, e) = made%factor(direction(i, e), node(i, e))
+            group%equation(i, e) = model%equation(direction(i, e), node(i, e))
+            group%factor(i, e) = model%factor(direction(i, e), node(i, e))
          end do
       end do
       group%tied = any(group%factor /= 1.0_wp)
-      do i = 1, size(made%holders)
-         call move_alloc(made%holders(i)%group, longer(i)%group)
+      do i = 1, size(model%holders)
+         call move_alloc(model%holders(i)%group, longer(i)%group)
       end do
       select type (group)
       class is (point_group)
-         group%offset = made%points
-         made%points = made%points + group%points
+         group%offset = model%points
+         model%points = model%points + group%points
       end select
       call move_alloc(group, longer(size(longer))%group)
-      call move_alloc(longer, made%holders)
+      call move_alloc(longer, model%holders)
       status = status_ok
    end subroutine model_add
 
    !> Order the equations, fix the pattern, allocate
-   subroutine model_prepare(made, ordering, most_values, status)
-      type(model), intent(inout) :: made
+   subroutine model_prepare(model, ordering, most_values, status)
+      type(element_model), intent(inout) :: model
       integer(c_int), intent(in) :: ordering           !! 0 AMD, 1 METIS
       integer(c_int64_t), intent(in) :: most_values    !! doubles the factor may take
       integer(c_int), intent(out) :: status
@@ -149,27 +149,27 @@ contains
       integer(c_int), allocatable :: new(:)
       integer :: n, i, e, g, info, pieces, k
 
-      n = made%equations
-      call build_pattern(made%holders, n, made%start, made%row, status)
+      n = model%equations
+      call build_pattern(model%holders, n, model%start, model%row, status)
       if (status /= status_ok) return
       allocate (order(n), new(0:n), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
-      status = extrados_sparse_order(int(n, c_int64_t), made%start, made%row, ordering, order)
+      status = extrados_sparse_order(int(n, c_int64_t), model%start, model%row, ordering, order)
       if (status /= status_ok) return
       new(0) = 0
       do i = 1, n
          new(order(i) + 1) = int(i, c_int)
       end do
-      do i = 1, made%nodes
-         made%equation(1, i) = new(made%equation(1, i))
-         made%equation(2, i) = new(made%equation(2, i))
+      do i = 1, model%nodes
+         model%equation(1, i) = new(model%equation(1, i))
+         model%equation(2, i) = new(model%equation(2, i))
       end do
       pieces = 0
-      do g = 1, size(made%holders)
-         associate (group => made%holders(g)%group)
+      do g = 1, size(model%holders)
+         associate (group => model%holders(g)%group)
             do e = 1, group%elements
                do i = 1, group%freedoms
                   group%equation(i, e) = new(group%equation(i, e))
@@ -178,36 +178,36 @@ contains
             pieces = pieces + (group%elements + chunk - 1) / chunk
          end associate
       end do
-      call build_pattern(made%holders, n, made%start, made%row, status)
+      call build_pattern(model%holders, n, model%start, model%row, status)
       if (status /= status_ok) return
-      status = extrados_sparse_new(int(n, c_int64_t), made%start, made%row, made%handle, made%factor_values)
+      status = extrados_sparse_new(int(n, c_int64_t), model%start, model%row, model%handle, model%factor_values)
       if (status /= status_ok) return
-      if (made%factor_values > most_values) then
+      if (model%factor_values > most_values) then
          status = status_too_large
          return
       end if
-      allocate (made%value(made%start(n + 1)), made%fa(0:n), made%fb(0:n), made%ua(0:n), made%ub(0:n), &
-         made%z(n, most_rank), made%force(0:n), made%piece(3, pieces), made%part(pieces), stat=info)
+      allocate (model%value(model%start(n + 1)), model%fa(0:n), model%fb(0:n), model%ua(0:n), model%ub(0:n), &
+         model%z(n, most_rank), model%force(0:n), model%piece(3, pieces), model%part(pieces), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
-      made%fa = 0.0_wp
-      made%fb = 0.0_wp
-      made%ua = 0.0_wp
-      made%ub = 0.0_wp
+      model%fa = 0.0_wp
+      model%fb = 0.0_wp
+      model%ua = 0.0_wp
+      model%ub = 0.0_wp
       k = 0
-      do g = 1, size(made%holders)
-         do e = 1, made%holders(g)%group%elements, chunk
+      do g = 1, size(model%holders)
+         do e = 1, model%holders(g)%group%elements, chunk
             k = k + 1
-            made%piece(:, k) = [g, e, min(e + chunk - 1, made%holders(g)%group%elements)]
+            model%piece(:, k) = [g, e, min(e + chunk - 1, model%holders(g)%group%elements)]
          end do
       end do
    end subroutine model_prepare
 
    !> Assemble and factorise; names the node that is free to move
-   subroutine model_factor(made, node, direction, ratio, status)
-      type(model), intent(inout) :: made
+   subroutine model_factor(model, node, direction, ratio, status)
+      type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: node        !! 1-based, 0 none
       integer(c_int), intent(out) :: direction   !! 1 x, 2 y
       real(wp), intent(out) :: ratio             !! smallest over largest pivot
@@ -217,13 +217,13 @@ contains
 
       node = 0
       direction = 0
-      call assemble(made%holders, made%start, made%row, made%value)
-      status = extrados_sparse_factor(made%handle, made%value, ratio, weakest)
+      call assemble(model%holders, model%start, model%row, model%value)
+      status = extrados_sparse_factor(model%handle, model%value, ratio, weakest)
       if (status == status_ok .and. ratio < least_ratio) status = status_not_positive_definite
       if (status /= status_not_positive_definite) return
-      do i = 1, made%nodes
+      do i = 1, model%nodes
          do k = 1, 2
-            if (made%equation(k, i) /= weakest + 1 .or. node /= 0) cycle
+            if (model%equation(k, i) /= weakest + 1 .or. node /= 0) cycle
             node = int(i, c_int)
             direction = int(k, c_int)
          end do
@@ -231,26 +231,26 @@ contains
    end subroutine model_factor
 
    !> Displacements of the constant and the reference load by the factor in use
-   subroutine model_solve(made, status)
-      type(model), intent(inout) :: made
+   subroutine model_solve(model, status)
+      type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer :: n
-      n = made%equations
-      made%z(:, 1) = made%fa(1:n)
-      made%z(:, 2) = made%fb(1:n)
-      if (made%refactor) then
-         status = extrados_sparse_plain(made%handle, made%value, 2_c_int, made%z)
+      n = model%equations
+      model%z(:, 1) = model%fa(1:n)
+      model%z(:, 2) = model%fb(1:n)
+      if (model%refactor) then
+         status = extrados_sparse_plain(model%handle, model%value, 2_c_int, model%z)
       else
-         status = extrados_sparse_solve(made%handle, 2_c_int, made%z)
+         status = extrados_sparse_solve(model%handle, 2_c_int, model%z)
       end if
       if (status /= status_ok) return
-      made%ua(1:n) = made%z(:, 1)
-      made%ub(1:n) = made%z(:, 2)
+      model%ua(1:n) = model%z(:, 1)
+      model%ub(1:n) = model%z(:, 2)
    end subroutine model_solve
 
    !> Start a stage: constant load A and reference load B as nodal forces
-   subroutine model_loads(made, load_a, load_b, carried, status)
-      type(model), intent(inout) :: made
+   subroutine model_loads(model, load_a, load_b, carried, status)
+      type(element_model), intent(inout) :: model
       real(wp), intent(in) :: load_a(:, :)     !! (2, nodes) [N]
       real(wp), intent(in) :: load_b(:, :)     !! (2, nodes) [N]
       logical, intent(in) :: carried           !! the stage before ended under these constant loads
@@ -258,105 +258,105 @@ contains
       real(wp), allocatable :: values(:, :), zero(:)
       integer :: i, k, info
 
-      made%fa = 0.0_wp
-      made%fb = 0.0_wp
-      do i = 1, made%nodes
+      model%fa = 0.0_wp
+      model%fb = 0.0_wp
+      do i = 1, model%nodes
          do k = 1, 2
-            made%fa(made%equation(k, i)) = made%fa(made%equation(k, i)) + made%factor(k, i) * load_a(k, i)
-            made%fb(made%equation(k, i)) = made%fb(made%equation(k, i)) + made%factor(k, i) * load_b(k, i)
+            model%fa(model%equation(k, i)) = model%fa(model%equation(k, i)) + model%factor(k, i) * load_a(k, i)
+            model%fb(model%equation(k, i)) = model%fb(model%equation(k, i)) + model%factor(k, i) * load_b(k, i)
          end do
       end do
-      made%fa(0) = 0.0_wp
-      made%fb(0) = 0.0_wp
-      if (made%refactor) call assemble(made%holders, made%start, made%row, made%value)
-      call model_solve(made, status)
+      model%fa(0) = 0.0_wp
+      model%fb(0) = 0.0_wp
+      if (model%refactor) call assemble(model%holders, model%start, model%row, model%value)
+      call model_solve(model, status)
       if (status /= status_ok) return
-      made%pending = 0
-      made%lambda = 0.0_wp
-      made%peak = 0.0_wp
-      made%event%rank = 0
-      made%hot = 0
-      made%residual = 0.0_wp
-      made%recorded = .false.
-      made%carried = carried
-      made%first_compliance = dot_product(made%fb, made%ub)
+      model%pending = 0
+      model%lambda = 0.0_wp
+      model%peak = 0.0_wp
+      model%event%rank = 0
+      model%hot = 0
+      model%residual = 0.0_wp
+      model%recorded = .false.
+      model%carried = carried
+      model%first_compliance = dot_product(model%fb, model%ub)
 
-      made%noise = 0.0_wp
-      allocate (zero(0:made%equations), stat=info)
+      model%noise = 0.0_wp
+      allocate (zero(0:model%equations), stat=info)
       if (info == 0) zero = 0.0_wp
-      do i = 1, size(made%holders)
+      do i = 1, size(model%holders)
          if (info /= 0) exit
-         select type (group => made%holders(i)%group)
+         select type (group => model%holders(i)%group)
          class is (point_group)
             if (allocated(values)) deallocate (values)
             allocate (values(report_rows, group%points), stat=info)
             if (info /= 0) exit
-            call group%report(zero, made%ub, 1.0_wp, 0.0_wp, values)
-            made%noise = max(made%noise, 1.0e-13_wp * maxval(abs(values(4:6, :))))
+            call group%report(zero, model%ub, 1.0_wp, 0.0_wp, values)
+            model%noise = max(model%noise, 1.0e-13_wp * maxval(abs(values(4:6, :))))
          end select
       end do
       if (info /= 0) status = status_out_of_memory
    end subroutine model_loads
 
    !> Where the event loop stands, beside the damage and the loads; to be read between two batches of events
-   pure function model_standing(made) result(values)
-      type(model), intent(in) :: made
+   pure function model_standing(model) result(values)
+      type(element_model), intent(in) :: model
       real(wp) :: values(standing_values)
-      values = [real(made%pending, wp), made%lambda, made%noise, made%work, made%external, made%dissipated, &
-         made%cracked, made%first_compliance, made%peak, made%peak_displacement, made%slope, made%residual, &
-         real(made%guard, wp), real(made%events, wp), merge(1.0_wp, 0.0_wp, made%recorded), &
-         merge(1.0_wp, 0.0_wp, made%carried), made%lambda_recorded, reshape(real(made%hot, wp), [4])]
+      values = [real(model%pending, wp), model%lambda, model%noise, model%work, model%external, model%dissipated, &
+         model%cracked, model%first_compliance, model%peak, model%peak_displacement, model%slope, model%residual, &
+         real(model%guard, wp), real(model%events, wp), merge(1.0_wp, 0.0_wp, model%recorded), &
+         merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4])]
    end function model_standing
 
    !> Go on from where an event loop stood, after its loads and its damage were set and the factor made: the
    !> displacements are solved anew, so that all who go on from here get the same bits
-   subroutine model_resume(made, values, status)
-      type(model), intent(inout) :: made
+   subroutine model_resume(model, values, status)
+      type(element_model), intent(inout) :: model
       real(wp), intent(in) :: values(standing_values)
       integer(c_int), intent(out) :: status      !! invalid_argument: nothing was changed
       status = status_invalid_argument
       if (.not. all(abs([values(1:3), values(17:20), values(24:27)]) <= real(huge(1), wp))) return
-      if (.not. (is_point(made, nint(values(1:2))) .and. is_point(made, nint(values(24:25))) .and. &
-         is_point(made, nint(values(26:27))))) return
+      if (.not. (is_point(model, nint(values(1:2))) .and. is_point(model, nint(values(24:25))) .and. &
+         is_point(model, nint(values(26:27))))) return
       if (nint(values(3)) < 0 .or. nint(values(3)) > 8) return
-      made%pending = nint(values(1:3))
-      made%lambda = values(4)
-      made%noise = values(5)
-      made%work = values(6:8)
-      made%external = values(9)
-      made%dissipated = values(10)
-      made%cracked = values(11)
-      made%first_compliance = values(12)
-      made%peak = values(13)
-      made%peak_displacement = values(14)
-      made%slope = values(15)
-      made%residual = values(16)
-      made%guard = nint(values(17:19))
-      made%events = nint(values(20))
-      made%recorded = values(21) > 0.5_wp
-      made%carried = values(22) > 0.5_wp
-      made%lambda_recorded = values(23)
-      made%hot = reshape(nint(values(24:27)), [2, 2])
-      made%event%rank = 0
-      call model_solve(made, status)
+      model%pending = nint(values(1:3))
+      model%lambda = values(4)
+      model%noise = values(5)
+      model%work = values(6:8)
+      model%external = values(9)
+      model%dissipated = values(10)
+      model%cracked = values(11)
+      model%first_compliance = values(12)
+      model%peak = values(13)
+      model%peak_displacement = values(14)
+      model%slope = values(15)
+      model%residual = values(16)
+      model%guard = nint(values(17:19))
+      model%events = nint(values(20))
+      model%recorded = values(21) > 0.5_wp
+      model%carried = values(22) > 0.5_wp
+      model%lambda_recorded = values(23)
+      model%hot = reshape(nint(values(24:27)), [2, 2])
+      model%event%rank = 0
+      call model_solve(model, status)
    end subroutine model_resume
 
    !> Is this the number of a group and of one of its points, or none?
-   pure function is_point(made, place) result(yes)
-      type(model), intent(in) :: made
+   pure function is_point(model, place) result(yes)
+      type(element_model), intent(in) :: model
       integer, intent(in) :: place(2)      !! group and point, the group 0: none
       logical :: yes
       yes = place(1) == 0
-      if (place(1) < 1 .or. place(1) > size(made%holders)) return
-      select type (group => made%holders(place(1))%group)
+      if (place(1) < 1 .or. place(1) > size(model%holders)) return
+      select type (group => model%holders(place(1))%group)
       class is (point_group)
          yes = place(2) >= 1 .and. place(2) <= group%points
       end select
    end function is_point
 
    !> Put the damage of all points into `values`, or take it from there where it can be true
-   subroutine model_damage(made, store, values, status)
-      type(model), intent(inout) :: made
+   subroutine model_damage(model, store, values, status)
+      type(element_model), intent(inout) :: model
       logical, intent(in) :: store
       real(wp), intent(inout) :: values(:, :)        !! (state_rows, points)
       integer(c_int), intent(out) :: status          !! invalid_argument: nothing was changed
@@ -365,8 +365,8 @@ contains
       if (.not. store) then
          if (.not. all(abs(values) <= most_damage)) return
          if (any(values(4:11, :) < 0.0_wp) .or. any(abs(values(3:, :) - anint(values(3:, :))) > 0.0_wp)) return
-         do g = 1, size(made%holders)
-            select type (group => made%holders(g)%group)
+         do g = 1, size(model%holders)
+            select type (group => model%holders(g)%group)
             class is (point_group)   ! teeth count from 1
                if (any(values(4:6:2, group%offset + 1:group%offset + group%points) < 1.0_wp)) return
                if (group%directions < 2) cycle
@@ -374,8 +374,8 @@ contains
             end select
          end do
       end if
-      do g = 1, size(made%holders)
-         select type (group => made%holders(g)%group)
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
          class is (point_group)
             call group%state(store, values(:, group%offset + 1:group%offset + group%points))
          end select
@@ -384,9 +384,9 @@ contains
    end subroutine model_damage
 
    !> Give the factor back
-   subroutine model_free(made)
-      type(model), intent(inout) :: made
-      call extrados_sparse_free(made%handle)
+   subroutine model_free(model)
+      type(element_model), intent(inout) :: model
+      call extrados_sparse_free(model%handle)
    end subroutine model_free
 
 end module sla_model

@@ -141,49 +141,50 @@ contains
    end subroutine plane_group_new
 
    !> Stiffness (thesis Eqs 4.9 to 4.11) and strengths of a point from its damage
-   pure subroutine refresh(self, p)
-      class(plane_group), intent(inout) :: self
+   pure subroutine refresh(group, p)
+      class(plane_group), intent(inout) :: group
       integer, intent(in) :: p
       integer :: e, k
       real(wp) :: e0, nu, modulus(2), tension, compression, ratio, least
 
-      e = (p - 1) / self%rule%points + 1
-      e0 = self%young(e)
-      nu = self%nu(e)
-      self%limit(:, p) = unbounded
+      e = (p - 1) / group%rule%points + 1
+      e0 = group%young(e)
+      nu = group%nu(e)
+      group%limit(:, p) = unbounded
       do k = 1, 2
-         tension = self%teeth%modulus_of(self%table(e), self%tooth(k, p), e0, self%options%floor)
-         compression = self%teeth%modulus_of(self%crush_table(e), self%crush(k, p), e0, self%options%floor)
+         tension = group%teeth%modulus_of(group%table(e), group%tooth(k, p), e0, group%options%floor)
+         compression = group%teeth%modulus_of(group%crush_table(e), group%crush(k, p), e0, group%options%floor)
          modulus(k) = min(tension, compression)
-         if (self%shut(k, p) /= 0) modulus(k) = compression
+         if (group%shut(k, p) /= 0) modulus(k) = compression
          ! A tooth ends at its strain: where the other sign's damage governs, the stress is less.
-         if (self%shut(k, p) == 0) self%limit(k, p) = &
-            self%teeth%strength_of(self%table(e), self%tooth(k, p), modulus(k) / tension)
-         self%limit(k + 2, p) = self%teeth%strength_of(self%crush_table(e), self%crush(k, p), modulus(k) / compression)
+         if (group%shut(k, p) == 0) group%limit(k, p) = &
+            group%teeth%strength_of(group%table(e), group%tooth(k, p), modulus(k) / tension)
+         group%limit(k + 2, p) = group%teeth%strength_of(group%crush_table(e), group%crush(k, p), &
+            modulus(k) / compression)
       end do
-      if (self%options%isotropic) modulus(2) = modulus(1)
+      if (group%options%isotropic) modulus(2) = modulus(1)
       ratio = 1.0_wp / (1.0_wp - nu**2 * modulus(1) * modulus(2) / e0**2)
-      if (self%options%isotropic) then
+      if (group%options%isotropic) then
          ratio = 1.0_wp / (1.0_wp - nu**2)
-         self%stiff(:, p) = modulus(1) * [ratio, nu * ratio, ratio, 0.5_wp / (1.0_wp + nu)]
+         group%stiff(:, p) = modulus(1) * [ratio, nu * ratio, ratio, 0.5_wp / (1.0_wp + nu)]
          return
       end if
-      self%stiff(1:3, p) = ratio * [modulus(1), nu / e0 * modulus(1) * modulus(2), modulus(2)]
-      if (self%axis(e) == axis_joint) then
-         self%stiff(4, p) = 0.5_wp * e0 / (1.0_wp + nu)
+      group%stiff(1:3, p) = ratio * [modulus(1), nu / e0 * modulus(1) * modulus(2), modulus(2)]
+      if (group%axis(e) == axis_joint) then
+         group%stiff(4, p) = 0.5_wp * e0 / (1.0_wp + nu)
          return
       end if
       least = minval(modulus)
-      if (self%options%retention < 0.0_wp .or. least >= e0) then
-         self%stiff(4, p) = 0.5_wp * least / (1.0_wp + nu * least / e0)
+      if (group%options%retention < 0.0_wp .or. least >= e0) then
+         group%stiff(4, p) = 0.5_wp * least / (1.0_wp + nu * least / e0)
       else
-         self%stiff(4, p) = self%options%retention * 0.5_wp * e0 / (1.0_wp + nu)
+         group%stiff(4, p) = group%options%retention * 0.5_wp * e0 / (1.0_wp + nu)
       end if
    end subroutine refresh
 
    !> Strain at a point from its element's displacements, in the crack axes
-   pure function strain_at(self, e, p, local) result(eps)
-      class(plane_group), intent(in) :: self
+   pure function strain_at(group, e, p, local) result(eps)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
       real(wp), intent(in) :: local(:)
@@ -193,40 +194,40 @@ contains
       x = 0.0_wp
       y = 0.0_wp
       g = 0.0_wp
-      do i = 1, self%rule%nodes
-         x = x + self%gradient(1, i, p) * local(2 * i - 1)
-         y = y + self%gradient(2, i, p) * local(2 * i)
-         g = g + self%gradient(2, i, p) * local(2 * i - 1) + self%gradient(1, i, p) * local(2 * i)
+      do i = 1, group%rule%nodes
+         x = x + group%gradient(1, i, p) * local(2 * i - 1)
+         y = y + group%gradient(2, i, p) * local(2 * i)
+         g = g + group%gradient(2, i, p) * local(2 * i - 1) + group%gradient(1, i, p) * local(2 * i)
       end do
-      if (self%selective) then
+      if (group%selective) then
          g = 0.0_wp
-         do i = 1, self%rule%nodes
-            g = g + self%shear_gradient(2, i, e) * local(2 * i - 1) + self%shear_gradient(1, i, e) * local(2 * i)
+         do i = 1, group%rule%nodes
+            g = g + group%shear_gradient(2, i, e) * local(2 * i - 1) + group%shear_gradient(1, i, e) * local(2 * i)
          end do
       end if
-      if (self%cracked(p) == 0) then
+      if (group%cracked(p) == 0) then
          eps = [x, y, g]
       else
-         c = self%turn(1, p)
-         s = self%turn(2, p)
+         c = group%turn(1, p)
+         s = group%turn(2, p)
          eps = [c**2 * x + s**2 * y + c * s * g, s**2 * x + c**2 * y - c * s * g, &
             2.0_wp * c * s * (y - x) + (c**2 - s**2) * g]
       end if
    end function strain_at
 
    !> Stress from strain, both in the crack axes [Pa]
-   pure function stress_at(self, p, eps) result(sigma)
-      class(plane_group), intent(in) :: self
+   pure function stress_at(group, p, eps) result(sigma)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: p
       real(wp), intent(in) :: eps(3)
       real(wp) :: sigma(3)
-      sigma = [self%stiff(1, p) * eps(1) + self%stiff(2, p) * eps(2), &
-         self%stiff(2, p) * eps(1) + self%stiff(3, p) * eps(2), self%stiff(4, p) * eps(3)]
+      sigma = [group%stiff(1, p) * eps(1) + group%stiff(2, p) * eps(2), &
+         group%stiff(2, p) * eps(1) + group%stiff(3, p) * eps(2), group%stiff(4, p) * eps(3)]
    end function stress_at
 
    !> B' R' v: nodal forces of a unit volume under the stress v in the crack axes
-   pure subroutine nodal(self, e, p, v, local)
-      class(plane_group), intent(in) :: self
+   pure subroutine nodal(group, e, p, v, local)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
       real(wp), intent(in) :: v(3)
@@ -234,68 +235,68 @@ contains
       real(wp) :: c, s, x, y, t
       integer :: i
 
-      c = self%turn(1, p)
-      s = self%turn(2, p)
-      if (self%cracked(p) == 0) then
+      c = group%turn(1, p)
+      s = group%turn(2, p)
+      if (group%cracked(p) == 0) then
          c = 1.0_wp
          s = 0.0_wp
       end if
       x = c**2 * v(1) + s**2 * v(2) - 2.0_wp * c * s * v(3)
       y = s**2 * v(1) + c**2 * v(2) + 2.0_wp * c * s * v(3)
       t = c * s * (v(1) - v(2)) + (c**2 - s**2) * v(3)
-      do i = 1, self%rule%nodes
-         if (self%selective) then
-            local(2 * i - 1) = self%gradient(1, i, p) * x + self%shear_gradient(2, i, e) * t
-            local(2 * i) = self%gradient(2, i, p) * y + self%shear_gradient(1, i, e) * t
+      do i = 1, group%rule%nodes
+         if (group%selective) then
+            local(2 * i - 1) = group%gradient(1, i, p) * x + group%shear_gradient(2, i, e) * t
+            local(2 * i) = group%gradient(2, i, p) * y + group%shear_gradient(1, i, e) * t
          else
-            local(2 * i - 1) = self%gradient(1, i, p) * x + self%gradient(2, i, p) * t
-            local(2 * i) = self%gradient(2, i, p) * y + self%gradient(1, i, p) * t
+            local(2 * i - 1) = group%gradient(1, i, p) * x + group%gradient(2, i, p) * t
+            local(2 * i) = group%gradient(2, i, p) * y + group%gradient(1, i, p) * t
          end if
       end do
    end subroutine nodal
 
-   pure subroutine matrix(self, element, k)
-      class(plane_group), intent(in) :: self
+   pure subroutine matrix(group, element, k)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: element
       real(wp), intent(out) :: k(:, :)
       real(wp) :: b(2 * most_nodes, 3), db(2 * most_nodes, 3)
       integer :: p, i, n
 
-      n = self%freedoms
+      n = group%freedoms
       k = 0.0_wp
-      do p = (element - 1) * self%rule%points + 1, element * self%rule%points
-         call nodal(self, element, p, [1.0_wp, 0.0_wp, 0.0_wp], b(1:n, 1))
-         call nodal(self, element, p, [0.0_wp, 1.0_wp, 0.0_wp], b(1:n, 2))
-         call nodal(self, element, p, [0.0_wp, 0.0_wp, 1.0_wp], b(1:n, 3))
-         db(1:n, 1) = self%weight(p) * (self%stiff(1, p) * b(1:n, 1) + self%stiff(2, p) * b(1:n, 2))
-         db(1:n, 2) = self%weight(p) * (self%stiff(2, p) * b(1:n, 1) + self%stiff(3, p) * b(1:n, 2))
-         db(1:n, 3) = self%weight(p) * self%stiff(4, p) * b(1:n, 3)
+      do p = (element - 1) * group%rule%points + 1, element * group%rule%points
+         call nodal(group, element, p, [1.0_wp, 0.0_wp, 0.0_wp], b(1:n, 1))
+         call nodal(group, element, p, [0.0_wp, 1.0_wp, 0.0_wp], b(1:n, 2))
+         call nodal(group, element, p, [0.0_wp, 0.0_wp, 1.0_wp], b(1:n, 3))
+         db(1:n, 1) = group%weight(p) * (group%stiff(1, p) * b(1:n, 1) + group%stiff(2, p) * b(1:n, 2))
+         db(1:n, 2) = group%weight(p) * (group%stiff(2, p) * b(1:n, 1) + group%stiff(3, p) * b(1:n, 2))
+         db(1:n, 3) = group%weight(p) * group%stiff(4, p) * b(1:n, 3)
          do i = 1, n
             k(1:n, i) = k(1:n, i) + b(1:n, 1) * db(i, 1) + b(1:n, 2) * db(i, 2) + b(1:n, 3) * db(i, 3)
          end do
       end do
    end subroutine matrix
 
-   pure subroutine force(self, u, f)
-      class(plane_group), intent(in) :: self
+   pure subroutine force(group, u, f)
+      class(plane_group), intent(in) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: f(0:)
       real(wp) :: local(2 * most_nodes), part(2 * most_nodes)
       integer :: e, p, i
 
-      do e = 1, self%elements
-         call self%gather(e, u, local)
-         do p = (e - 1) * self%rule%points + 1, e * self%rule%points
-            call nodal(self, e, p, self%weight(p) * stress_at(self, p, strain_at(self, e, p, local)), part)
-            do i = 1, self%freedoms
-               f(self%equation(i, e)) = f(self%equation(i, e)) + part(i) * self%factor(i, e)
+      do e = 1, group%elements
+         call group%gather(e, u, local)
+         do p = (e - 1) * group%rule%points + 1, e * group%rule%points
+            call nodal(group, e, p, group%weight(p) * stress_at(group, p, strain_at(group, e, p, local)), part)
+            do i = 1, group%freedoms
+               f(group%equation(i, e)) = f(group%equation(i, e)) + part(i) * group%factor(i, e)
             end do
          end do
       end do
    end subroutine force
 
-   pure subroutine scan(self, first, last, ua, ub, lambda, noise, found)
-      class(plane_group), intent(in) :: self
+   pure subroutine scan(group, first, last, ua, ub, lambda, noise, found)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: first
       integer, intent(in) :: last
       real(wp), intent(in) :: ua(0:)
@@ -308,34 +309,34 @@ contains
       integer :: e, p, i
 
       do e = first, last
-         if (self%table(e) == 0 .and. self%crush_table(e) == 0) cycle
-         do i = 1, self%freedoms
-            la(i) = ua(self%equation(i, e))
-            lb(i) = ub(self%equation(i, e))
+         if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
+         do i = 1, group%freedoms
+            la(i) = ua(group%equation(i, e))
+            lb(i) = ub(group%equation(i, e))
          end do
-         if (self%tied) then
-            la(1:self%freedoms) = la(1:self%freedoms) * self%factor(:, e)
-            lb(1:self%freedoms) = lb(1:self%freedoms) * self%factor(:, e)
+         if (group%tied) then
+            la(1:group%freedoms) = la(1:group%freedoms) * group%factor(:, e)
+            lb(1:group%freedoms) = lb(1:group%freedoms) * group%factor(:, e)
          end if
-         simple = self%table(e) /= 0 .and. self%crush_table(e) == 0 .and. self%lateral(e) <= 0.0_wp
-         do p = (e - 1) * self%rule%points + 1, e * self%rule%points
-            sa = stress_at(self, p, strain_at(self, e, p, la))
-            sb = stress_at(self, p, strain_at(self, e, p, lb))
-            if (simple .and. self%cracked(p) == 0 .and. found%hi%value < unbounded .and. &
+         simple = group%table(e) /= 0 .and. group%crush_table(e) == 0 .and. group%lateral(e) <= 0.0_wp
+         do p = (e - 1) * group%rule%points + 1, e * group%rule%points
+            sa = stress_at(group, p, strain_at(group, e, p, la))
+            sb = stress_at(group, p, strain_at(group, e, p, lb))
+            if (simple .and. group%cracked(p) == 0 .and. found%hi%value < unbounded .and. &
                 found%lo%value > -unbounded) then
                ! Nearly all points end here: they admit both limits found so far, see cone.
-               if (inside_cone(self%limit(1, p), 1.0_wp, sa + found%hi%value * sb)) then
-                  if (inside_cone(self%limit(1, p), 1.0_wp, sa + found%lo%value * sb)) cycle
+               if (inside_cone(group%limit(1, p), 1.0_wp, sa + found%hi%value * sb)) then
+                  if (inside_cone(group%limit(1, p), 1.0_wp, sa + found%lo%value * sb)) cycle
                end if
             end if
-            call scan_point(self, e, p, sa, sb, lambda, noise, found)
+            call scan_point(group, e, p, sa, sb, lambda, noise, found)
          end do
       end do
    end subroutine scan
 
    !> Limits of one point from its stresses in the crack axes
-   pure subroutine scan_point(self, e, p, sa, sb, lambda, noise, found)
-      class(plane_group), intent(in) :: self
+   pure subroutine scan_point(group, e, p, sa, sb, lambda, noise, found)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
       real(wp), intent(in) :: sa(3)       !! constant loads [Pa]
@@ -346,32 +347,32 @@ contains
       real(wp) :: f, fc, gain
       integer :: k
 
-      if (self%cracked(p) == 0 .or. (self%options%isotropic .and. self%axis(e) == axis_free)) then
-         f = self%limit(1, p)
+      if (group%cracked(p) == 0 .or. (group%options%isotropic .and. group%axis(e) == axis_free)) then
+         f = group%limit(1, p)
          if (f < unbounded) then
             call cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
-            fc = self%lateral(e)
+            fc = group%lateral(e)
             if (fc > 0.0_wp) call cone(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda, noise, p, &
                code_tension, found)
          end if
-         f = self%limit(3, p)
+         f = group%limit(3, p)
          if (f < unbounded) call cone(f, -1.0_wp, sa, sb, lambda, noise, p, code_compression + 1, found)
          return
       end if
-      do k = 1, merge(1, 2, self%axis(e) /= axis_free)
-         f = self%limit(k, p)
+      do k = 1, merge(1, 2, group%axis(e) /= axis_free)
+         f = group%limit(k, p)
          if (f < unbounded) call linear_bound(sa(k), sb(k), f, f, lambda, noise, p, code_tension + k - 1, found)
-         fc = self%limit(k + 2, p)
+         fc = group%limit(k + 2, p)
          if (fc < unbounded) then
            call linear_bound(-sa(k), -sb(k), fc, fc, lambda, noise, p, code_compression + k - 1, found)
          end if
-         if (.not. self%options%closure .or. self%tooth(k, p) == 1) cycle
-         f = self%teeth%strength_of(self%table(e), 1_c_int, 1.0_wp)
-         if (self%shut(k, p) /= 0) then
+         if (.not. group%options%closure .or. group%tooth(k, p) == 1) cycle
+         f = group%teeth%strength_of(group%table(e), 1_c_int, 1.0_wp)
+         if (group%shut(k, p) /= 0) then
             call linear_bound(sa(k), sb(k), 0.0_wp, f, lambda, noise, p, code_open + k - 1, found)
-         else if (self%changes(k, p) < self%options%most_changes) then
+         else if (group%changes(k, p) < group%options%most_changes) then
             ! Measured by the strain: the stress that an open crack has left drowns in rounding.
-            gain = self%young(e) / direction_modulus(self, e, p, k)
+            gain = group%young(e) / direction_modulus(group, e, p, k)
             call linear_bound(-gain * sa(k), -gain * sb(k), 0.0_wp, f, lambda, noise, p, code_close + k - 1, found)
          end if
       end do
@@ -418,8 +419,8 @@ contains
       inside = margin >= 0.0_wp .and. margin**2 >= 0.25_wp * (s(1) - s(2))**2 + s(3)**2
    end function inside_cone
 
-   pure subroutine damage(self, point, code, lambda, ua, ub, event, tooth)
-      class(plane_group), intent(inout) :: self
+   pure subroutine damage(group, point, code, lambda, ua, ub, event, tooth)
+      class(plane_group), intent(inout) :: group
       integer, intent(in) :: point
       integer, intent(in) :: code
       real(wp), intent(in) :: lambda
@@ -432,63 +433,63 @@ contains
       integer :: e, k, p
 
       p = point
-      e = (p - 1) / self%rule%points + 1
-      if (self%cracked(p) == 0) then
-         call self%gather(e, ua, la)
-         call self%gather(e, ub, lb)
-         s = stress_at(self, p, strain_at(self, e, p, la + lambda * lb))
+      e = (p - 1) / group%rule%points + 1
+      if (group%cracked(p) == 0) then
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         s = stress_at(group, p, strain_at(group, e, p, la + lambda * lb))
          phi = 0.5_wp * atan2(2.0_wp * s(3), s(1) - s(2))     ! thesis Eq. 4.7
-         self%turn(:, p) = [cos(phi), sin(phi)]
-         self%cracked(p) = 1
+         group%turn(:, p) = [cos(phi), sin(phi)]
+         group%cracked(p) = 1
       end if
       k = 1 + mod(code - 1, 2)
-      old = self%stiff(:, p)
-      before = direction_modulus(self, e, p, k)
+      old = group%stiff(:, p)
+      before = direction_modulus(group, e, p, k)
       select case (code - k + 1)
       case (code_tension)
-         self%tooth(k, p) = self%tooth(k, p) + 1_c_int
+         group%tooth(k, p) = group%tooth(k, p) + 1_c_int
       case (code_compression)
-         self%crush(k, p) = self%crush(k, p) + 1_c_int
+         group%crush(k, p) = group%crush(k, p) + 1_c_int
       case (code_close)
-         self%shut(k, p) = 1
-         self%changes(k, p) = self%changes(k, p) + 1_c_int
+         group%shut(k, p) = 1
+         group%changes(k, p) = group%changes(k, p) + 1_c_int
       case default
-         self%shut(k, p) = 0
-         self%changes(k, p) = self%changes(k, p) + 1_c_int
+         group%shut(k, p) = 0
+         group%changes(k, p) = group%changes(k, p) + 1_c_int
       end select
-      tooth = int(merge(self%crush(k, p), self%tooth(k, p), code - k + 1 == code_compression))
-      if (self%options%isotropic) then
-         self%tooth(2, p) = self%tooth(1, p)
-         self%crush(1, p) = maxval(self%crush(:, p))
-         self%crush(2, p) = self%crush(1, p)
+      tooth = int(merge(group%crush(k, p), group%tooth(k, p), code - k + 1 == code_compression))
+      if (group%options%isotropic) then
+         group%tooth(2, p) = group%tooth(1, p)
+         group%crush(1, p) = maxval(group%crush(:, p))
+         group%crush(2, p) = group%crush(1, p)
       end if
-      after = direction_modulus(self, e, p, k)
-      call self%refresh(p)
+      after = direction_modulus(group, e, p, k)
+      call group%refresh(p)
 
-      if (self%options%isotropic) then
+      if (group%options%isotropic) then
          ! All of D changes in proportion: the Cholesky factor of the change, three vectors.
-         change = (1.0_wp - after / before) * self%weight(p)
+         change = (1.0_wp - after / before) * group%weight(p)
          v = [sqrt(old(1)), old(2) / sqrt(old(1)), 0.0_wp]
-         call add_vector(self, e, p, v, change, event)
-         call add_vector(self, e, p, [0.0_wp, sqrt(old(3) - v(2)**2), 0.0_wp], change, event)
-         call add_vector(self, e, p, [0.0_wp, 0.0_wp, sqrt(old(4))], change, event)
+         call add_vector(group, e, p, v, change, event)
+         call add_vector(group, e, p, [0.0_wp, sqrt(old(3) - v(2)**2), 0.0_wp], change, event)
+         call add_vector(group, e, p, [0.0_wp, 0.0_wp, sqrt(old(4))], change, event)
          return
       end if
       if (before /= after) then
          alpha = 1.0_wp / (1.0_wp / (1.0_wp / after - 1.0_wp / before) + merge(old(1), old(3), k == 1))
          v = [merge(old(1), old(2), k == 1), merge(old(2), old(3), k == 1), 0.0_wp]
-         call add_vector(self, e, p, v, alpha * self%weight(p), event)
+         call add_vector(group, e, p, v, alpha * group%weight(p), event)
       end if
-      change = old(4) - self%stiff(4, p)
+      change = old(4) - group%stiff(4, p)
       if (abs(change) > 1.0e-14_wp * old(4)) then
-        call add_vector(self, e, p, [0.0_wp, 0.0_wp, 1.0_wp], change * self%weight(p), event)
+        call add_vector(group, e, p, [0.0_wp, 0.0_wp, 1.0_wp], change * group%weight(p), event)
       end if
 
    end subroutine damage
 
    !> One more vector sqrt(|size|) B' R' v, softening where size > 0
-   pure subroutine add_vector(self, e, p, v, size, event)
-      class(plane_group), intent(in) :: self
+   pure subroutine add_vector(group, e, p, v, size, event)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
       real(wp), intent(in) :: v(3)           !! stress in the crack axes
@@ -497,50 +498,50 @@ contains
       real(wp) :: local(2 * most_nodes)
       event%rank = event%rank + 1
       event%sign(event%rank) = sign(1.0_wp, size)
-      call nodal(self, e, p, sqrt(abs(size)) * v, local)
-      call self%spread(e, local, event, event%rank)
+      call nodal(group, e, p, sqrt(abs(size)) * v, local)
+      call group%spread(e, local, event, event%rank)
    end subroutine add_vector
 
-   pure subroutine state(self, store, values)
-      class(plane_group), intent(inout) :: self
+   pure subroutine state(group, store, values)
+      class(plane_group), intent(inout) :: group
       logical, intent(in) :: store
       real(wp), intent(inout) :: values(:, :)
       integer :: p
       if (store) then
-         values(1:2, :) = self%turn
-         values(3, :) = real(self%cracked, wp)
-         values(4:5, :) = real(self%tooth, wp)
-         values(6:7, :) = real(self%crush, wp)
-         values(8:9, :) = real(self%shut, wp)
-         values(10:11, :) = real(self%changes, wp)
+         values(1:2, :) = group%turn
+         values(3, :) = real(group%cracked, wp)
+         values(4:5, :) = real(group%tooth, wp)
+         values(6:7, :) = real(group%crush, wp)
+         values(8:9, :) = real(group%shut, wp)
+         values(10:11, :) = real(group%changes, wp)
       else
-         self%turn(:, :) = values(1:2, :)
-         self%cracked(:) = nint(values(3, :), c_int)
-         self%tooth(:, :) = nint(values(4:5, :), c_int)
-         self%crush(:, :) = nint(values(6:7, :), c_int)
-         self%shut(:, :) = nint(values(8:9, :), c_int)
-         self%changes(:, :) = nint(values(10:11, :), c_int)
-         do p = 1, self%points
-            call self%refresh(p)
+         group%turn(:, :) = values(1:2, :)
+         group%cracked(:) = nint(values(3, :), c_int)
+         group%tooth(:, :) = nint(values(4:5, :), c_int)
+         group%crush(:, :) = nint(values(6:7, :), c_int)
+         group%shut(:, :) = nint(values(8:9, :), c_int)
+         group%changes(:, :) = nint(values(10:11, :), c_int)
+         do p = 1, group%points
+            call group%refresh(p)
          end do
       end if
    end subroutine state
 
    !> Secant modulus of one crack direction [Pa]
-   pure function direction_modulus(self, e, p, k) result(modulus)
-      class(plane_group), intent(in) :: self
+   pure function direction_modulus(group, e, p, k) result(modulus)
+      class(plane_group), intent(in) :: group
       integer, intent(in) :: e, p, k
       real(wp) :: modulus
-      modulus = self%teeth%modulus_of(self%crush_table(e), self%crush(k, p), self%young(e), self%options%floor)
-      if (self%shut(k, p) == 0) modulus = min(modulus, &
-         self%teeth%modulus_of(self%table(e), self%tooth(k, p), self%young(e), self%options%floor))
+      modulus = group%teeth%modulus_of(group%crush_table(e), group%crush(k, p), group%young(e), group%options%floor)
+      if (group%shut(k, p) == 0) modulus = min(modulus, &
+         group%teeth%modulus_of(group%table(e), group%tooth(k, p), group%young(e), group%options%floor))
    end function direction_modulus
 
    !> Rows: 1-3 strain and 4-6 stress in the crack axes, 7-8 cosine and sine of the first crack's normal,
    !> 9-10 moduli over the initial one, 11-12 tension teeth, 13-14 admitted range of lambda, 15 volume,
    !> 16-17 compression teeth, 18 shut (1 first, 2 second direction, 3 both)
-   pure subroutine report(self, ua, ub, lambda, noise, values)
-      class(plane_group), intent(in) :: self
+   pure subroutine report(group, ua, ub, lambda, noise, values)
+      class(plane_group), intent(in) :: group
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda
@@ -550,25 +551,25 @@ contains
       type(scan_result) :: found
       integer :: e, p
 
-      do e = 1, self%elements
-         call self%gather(e, ua, la)
-         call self%gather(e, ub, lb)
-         do p = (e - 1) * self%rule%points + 1, e * self%rule%points
-            ea = strain_at(self, e, p, la)
-            eb = strain_at(self, e, p, lb)
+      do e = 1, group%elements
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         do p = (e - 1) * group%rule%points + 1, e * group%rule%points
+            ea = strain_at(group, e, p, la)
+            eb = strain_at(group, e, p, lb)
             values(1:3, p) = ea + lambda * eb
-            values(4:6, p) = stress_at(self, p, ea + lambda * eb)
-            values(7:8, p) = self%turn(:, p)
-            values(9, p) = direction_modulus(self, e, p, 1) / self%young(e)
-            values(10, p) = direction_modulus(self, e, p, merge(1, 2, self%options%isotropic)) / self%young(e)
-            values(11:12, p) = real(self%tooth(:, p), wp)
+            values(4:6, p) = stress_at(group, p, ea + lambda * eb)
+            values(7:8, p) = group%turn(:, p)
+            values(9, p) = direction_modulus(group, e, p, 1) / group%young(e)
+            values(10, p) = direction_modulus(group, e, p, merge(1, 2, group%options%isotropic)) / group%young(e)
+            values(11:12, p) = real(group%tooth(:, p), wp)
             found = scan_result()
-            call scan_point(self, e, p, stress_at(self, p, ea), stress_at(self, p, eb), lambda, noise, found)
+            call scan_point(group, e, p, stress_at(group, p, ea), stress_at(group, p, eb), lambda, noise, found)
             values(13:14, p) = [found%lo%value, found%hi%value]
             if (found%empty%point /= 0) values(13:14, p) = [unbounded, -unbounded]
-            values(15, p) = self%weight(p)
-            values(16:17, p) = real(self%crush(:, p), wp)
-            values(18, p) = real(self%shut(1, p) + 2 * self%shut(2, p), wp)
+            values(15, p) = group%weight(p)
+            values(16:17, p) = real(group%crush(:, p), wp)
+            values(18, p) = real(group%shut(1, p) + 2 * group%shut(2, p), wp)
          end do
       end do
    end subroutine report

@@ -93,52 +93,52 @@ contains
    end subroutine softening_new
 
    !> Parameter at the peak
-   pure function first(self) result(x)
-      class(softening), intent(in) :: self
+   pure function first(law) result(x)
+      class(softening), intent(in) :: law
       real(wp) :: x
-      x = merge(0.0_wp, self%peak, self%kind == law_hordijk)
+      x = merge(0.0_wp, law%peak, law%kind == law_hordijk)
    end function first
 
    !> Total strain at parameter x, beyond the peak
-   pure function strain(self, x) result(eps)
-      class(softening), intent(in) :: self
+   pure function strain(law, x) result(eps)
+      class(softening), intent(in) :: law
       real(wp), intent(in) :: x
       real(wp) :: eps
       eps = x
-      if (self%kind == law_hordijk) eps = x + self%stress(x) / self%e
+      if (law%kind == law_hordijk) eps = x + law%stress(x) / law%e
    end function strain
 
    !> Stress at parameter x, beyond the peak [Pa]
-   pure function stress(self, x) result(sigma)
-      class(softening), intent(in) :: self
+   pure function stress(law, x) result(sigma)
+      class(softening), intent(in) :: law
       real(wp), intent(in) :: x
       real(wp) :: sigma, r
-      select case (self%kind)
+      select case (law%kind)
       case (law_linear)
-         sigma = self%ft * (self%range - x) / (self%range - self%peak)
-         if (self%clipped) sigma = max(sigma, 0.0_wp)
+         sigma = law%ft * (law%range - x) / (law%range - law%peak)
+         if (law%clipped) sigma = max(sigma, 0.0_wp)
       case (law_exponential)
-         sigma = self%ft * exp(-(x - self%peak) / self%range)
+         sigma = law%ft * exp(-(x - law%peak) / law%range)
       case default
-         r = min(x / self%range, 1.0_wp)
-         sigma = max(self%ft * ((1.0_wp + (c1 * r)**3) * exp(-c2 * r) - r * (1.0_wp + c1**3) * exp(-c2)), 0.0_wp)
+         r = min(x / law%range, 1.0_wp)
+         sigma = max(law%ft * ((1.0_wp + (c1 * r)**3) * exp(-c2 * r) - r * (1.0_wp + c1**3) * exp(-c2)), 0.0_wp)
       end select
    end function stress
 
    !> Area under the law up to parameter x, the elastic branch included [J/m^3]
-   pure function energy(self, x) result(area)
-      class(softening), intent(in) :: self
+   pure function energy(law, x) result(area)
+      class(softening), intent(in) :: law
       real(wp), intent(in) :: x
       real(wp) :: area, sigma
-      select case (self%kind)
+      select case (law%kind)
       case (law_linear)
-         sigma = self%stress(x)
-         area = self%total - 0.5_wp * sigma * (self%range - x)
+         sigma = law%stress(x)
+         area = law%total - 0.5_wp * sigma * (law%range - x)
       case (law_exponential)
-         area = self%total - self%stress(x) * self%range
+         area = law%total - law%stress(x) * law%range
       case default
-         area = self%ft * self%range * hordijk_integral(min(x / self%range, 1.0_wp)) &
-            + 0.5_wp * self%stress(x)**2 / self%e
+         area = law%ft * law%range * hordijk_integral(min(x / law%range, 1.0_wp)) &
+            + 0.5_wp * law%stress(x)**2 / law%e
       end select
    end function energy
 

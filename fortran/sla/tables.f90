@@ -23,9 +23,9 @@ module sla_tables
 contains
 
    !> Tables from rows of (kind, E, ft, Gf, h, p, exact, overshoot)
-   subroutine tooth_tables_new(rows, made, bad, status)
+   subroutine tooth_tables_new(rows, teeth, bad, status)
       real(wp), intent(in) :: rows(:, :)        !! (8, tables)
-      type(tooth_tables), intent(out) :: made
+      type(tooth_tables), intent(out) :: teeth
       integer(c_int), intent(out) :: bad        !! the row that failed, 1-based
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: modulus(:), strength(:), all_moduli(:), all_strengths(:), longer(:)
@@ -34,14 +34,14 @@ contains
 
       bad = 0
       status = status_ok
-      allocate (made%first(size(rows, 2) + 1), modulus(most_teeth), strength(most_teeth), &
+      allocate (teeth%first(size(rows, 2) + 1), modulus(most_teeth), strength(most_teeth), &
          all_moduli(64 * (size(rows, 2) + 64)), all_strengths(64 * (size(rows, 2) + 64)), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
       used = 0
-      made%first(1) = 1
+      teeth%first(1) = 1
       do k = 1, size(rows, 2)
          call make_teeth(nint(rows(1, k), c_int), rows(2, k), rows(3, k), rows(4, k), rows(5, k), rows(6, k), &
             rows(7, k) > 0.5_wp, rows(8, k) > 0.5_wp, n, modulus, strength, status)
@@ -62,28 +62,28 @@ contains
          all_moduli(used + 1:used + n) = modulus(1:n)
          all_strengths(used + 1:used + n) = strength(1:n)
          used = used + n
-         made%first(k + 1) = used + 1
+         teeth%first(k + 1) = used + 1
       end do
-      if (info == 0) allocate (made%modulus(used), made%strength(used), stat=info)
+      if (info == 0) allocate (teeth%modulus(used), teeth%strength(used), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
-      made%modulus(:) = all_moduli(1:used)
-      made%strength(:) = all_strengths(1:used)
+      teeth%modulus(:) = all_moduli(1:used)
+      teeth%strength(:) = all_strengths(1:used)
    end subroutine tooth_tables_new
 
    !> How many there are
-   pure function tables(self) result(count)
-      class(tooth_tables), intent(in) :: self
+   pure function tables(teeth) result(count)
+      class(tooth_tables), intent(in) :: teeth
       integer :: count
       count = 0
-      if (allocated(self%first)) count = size(self%first) - 1
+      if (allocated(teeth%first)) count = size(teeth%first) - 1
    end function tables
 
    !> Secant modulus of a tooth; the floor after the last, the initial modulus without a table [Pa]
-   pure function modulus_of(self, table, tooth, initial, floor) result(modulus)
-      class(tooth_tables), intent(in) :: self
+   pure function modulus_of(teeth, table, tooth, initial, floor) result(modulus)
+      class(tooth_tables), intent(in) :: teeth
       integer(c_int), intent(in) :: table     !! 0: none
       integer(c_int), intent(in) :: tooth     !! from 1
       real(wp), intent(in) :: initial         !! [Pa]
@@ -91,24 +91,24 @@ contains
       real(wp) :: modulus
       modulus = initial
       if (table == 0 .or. tooth == 1) return
-      if (self%first(table) + tooth - 1 < self%first(table + 1)) then
-         modulus = self%modulus(self%first(table) + tooth - 1)
+      if (teeth%first(table) + tooth - 1 < teeth%first(table + 1)) then
+         modulus = teeth%modulus(teeth%first(table) + tooth - 1)
       else
          modulus = floor * initial
       end if
    end function modulus_of
 
    !> Strength of a tooth times `share`, huge after the last and without a table [Pa]
-   pure function strength_of(self, table, tooth, share) result(strength)
-      class(tooth_tables), intent(in) :: self
+   pure function strength_of(teeth, table, tooth, share) result(strength)
+      class(tooth_tables), intent(in) :: teeth
       integer(c_int), intent(in) :: table
       integer(c_int), intent(in) :: tooth
       real(wp), intent(in) :: share
       real(wp) :: strength
       strength = huge(1.0_wp)
       if (table == 0) return
-      if (self%first(table) + tooth - 1 < self%first(table + 1)) then
-        strength = share * self%strength(self%first(table) + tooth - 1)
+      if (teeth%first(table) + tooth - 1 < teeth%first(table + 1)) then
+        strength = share * teeth%strength(teeth%first(table) + tooth - 1)
       end if
    end function strength_of
 

@@ -6,7 +6,7 @@ program test_sla
    use sla_events, only : run_events, stop_rules, event_log, log_reals, log_integers
    use sla_group, only : element_group, material_options
    use sla_handle, only : both_directions
-   use sla_model, only : model, model_new, model_add, model_prepare, model_factor, model_loads, model_free
+   use sla_model, only : element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free
    use sla_plane, only : plane_group, plane_group_new
    use sla_sawtooth, only : make_teeth
    use sla_tables, only : tooth_tables, tooth_tables_new
@@ -26,7 +26,7 @@ contains
 
    !> A plate pulled at one side cracks; the energy balance holds after each event
    subroutine wall()
-      type(model) :: made
+      type(element_model) :: model
       type(material_options) :: options
       type(tooth_tables) :: teeth
       type(plane_group), allocatable :: plane
@@ -58,8 +58,8 @@ contains
          end do
       end do
       factor = 1.0_wp
-      call model_new(xy, equation, factor, options, made, status)
-      if (status /= status_ok) error stop 'no model'
+      call model_new(xy, equation, factor, options, model, status)
+      if (status /= status_ok) error stop 'no element_model'
       call tooth_tables_new(reshape([1.0_wp, 7.0e9_wp, 0.3e6_wp, 47.0_wp, 0.17_wp, 0.2_wp, 1.0_wp, 1.0_wp], [8, 1]), &
          teeth, row, status)
       if (status /= status_ok) error stop 'no teeth'
@@ -71,19 +71,19 @@ contains
       if (status /= status_ok) error stop 'no elements'
       call move_alloc(plane, group)
       call both_directions(connect, nodes, directions, status)
-      if (status == status_ok) call model_add(made, group, nodes, directions, status)
-      if (status == status_ok) call model_prepare(made, 0_c_int, huge(1_c_int64_t), status)
-      if (status == status_ok) call model_factor(made, node, direction, ratio, status)
-      if (status == status_ok) call model_loads(made, 0.0_wp * load, load, .false., status)
+      if (status == status_ok) call model_add(model, group, nodes, directions, status)
+      if (status == status_ok) call model_prepare(model, 0_c_int, huge(1_c_int64_t), status)
+      if (status == status_ok) call model_factor(model, node, direction, ratio, status)
+      if (status == status_ok) call model_loads(model, 0.0_wp * load, load, .false., status)
       if (status /= status_ok) error stop 'no factor'
       allocate (log%reals(log_reals, 600), log%integers(log_integers, 600), log%monitors(1, 600))
-      call run_events(made, rules, [1_c_int, 2_c_int], [made%equation(1, size(xy, 2))], [1.0_wp], log, reason, status)
+      call run_events(model, rules, [1_c_int, 2_c_int], [model%equation(1, size(xy, 2))], [1.0_wp], log, reason, status)
       if (status /= status_ok .or. log%count < 100) error stop 'the events stopped too early'
       gap = maxval(abs(log%reals(5, 1:log%count) - log%reals(4, 1:log%count) - log%reals(6, 1:log%count))) &
          / maxval(log%reals(5, 1:log%count))
       print '(a, i0, a, es9.2)', 'energy balance after ', log%count, ' events', gap
       if (.not. gap < 1.0e-10_wp) error stop 'the energy balance does not hold'
-      call model_free(made)
+      call model_free(model)
    end subroutine wall
 
 end program test_sla

@@ -6,15 +6,17 @@ from pathlib import Path
 import motion_files as files
 import numpy as np
 import pytest
+from scipy.optimize import minimize
 from typer.testing import CliRunner
 
 import extrados
+from extrados.analyses.motion.members import Generated
 from extrados.cli import app
 from extrados.core import motion as core
 from extrados.decks.reader import DeckError, make_deck, read_text
 from extrados.motions import processing, pulses
-from extrados.motions.from_deck import make_members, make_motion
-from extrados.motions.impulse import primary_impulses
+from extrados.motions.from_deck import generated_set, make_motion, suite_motions
+from extrados.motions.impulse import _downhill, primary_impulses
 from extrados.motions.shake_table import Table, fit, make_drive
 from extrados.motions.wavelet_pulse import classify
 
@@ -58,6 +60,23 @@ def test_velocity_pulse_is_that_of_the_paper() -> None:
 
 
 # --- primary impulse and classification
+
+
+def test_the_simplex_is_that_of_scipy() -> None:
+    """Bit for bit, on hills with ridges and with a forbidden side, as the search for impulses meets them."""
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        turn, centre = rng.normal(size=(2, 2)), rng.normal(size=2)
+
+        def loss(x: np.ndarray, turn=turn, centre=centre) -> float:
+            y = turn @ (x - centre)
+            return float(y @ y + 0.3 * np.sin(5.0 * y[0]) * np.cos(3.0 * y[1])) if x[0] > -1.0 else 0.0
+
+        corners = rng.normal(size=(3, 2))
+        options = {"initial_simplex": corners, "xatol": 1e-5, "fatol": 1e-9}
+        peer = minimize(loss, corners[0], method="Nelder-Mead", options=options)
+        best, least = _downhill(loss, corners, 1e-5, 1e-9)
+        assert np.array_equal(best, peer.x) and least == peer.fun
 
 
 def test_impulses_of_a_known_sum_are_found() -> None:
@@ -201,12 +220,13 @@ def test_members(tmp_path) -> None:
         {"motion": {"kind": "suite", "folder": ".", "member": 2}, "analysis": {"kind": "motion"}}, tmp_path
     )
     assert make_motion(deck.motion, tmp_path).name == "b"
-    assert [m.name for m in make_members(deck.motion, tmp_path, 99)] == ["a", "b"]
+    assert [m.name for m in suite_motions(deck.motion, tmp_path)] == ["a", "b"]
     deck = make_deck(
         {"motion": {"kind": "generated", "mmi": 7, "duration": 3.0, "member": 4}, "analysis": {"kind": "motion"}}
     )
-    members = list(make_members(deck.motion, tmp_path, 5))
-    assert np.array_equal(members[3].ground.samples, make_motion(deck.motion, tmp_path).ground.samples)
+    (member,) = Generated(generated_set(deck.motion, tmp_path)).motions(3, 1, 1)
+    assert member.name == make_motion(deck.motion, tmp_path).name == "generated motion 4"
+    assert np.array_equal(member.ground.samples, make_motion(deck.motion, tmp_path).ground.samples)
 
 
 def test_exported_record_is_the_motion(tmp_path) -> None:
@@ -252,7 +272,7 @@ def test_wrong_decks(deck, words) -> None:
         ({"kind": "suite", "files": ["r.at2"], "member": 2}, "holds 1 records"),
         ({"kind": "generated", "mmi": 11, "duration": 3.0}, "expected 4 to 9"),
         ({"kind": "generated", "mmi": 6, "duration": 3.0, "spectrum": "../s.csv"}, "out of the deck's folder"),
-        ({"kind": "compatible", "code": "table", "table": "t.csv"}, "cannot be read"),
+        ({"kind": "compatible", "code": "table", "table": "t.csv"}, "no such file"),
         ({"kind": "record", "file": "r.at2", "high_cut": 500.0}, "half the sampling rate"),
     ],
 )

@@ -82,6 +82,14 @@ vary_damping = [0.5, 2.0]
 vary_friction = [0.5]
 find_friction = true
 """,
+    "dem, one run": BLOCK
+    + PULSE
+    + """
+[[analysis]]
+kind = "dem"
+end_time = 0.6
+time_step = 1e-5
+""",
     "dem tilt": BLOCK
     + """
 [[analysis]]
@@ -113,6 +121,57 @@ start = 1.2
 stop = 2.0
 count = 30
 """,
+    "sweep, its changes and optimum": ARCH
+    + """
+[[analysis]]
+kind = "sweep"
+vary = "embrace"
+start = 100
+stop = 180
+count = 4
+""",
+    "assessment": ARCH
+    + """
+[motion]
+kind = "sine-pulse"
+amplitude = "0.5 g"
+period = 0.8
+[[analysis]]
+kind = "assessment"
+impulses = 1
+""",
+    "failure-domain at amplitudes": ARCH
+    + """
+[[analysis]]
+kind = "failure-domain"
+durations = [0.6, 1.2]
+amplitudes = 4
+at_amplitudes = ["0.6 g", "0.8 g", "1.0 g"]
+accuracy = 0.01
+""",
+    "compatible motions": """
+[motion]
+kind = "compatible"
+code = "EN1998-1"
+ground = "A"
+acceleration = "0.2 g"
+duration = 10.0
+shortest = 0.1
+longest = 0.5
+tolerance = 0.2
+[[analysis]]
+kind = "motion"
+count = 3
+""",
+    "generated motions": """
+[motion]
+kind = "generated"
+mmi = 6
+duration = 3.0
+[[analysis]]
+kind = "motion"
+count = 200
+""",
     "survey": ARCH
     + """
 [[analysis]]
@@ -130,7 +189,9 @@ SURVEY = "name,thickness\n" + "".join(f"arch {k},{1.2 + 0.02 * k:.2f}\n" for k i
 #: Ends itself without a word when it has kept so many batches
 KILLED = """
 import os, signal, sys
+from extrados.analyses.dem import runs
 from extrados.results.checkpoint import Checkpoint
+runs.KEEP_SECONDS = 0.0
 real, left = Checkpoint.keep, [int(sys.argv[1])]
 def keep(self, *args):
     path = real(self, *args)
@@ -143,6 +204,14 @@ from extrados.cli import main
 sys.argv = ["extrados", *sys.argv[2:]]
 main()
 """
+#: Batches after which a run is killed, where two are too few to come to what is tried: the second curve, the last
+#: searches of a sweep, the shortest durations after the rounds of the map
+KEEPS = {
+    "sla, one curve of each sense": 3,
+    "sweep, its changes and optimum": 3,
+    "failure-domain at amplitudes": 5,
+    "generated motions": 4,
+}
 MEASURED = ("seconds_per_event", "sections_per_second")
 
 
@@ -194,7 +263,7 @@ def run(deck: Path, out: Path, **context) -> None:
 @pytest.mark.parametrize("kind", DECKS)
 def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     deck, one, two = written(kind, tmp_path), tmp_path / "a", tmp_path / "b"
-    keeps = 3 if kind.startswith("sla, one") else 2  # of that wall: in its second curve
+    keeps = KEEPS.get(kind, 2)
     words = ["run", str(deck), "--no-figures", "--quiet", "--threads", "1", "--out", str(one)]
     killed = subprocess.run([sys.executable, "-c", KILLED, str(keeps), *words])
     assert killed.returncode == -signal.SIGKILL and not (one / "summary.json").exists()
@@ -205,7 +274,7 @@ def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     assert not folder_of(one).exists()
 
 
-@pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds"])
+@pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds", "generated motions"])
 def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """After Ctrl-C the finished members are there, and are not computed again."""
     deck = make_deck(tomllib.loads(DECKS[kind]))
@@ -231,6 +300,29 @@ def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.
     (whole,) = run_analyses(Context(deck))
     assert resumed.status == whole.status == "ok" and resumed.answer == whole.answer
     assert kept <= set(folder_of(out).glob("*/*.npz")) and again
+
+
+def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
+    """Its state is kept when it is stopped; the resumed one takes only the steps that were missing."""
+    deck, out = make_deck(tomllib.loads(DECKS["dem, one run"])), tmp_path / "run"
+    told: list[float] = []
+
+    def stop(done: float, total: float, text: str) -> None:
+        told.append(done / total)
+        if len(told) == 2:
+            calls._ask()
+
+    (found,) = run_analyses(Context(deck, out=out, progress=stop))
+    assert found.status == "interrupted" and "--resume goes on from here" in found.reason
+    assert 0.0 < told[0] < told[1] < 1.0
+    again: list[float] = []
+    context = Context(deck, out=out, resume=True, progress=lambda done, total, text: again.append(done / total))
+    (resumed,) = run_analyses(context)
+    (whole,) = run_analyses(Context(deck))
+    assert min(again) > told[1] and resumed.status == whole.status == "ok"
+    assert resumed.results == whole.results
+    for name, array in whole.arrays.items():
+        np.testing.assert_array_equal(resumed.arrays[name].data, array.data)
 
 
 def test_ctrl_c_between_two_rounds_counts(monkeypatch: pytest.MonkeyPatch) -> None:

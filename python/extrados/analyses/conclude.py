@@ -3,6 +3,7 @@
 Apart from the drivers, so that a changed motion or default recomputes no analysis that does not look at it.
 """
 
+import traceback
 from dataclasses import replace
 from functools import cached_property
 
@@ -45,30 +46,44 @@ class MotionDemand:
 
 
 def concluded(result: Result, options: Analysis, context: Context, building: Building) -> Result:
-    """The result with its verdict, its assumptions, and an answer that tells them; as it is where it has no results.
+    """The result with its verdict, its assumptions, and an answer that tells them; one that was refused with the
+    assumptions alone, any other without results as it is.
 
     building: the building as the analysis saw it.
     """
-    verdict = result.results.judged(MotionDemand(context))
+    try:
+        verdict = result.results.judged(MotionDemand(context))
+        if verdict is None and result.status != "refused":
+            return result
+        assumptions = assumptions_of(options, context.deck.building, building)
+    except Exception as error:  # a fault of ours: the other analyses of the deck still count
+        return replace(faulty(result.kind, error), seconds=result.seconds)
     if verdict is None:
-        return result
-    assumptions = assumptions_of(options, context.deck.building, building)
+        return replace(result, assumptions=assumptions)
     answer = f"{result.answer} {spoken(assumptions)}".strip()
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
 
 
+def faulty(kind: str, error: Exception) -> Result:
+    """What an analysis gives instead of a result where the program is at fault: the reason, and a file to report."""
+    name = f"internal-error-{kind}.txt"
+    found = Result(kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}")
+    found.files[name] = "".join(traceback.format_exception(error)).encode()
+    return found
+
+
 def assumptions_of(options: Analysis, deck: Building, building: Building) -> dict[str, Assumption]:
-    """Key -> assumption for all `uses` of the analysis, but for a key that it varies itself.
+    """Key -> assumption for all that the analysis rests on, but for a key that it varies itself.
 
     deck: the building as the deck's own tables say it; building: as the analysis sees it.
     """
     found = {}
-    for key in options.uses:
+    for key, fixed in options.rests_on(building).items():
         if key == getattr(options, "vary", None):
             continue
         table, name = key.split(".")
-        if key in options.method:
-            found[key] = Assumption(value=options.method[key], unit="", origin="method", exceptions=False)
+        if fixed is not None:
+            found[key] = Assumption(value=fixed, unit="", origin="method", exceptions=False)
             continue
         own, override = getattr(building, table), getattr(options, table, None)
         if override is not None and name in override.model_fields_set:

@@ -1,11 +1,10 @@
 """Run the analyses of a deck in order, on one building and one motion."""
 
 import time
-import traceback
 
 from extrados import kinds
 from extrados.analyses.batches import Unfinished
-from extrados.analyses.conclude import concluded
+from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
@@ -28,11 +27,16 @@ def _check(result: Result) -> None:
 def run_analyses(context: Context) -> list[Result]:
     """All analyses of the deck in order; after Ctrl-C the rest is marked interrupted."""
     results: list[Result] = []
+    told: tuple[str, ...] = ()
     for options, building in zip(context.deck.analyses, context.deck.buildings, strict=True):
         if results and results[-1].status == "interrupted":
             results.append(Result(options.kind, "interrupted", "not run: interrupted before"))
-        else:
-            results.append(concluded(run_one(context, options, building), options, context, building))
+            continue
+        result = concluded(run_one(context, options, building), options, context, building)
+        _, notes = building.told()
+        if notes != told:  # what was made of a survey is told once
+            result.warnings, told = [*notes, *result.warnings], notes
+        results.append(result)
     return results
 
 
@@ -55,10 +59,8 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     except (CoreError, NoAnswer) as error:
         result = Result(options.kind, "failed", str(error))
     except Exception as error:  # a fault of ours: the other analyses of the deck still count
-        name = f"internal-error-{options.kind}.txt"
-        result = Result(
-            options.kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}"
-        )
-        result.files[name] = traceback.format_exc().encode()
+        result = faulty(options.kind, error)
+    remarks, _ = building.told()
+    result.warnings = [*remarks, *result.warnings]
     result.seconds = time.perf_counter() - begin
     return result

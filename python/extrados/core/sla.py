@@ -79,7 +79,7 @@ class BadElement(ValueError):
 def teeth(softening: Softening, young: float, band: float) -> tuple[np.ndarray, np.ndarray]:
     """Secant moduli [Pa] and peak stresses [Pa] of the teeth of a crack band `band` [m] wide."""
     s = softening
-    n, modulus, strength, status = _core.api_sla.teeth(
+    n, modulus, strength, status = _core.api_sla_laws.teeth(
         LAWS[s.law], young, s.strength, s.energy, band, s.ripple, int(s.exact), int(s.overshoot), MOST_TEETH
     )
     check(status, f"teeth of a {s.law} law, band {band:g} m (largest {largest_band(s, young):g} m)")
@@ -88,13 +88,13 @@ def teeth(softening: Softening, young: float, band: float) -> tuple[np.ndarray, 
 
 def largest_band(softening: Softening, young: float) -> float:
     """The crack band width beyond which the law snaps back [m]."""
-    return float(_core.api_sla.band(LAWS[softening.law], young, softening.strength, softening.energy))
+    return float(_core.api_sla_laws.band(LAWS[softening.law], young, softening.strength, softening.energy))
 
 
 def intervals(alpha: float, beta: float, a: npt.ArrayLike, b: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """Multipliers lo, hi (n) that keep r <= alpha - beta m under stresses a + lambda b, both (n, 3)."""
     a = real("a", np.transpose(a), (3, None))
-    lo, hi = _core.api_sla.intervals(alpha, beta, a, real("b", np.transpose(b), (3, a.shape[1])))
+    lo, hi = _core.api_sla_laws.intervals(alpha, beta, a, real("b", np.transpose(b), (3, a.shape[1])))
     return lo, hi
 
 
@@ -104,7 +104,7 @@ def body_force(
     """Consistent nodal forces (nodes, 2) [N] of a force per wall area (elements, 2) [N/m^2]."""
     place = real("xy", np.transpose(xy), (2, None))
     nodes = indices("connect", np.transpose(connect), place.shape[1], (ELEMENTS[kind], None))
-    force, bad, status = _core.api_sla.body_force(
+    force, bad, status = _core.api_sla_model.body_force(
         ELEMENTS[kind], *points, place, nodes, real("density", np.transpose(density), (2, nodes.shape[1]))
     )
     if bad:
@@ -155,7 +155,7 @@ class Model(Owner):
         equations = int(equation.max(initial=-1)) + 1
         if equations > 2 * self.nodes:
             raise IndexError(f"a freedom belongs to equation {equations} of {2 * self.nodes} freedoms")
-        handle, status = _core.api_sla.create(
+        handle, status = _core.api_sla_model.create(
             place,
             indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1),
             real("factor", np.transpose(freedoms.factor), (2, self.nodes)),
@@ -170,10 +170,10 @@ class Model(Owner):
             metis = equations > 3000 if ordering is None else ordering == "metis"
             limit = memory_limit() if memory is None else memory
             sizes, status = long_call(
-                _core.api_sla.prepare, self.handle, int(metis), limit // 8, int(algorithm == "refactor"),
+                _core.api_sla_model.prepare, self.handle, int(metis), limit // 8, int(algorithm == "refactor"),
                 thread_count(threads),
             )  # fmt: skip
-            self.equations, self.points, self.nonzeros, self.factor_values = (int(x) for x in sizes)
+            self.equations, self.points, self.factor_values = (int(x) for x in sizes)
             if status == status_code("too_large"):
                 raise MemoryError(
                     f"{self.equations} equations need {self.factor_values * 8 / 2**30:.1f} GiB for the factor, "
@@ -204,7 +204,7 @@ class Model(Owner):
             numbers.append(number)
         if found:
             rows = real("softening", np.transpose(list(found)), (8, None))
-            bad, status = _core.api_sla.tables(self.handle, rows)
+            bad, status = _core.api_sla_model.tables(self.handle, rows)
             if bad:
                 kind, modulus, strength, energy, width = rows[:5, bad - 1]
                 name = next(word for word, number in LAWS.items() if number == int(kind))
@@ -226,7 +226,7 @@ class Model(Owner):
         count = connect.shape[1]
         young, tension, compression = self._tables(count, group)
         if isinstance(group, Bars):
-            bad, status = _core.api_sla.bars(
+            bad, status = _core.api_sla_model.bars(
                 self.handle, connect, _rows(_each("area", group.area, count), young), _rows(tension, compression)
             )
             what = "bar"
@@ -237,7 +237,7 @@ class Model(Owner):
                 _each("thickness", group.thickness, count), young, _each("nu", group.nu, count),
                 _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
             )  # fmt: skip
-            bad, status = _core.api_sla.plane(
+            bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
                 properties, _rows(tension, compression, (1 + int(group.joint)) * given.astype(np.int32)),
             )  # fmt: skip
@@ -253,7 +253,7 @@ class Model(Owner):
         ground = np.asarray(group.node) == -1  # the ground is the core's node 0
         node = indices("node of a spring", np.asarray(group.node).T + 1, self.nodes + 1, (2, count)) - np.int32(1)
         direction = np.where(ground, 0, np.asarray(group.direction))
-        status = _core.api_sla.springs(
+        status = _core.api_sla_model.springs(
             self.handle, node, indices("direction of a spring", direction.T, 2, (2, count)),
             real("stiffness", group.stiffness, (count,)),
         )  # fmt: skip
@@ -261,7 +261,7 @@ class Model(Owner):
 
     def factorise(self) -> float:
         """Factor of the present damage; returns the smallest over the largest pivot."""
-        node, direction, ratio, status = long_call(_core.api_sla.factorise, self.handle)
+        node, direction, ratio, status = long_call(_core.api_sla_model.factorise, self.handle)
         if status == status_code("not_positive_definite"):
             raise FreeNode(int(node) - 1, "xy"[max(int(direction) - 1, 0)], float(ratio))
         check(status, "factor of the stiffness matrix")

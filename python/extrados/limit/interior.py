@@ -18,7 +18,7 @@ from extrados.limit.systems import Sparse
 GAP = 1e-9  # of the work of the load: where the iteration may end
 RESIDUAL = 1e-8  # a hundredth of it of the total load, and of the fastest motion
 ROUNDS = 150
-PATIENCE = 25  # rounds without a better state
+PATIENCE, POLISH = 25, 8  # rounds without a better state, before and after the gap is closed
 FLOOR = 0.2  # of GAP
 TOWARDS_EDGE = 0.9995  # of the way to the nearest bound
 CORRECTIONS = 3  # of the centring, each a solve with the factor of the step
@@ -122,7 +122,7 @@ class CollapseProblem:
                 since += 1
                 if misfit < least:
                     best, least, since = point, misfit, 0
-                if misfit < RESIDUAL or since > PATIENCE:
+                if misfit < RESIDUAL or since > (PATIENCE if point.gap > GAP else POLISH):
                     break
                 try:
                     point = self._stepped(point, rest, friction, dilatancy)

@@ -43,9 +43,10 @@ def make_motion(model: Model, folder: Path) -> Motion:
                 raise RecordError(f"member is {model.member}, but the suite holds {len(members)} records")
             return suite_motion(model, members[model.member - 1], folder)
         case models.Generated():
-            return _numbered("generated", generated_set(model, folder).ground(model.member - 1), model.member)
+            made = generated_set(model, folder)
+            return generated_motion(made, model.member - 1, made.motion(model.member - 1))
         case models.Compatible():
-            return _compatible(compatible_set(model, folder), model.member - 1)
+            return compatible_motion(model, folder, model.member - 1)
     raise TypeError(f"no motion for {type(model).__name__}")
 
 
@@ -54,28 +55,13 @@ def is_set(model: Model) -> bool:
     return isinstance(model, Sets)
 
 
-def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion | RecordError]:
-    """All records of a suite, the first `count` motions of a generated or compatible set, or the one motion.
-
-    A record of a suite that cannot be read comes as its error: the others go on.
-    """
-    match model:
-        case models.Suite():
-            for member in suite_members(model, folder):
-                try:
-                    yield suite_motion(model, member, folder)
-                except RecordError as error:
-                    yield error
-        case models.Generated():
-            made = generated_set(model, folder)
-            for first, batch in made.batches(count):
-                for k, row in enumerate(batch, start=first):
-                    yield _numbered("generated", Ground(samples=row[None, :], step=made.step), k + 1)
-        case models.Compatible():
-            for k in range(count):
-                yield _compatible(compatible_set(model, folder), k)
-        case _:
-            yield make_motion(model, folder)
+def suite_motions(model: models.Suite, folder: Path) -> Iterator[Motion | RecordError]:
+    """All records of a suite; one that cannot be read comes as its error, and the others go on."""
+    for member in suite_members(model, folder):
+        try:
+            yield suite_motion(model, member, folder)
+        except RecordError as error:
+            yield error
 
 
 def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
@@ -103,10 +89,8 @@ def generated_set(model: models.Generated, folder: Path, seed: int | None = None
     keys = model.model_dump(exclude={"kind", "member", "time_step"})
     if seed is not None:
         keys["seed"] = seed
-    if model.spectrum != "boore-worden":
-        keys["spectrum"] = str(records.locate(model.spectrum, folder))
     try:
-        return generated(**keys, step=model.time_step)
+        return generated(**keys, step=model.time_step, folder=folder)
     except ValueError as error:
         raise RecordError(f"[motion] generated: {error}") from None
 
@@ -139,18 +123,27 @@ def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
             )
         case "ASCE7":
             return code_spectra.asce7(model.sds, model.sd1, model.long_period)
-    spectrum = code_spectra.read_table(records.locate(model.table, folder))
+    spectrum = code_spectra.read_table(model.table, folder)
     spectrum(model.longest)  # refuses a table that ends before the band
     return spectrum
 
 
-def _numbered(name: str, ground: Ground, number: int) -> Motion:
-    return Motion(f"{name} motion {number}", ground)
+def generated_motion(made: GeneratedSet, k: int, acceleration: np.ndarray) -> Motion:
+    """Motion k of a generated set, whose samples (points) [m/s^2] are at hand."""
+    return Motion(numbered("generated", k), Ground(samples=acceleration[None, :], step=made.step))
 
 
-def _compatible(made: CompatibleSet, k: int) -> Motion:
+def numbered(kind: str, k: int) -> str:
+    """What motion k of a generated or compatible set is called; users count from 1."""
+    return f"{kind} motion {k + 1}"
+
+
+def compatible_motion(model: models.Compatible, folder: Path, k: int, acceleration: np.ndarray | None = None) -> Motion:
+    """Motion k of a compatible set; `acceleration` [m/s^2] where it was matched before. RecordError where it cannot be."""
     try:
-        return _numbered("compatible", made.ground(k), k + 1)
+        if acceleration is not None:
+            return Motion(numbered("compatible", k), Ground(samples=acceleration[None, :], step=model.time_step))
+        return Motion(numbered("compatible", k), compatible_set(model, folder).ground(k))
     except (NotMatched, ValueError) as error:
         raise RecordError(f"[motion] compatible: {error}") from None
 
@@ -160,20 +153,20 @@ def _treatment(model: models.Treated) -> records.Treatment:
 
 
 def _record(model: models.Components, treatment: records.Treatment, folder: Path) -> Motion:
-    path = records.locate(model.file, folder)
-    seen = {(path, model.channel)}
+    seen = {(records.locate(model.file, folder), model.channel)}
 
     def component(file: str | None, channel: int | str | None) -> records.Record | None:
         if file is None and channel is None:
             return None
-        place = (path if file is None else records.locate(file, folder), channel)
+        file = model.file if file is None else file
+        place = (records.locate(file, folder), channel)
         if place in seen:
             raise RecordError(f"{place[0]}: is named for two components of one record")
         seen.add(place)
-        return records.read_record(*place)
+        return records.read_record(records.read_file(file, folder), channel)
 
     return records.record_motion(
-        records.read_record(path, model.channel),
+        records.read_record(records.read_file(model.file, folder), model.channel),
         treatment,
         second=component(model.second, model.second_channel),
         angle=model.angle or 0.0,

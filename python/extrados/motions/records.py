@@ -10,6 +10,7 @@ from extrados.motions import processing
 from extrados.motions.directions import rotated
 from extrados.motions.formats.recognise import read_record as read_record
 from extrados.motions.formats.record import ACCELERATION, QUANTITIES, Record, RecordError
+from extrados.motions.formats.record import read_file as read_file
 from extrados.motions.motion import Motion
 from extrados.schema import files
 from extrados.schema.constants import GRAVITY
@@ -48,22 +49,22 @@ def locate(file: str, folder: Path) -> Path:
     """The file a deck means; RecordError where it cannot be."""
     try:
         return files.locate(file, folder)
-    except files.BadPlace as error:
+    except files.BadFile as error:
         raise RecordError(str(error)) from None
 
 
 def list_suite(names: list[str] | None, pattern: str | None, subfolder: str | None, folder: Path) -> list[Path]:
-    """The files of a suite, sorted where the deck gives a pattern or a folder; all inside the deck's folder."""
+    """The files of a suite, as a deck in `folder` would name them; sorted where it gives a pattern or a folder."""
+    root = folder.resolve()
     if names is not None:
         found = [locate(name, folder) for name in names]
     elif pattern is not None:
         if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
             raise RecordError(f"{pattern}: leads out of the deck's folder")
         try:
-            found = sorted(p for p in folder.glob(pattern) if p.is_file())
+            found = sorted(p for p in root.glob(pattern) if p.is_file())
         except (ValueError, NotImplementedError) as error:
             raise RecordError(f"{pattern}: is no pattern: {error}") from None
-        found = [locate(str(p.relative_to(folder)), folder) for p in found]
     else:
         inside = locate(subfolder or ".", folder)
         if not inside.is_dir():
@@ -73,16 +74,23 @@ def list_suite(names: list[str] | None, pattern: str | None, subfolder: str | No
         raise RecordError(f"{folder}: no records match {pattern or subfolder or names}")
     if len(found) > MOST_RECORDS:
         raise RecordError(f"{folder}: {len(found)} records, a suite has at most {MOST_RECORDS}")
-    return found
+    # told from the deck's folder on, so that the door asks of each whether it lies within
+    return [p.relative_to(root) if p.is_relative_to(root) else p for p in found]
 
 
 def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> tuple[np.ndarray, float, list[str]]:
     """Accelerations (points) [m/s^2] and step [s] before any treatment, units and step resolved."""
     name = source or record.name
     step = treatment.time_step
+    notes = list(record.notes)
     if record.step is not None and step is not None and abs(record.step - step) > 1e-6 * record.step:
-        raise RecordError(f"{name}: the file says a step of {record.step:g} s, the deck {step:g} s; drop time_step")
-    step = record.step if record.step is not None else step
+        # Rounded times tell the step no closer than their rounding spread over the record.
+        if abs(record.step - step) * (len(record.values) - 1) > 1.001 * record.rounded:
+            raise RecordError(f"{name}: the file says a step of {record.step:g} s, the deck {step:g} s; drop time_step")
+        notes = [note for note in notes if "their mean step is taken" not in note]
+        notes.append(f"{record.name}: time_step of the deck is taken, the times of the file are rounded")
+    elif record.step is not None:
+        step = record.step
     if step is None:
         raise RecordError(f"{name}: the file has no time step; give time_step")
     units = QUANTITIES[record.quantity]
@@ -94,7 +102,7 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
         raise RecordError(f'{name}: the file has no unit; give unit = "g", "m/s^2", "cm/s^2" ...')
     if known not in units:
         raise RecordError(f"{name}: '{known}' is no unit of {record.quantity}; expected one of {', '.join(units)}")
-    values, notes = record.values * units[known], list(record.notes)
+    values = record.values * units[known]
     if len(values) < 3:
         raise RecordError(f"{name}: only {len(values)} samples; a record has at least three")
     for _ in range({"acceleration": 0, "velocity": 1, "displacement": 2}[record.quantity]):
@@ -148,6 +156,8 @@ def record_motion(
         Ground(samples=rows * factor, step=step),
         notes,
         None if horizontal is None else horizontal * factor,
+        title=record.title,
+        station=" ".join(part for part in (record.station, record.component) if part),
     )
 
 

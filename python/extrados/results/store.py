@@ -22,6 +22,7 @@ from extrados.results.fields import plain
 from extrados.results.model import Array, Result, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
+from extrados.schema import files
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
@@ -227,8 +228,7 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                 store.attrs["series"] = array.series
                 if array.dims == (title,):
                     store.make_scale(title)
-            sizes = {d: n for a in result.arrays.values() for d, n in zip(a.dims, np.shape(a.data), strict=True)}
-            for dim, size in sizes.items():
+            for dim, size in _sizes(result.arrays).items():
                 if dim not in group:
                     group.create_dataset(dim, data=np.arange(size)).make_scale(dim)
             for title, array in result.arrays.items():
@@ -236,6 +236,11 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                     if dim != title:
                         group[title].dims[axis].attach_scale(group[dim])
     path.write_bytes(image.getbuffer())
+
+
+def _sizes(arrays: dict[str, Array]) -> dict[str, int]:
+    """The length of every axis."""
+    return {dim: size for a in arrays.values() for dim, size in zip(a.dims, np.shape(a.data), strict=True)}
 
 
 class Stored:
@@ -305,12 +310,14 @@ class Stored:
         return there[name].data
 
     def dataset(self, analysis: str) -> Any:
-        """The arrays of an analysis as an xarray.Dataset (xarray must be installed)."""
+        """The arrays of an analysis as an xarray.Dataset (xarray must be installed), with the coordinates that its
+        group in results.h5 has: an array where one is called as the axis, else numbers from 0."""
         import xarray
 
         arrays = self.arrays[analysis]
         return xarray.Dataset(
             {n: (a.dims, a.data, {"units": a.unit, "about": a.about}) for n, a in arrays.items()},
+            coords={dim: np.arange(size) for dim, size in _sizes(arrays).items() if dim not in arrays},
             attrs={"kind": analysis, "extrados": self.summary["extrados"]["version"]},
         )
 
@@ -333,13 +340,14 @@ def read(folder: str | Path) -> Stored:
 
     folder = Path(folder)
     try:
-        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        summary = json.loads(files.read(SUMMARY, None, folder).text())
         _check_shape(summary)
         recorded = summary["files"].get(STORE)
-        if hashlib.sha256((folder / STORE).read_bytes()).hexdigest() != recorded:
+        content = files.read(STORE, None, folder).content
+        if hashlib.sha256(content).hexdigest() != recorded:
             raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
         arrays: dict[str, dict[str, Array]] = {}
-        with h5py.File(folder / STORE, "r") as file:
+        with h5py.File(io.BytesIO(content), "r") as file:
             for name, group in file.items():
                 arrays[name] = {}
                 for title, store in group.items():
@@ -350,7 +358,7 @@ def read(folder: str | Path) -> Stored:
                     arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, lambda: head, summary["analyses"], arrays)
-    except FileNotFoundError as error:
-        raise StoreError(f"{error.filename}: not found; {folder} holds no results of extrados") from None
+    except files.BadFile as error:
+        raise StoreError(f"{error}; {folder} holds no results of extrados") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise StoreError(f"{folder}: results cannot be read: {error}") from None

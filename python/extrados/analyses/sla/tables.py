@@ -1,15 +1,19 @@
 """The deck tables of sequentially linear analysis."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.places import Placed, Range
+from extrados.building.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Force, Length, LineForce, Stress
 from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
 
 
 class Part(Placed):
@@ -84,6 +88,12 @@ class Sla(BuildingAnalysis):
     )  # fmt: skip
     starter_structure: ClassVar = "panel"
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Also, of stones, that their joints do not slide."""
+        found = super().rests_on(building)
+        return {**found, "joints.friction": NO_SLIDING} if building.meshed_by_stones else found
+
     constant: list[Load] | None = key(
         None,
         "loads A, there from the start; default the weight of stones, and of walls whose reference is not given",
@@ -134,7 +144,9 @@ class Sla(BuildingAnalysis):
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the strength; default one element", gt=0)
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
-    resume_from: str | None = key(None, "results folder of an earlier run of the same wall to go on from")
+    resume_from: str | None = key(
+        None, "results folder of an earlier run of the same wall to go on from, inside the deck's folder or absolute"
+    )
     resume_event: int | None = key(None, "go on before this event of that run; default its last", ge=1)
 
     @field_validator("directions")

@@ -1,0 +1,289 @@
+!> Sequentially linear analysis: a model built in steps behind a handle.
+!>
+!> Create, then tables and groups (plane, bars, springs), prepare, factorise; api_sla loads it and runs its events.
+!> Nodes, elements and points are 1-based.
+module api_sla_model
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+   implicit none
+   private
+   public :: body_force, create, tables, plane, bars, springs, prepare, factorise
+
+contains
+
+   !> Nodal forces of a uniform body force in each element
+   subroutine body_force(kind, nx, ny, nodes, xy, per, elements, connect, density, force, bad, status)
+      use common_status, only : status_bad_index
+      use sla_loads, only : distribute
+      integer(c_int), intent(in) :: kind
+      integer(c_int), intent(in) :: nx
+      integer(c_int), intent(in) :: ny
+      integer(c_int), intent(in) :: nodes
+      real(c_double), intent(in) :: xy(2, nodes)               !! [m]
+      integer(c_int), intent(in) :: per                        !! nodes of an element
+      integer(c_int), intent(in) :: elements
+      integer(c_int), intent(in) :: connect(per, elements)     !! 1-based
+      real(c_double), intent(in) :: density(2, elements)       !! force per area of the wall [N/m^2]
+      real(c_double), intent(out) :: force(2, nodes)           !! [N]
+      integer(c_int), intent(out) :: bad                       !! inverted element, 1-based
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      force = 0.0_c_double
+      bad = 0
+      status = status_bad_index
+      if (any(connect < 1) .or. any(connect > nodes)) return
+      call distribute(kind, nx, ny, xy, connect, density, force, bad, status)
+   end subroutine body_force
+
+   !> A model on nodes; equation 0 is held
+   subroutine create(nodes, xy, equation, factor, isotropic, retention, closure, most_changes, floor, handle, status)
+      use common_status, only : status_ok, status_out_of_memory
+      use sla_group, only : material_options
+      use sla_handle, only : model_register
+      use sla_model, only : element_model, model_new
+      integer(c_int), intent(in) :: nodes
+      real(c_double), intent(in) :: xy(2, nodes)          !! [m]
+      integer(c_int), intent(in) :: equation(2, nodes)
+      real(c_double), intent(in) :: factor(2, nodes)
+      integer(c_int), intent(in) :: isotropic             !! 1: one damage for all directions
+      real(c_double), intent(in) :: retention             !! negative: thesis Eq. 4.11
+      integer(c_int), intent(in) :: closure               !! 1: closed cracks regain their stiffness
+      integer(c_int), intent(in) :: most_changes
+      real(c_double), intent(in) :: floor
+      integer(c_int64_t), intent(out) :: handle
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      type(material_options) :: options
+      integer :: info
+      handle = 0
+      allocate (model, stat=info)
+      status = status_out_of_memory
+      if (info /= 0) return
+      options%isotropic = isotropic /= 0
+      options%retention = retention
+      options%closure = closure /= 0
+      options%most_changes = int(most_changes)
+      options%floor = floor
+      call model_new(xy, equation, factor, options, model, status)
+      if (status == status_ok) then
+         call model_register(model, handle, status)
+      else
+         deallocate (model)
+      end if
+   end subroutine create
+
+   !> Tooth tables of the groups that are added next
+   subroutine tables(handle, count, rows, bad, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_new
+      use sla_model, only : element_model
+      use sla_tables, only : tooth_tables_new
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: count
+      real(c_double), intent(in) :: rows(8, count)    !! kind, E, ft, Gf, h, p, exact, overshoot; see teeth
+      integer(c_int), intent(out) :: bad              !! the row that failed, 1-based
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      !f2py threadsafe
+      bad = 0
+      call model_take(handle, stage_new, stage_new, model, status)
+      if (status /= status_ok) return
+      call tooth_tables_new(rows, model%teeth, bad, status)
+      call handle_leave(handle)
+   end subroutine tables
+
+   !> Plane-stress elements of one kind
+   subroutine plane(handle, kind, rule, per, elements, connect, property, choice, bad, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_new
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: kind                      !! list sla_element
+      integer(c_int), intent(in) :: rule(3)                   !! Gauss points each way, 1: selective integration
+      integer(c_int), intent(in) :: per                       !! nodes of an element
+      integer(c_int), intent(in) :: elements
+      integer(c_int), intent(in) :: connect(per, elements)
+      !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
+      !> angle of the only crack normal allowed [rad]
+      real(c_double), intent(in) :: property(5, elements)
+      !> Table of tension teeth, of compression teeth (0 none); 1: the crack normal is given, 2: also the shear is kept
+      integer(c_int), intent(in) :: choice(3, elements)
+      integer(c_int), intent(out) :: bad                      !! inverted element
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      !f2py threadsafe
+      bad = 0
+      call model_take(handle, stage_new, stage_new, model, status)
+      if (status /= status_ok) return
+      call add(status)
+      call handle_leave(handle)
+
+   contains
+
+      subroutine add(fate)
+         use common_status, only : status_bad_index, status_invalid_argument, status_out_of_memory
+         use sla_group, only : element_group
+         use sla_handle, only : both_directions, check_nodes
+         use sla_model, only : model_add
+         use sla_plane, only : plane_group, plane_group_new
+         integer(c_int), intent(out) :: fate
+         type(plane_group), allocatable :: new_plane
+         class(element_group), allocatable :: group
+         integer(c_int), allocatable :: node(:, :), direction(:, :)
+         integer :: info
+         call check_nodes(model, connect, 1_c_int, fate)
+         if (fate /= status_ok) return
+         fate = status_bad_index
+         if (any(choice < 0) .or. any(choice(1:2, :) > model%teeth%tables())) return
+         fate = status_invalid_argument
+         if (per /= kind) return   ! the number of a kind is that of its nodes
+         fate = status_out_of_memory
+         allocate (new_plane, stat=info)
+         if (info /= 0) return
+         call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
+            property(3, :), choice(1, :), choice(2, :), property(4, :), choice(3, :), property(5, :), model%teeth, &
+            model%options, new_plane, bad, fate)
+         if (fate /= status_ok) return
+         call move_alloc(new_plane, group)
+         call both_directions(connect, node, direction, fate)
+         if (fate /= status_ok) return
+         call model_add(model, group, node, direction, fate)
+      end subroutine add
+
+   end subroutine plane
+
+   !> Bars
+   subroutine bars(handle, elements, connect, property, choice, bad, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_new
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: elements
+      integer(c_int), intent(in) :: connect(2, elements)
+      real(c_double), intent(in) :: property(2, elements)     !! area [m^2], Young's modulus [Pa]
+      integer(c_int), intent(in) :: choice(2, elements)       !! table of tension teeth, of compression teeth, 0 none
+      integer(c_int), intent(out) :: bad                      !! bar without length
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      !f2py threadsafe
+      bad = 0
+      call model_take(handle, stage_new, stage_new, model, status)
+      if (status /= status_ok) return
+      call add(status)
+      call handle_leave(handle)
+
+   contains
+
+      subroutine add(fate)
+         use common_status, only : status_bad_index, status_out_of_memory
+         use sla_bar, only : bar_group, bar_group_new
+         use sla_group, only : element_group
+         use sla_handle, only : both_directions, check_nodes
+         use sla_model, only : model_add
+         integer(c_int), intent(out) :: fate
+         type(bar_group), allocatable :: new_bars
+         class(element_group), allocatable :: group
+         integer(c_int), allocatable :: node(:, :), direction(:, :)
+         integer :: info
+         call check_nodes(model, connect, 1_c_int, fate)
+         if (fate /= status_ok) return
+         fate = status_bad_index
+         if (any(choice < 0) .or. any(choice > model%teeth%tables())) return
+         fate = status_out_of_memory
+         allocate (new_bars, stat=info)
+         if (info /= 0) return
+         call bar_group_new(model%xy, connect, property(1, :), property(2, :), choice(1, :), choice(2, :), &
+            model%teeth, model%options, new_bars, bad, fate)
+         if (fate /= status_ok) return
+         call move_alloc(new_bars, group)
+         call both_directions(connect, node, direction, fate)
+         if (fate /= status_ok) return
+         call model_add(model, group, node, direction, fate)
+      end subroutine add
+
+   end subroutine bars
+
+   !> Linear springs between freedoms of two nodes, or of one and the ground (node 0)
+   subroutine springs(handle, elements, node, direction, stiffness, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_out_of_memory
+      use sla_bar, only : spring_group, spring_group_new
+      use sla_group, only : element_group
+      use sla_handle, only : model_take, stage_new
+      use sla_model, only : element_model, model_add
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: elements
+      integer(c_int), intent(in) :: node(2, elements)
+      integer(c_int), intent(in) :: direction(2, elements)    !! 1 x, 2 y
+      real(c_double), intent(in) :: stiffness(elements)       !! [N/m]
+      integer(c_int), intent(out) :: status
+      type(spring_group), allocatable :: new_springs
+      class(element_group), allocatable :: group
+      type(element_model), pointer :: model
+      integer :: info
+      call model_take(handle, stage_new, stage_new, model, status)
+      if (status /= status_ok) return
+      allocate (new_springs, stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info == 0) call spring_group_new(stiffness, new_springs, status)
+      if (status == status_ok) then
+         call move_alloc(new_springs, group)
+         call model_add(model, group, node, direction, status)
+      end if
+      call handle_leave(handle)
+   end subroutine springs
+
+   !> Order and analyse; the sizes are known before the factor is allocated
+   subroutine prepare(handle, ordering, most_values, refactor, threads, sizes, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_new, stage_prepared
+      use sla_model, only : element_model, model_prepare
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: ordering             !! 0 AMD, 1 METIS
+      integer(c_int64_t), intent(in) :: most_values      !! doubles the factor may take
+      integer(c_int), intent(in) :: refactor             !! 1: factorise at each event
+      integer(c_int), intent(in) :: threads
+      integer(c_int64_t), intent(out) :: sizes(3)        !! equations, points, doubles of the factor
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      !f2py threadsafe
+      sizes = 0
+      call model_take(handle, stage_new, stage_new, model, status)
+      if (status /= status_ok) return
+      model%refactor = refactor /= 0
+      model%threads = max(1, int(threads))
+      call model_prepare(model, ordering, most_values, status)
+      sizes(1:2) = [int(model%equations, c_int64_t), int(model%points, c_int64_t)]
+      sizes(3) = model%factor_values
+      if (status == status_ok) model%stage = stage_prepared
+      call handle_leave(handle)
+   end subroutine prepare
+
+   !> Assemble and factorise the present damage
+   subroutine factorise(handle, node, direction, ratio, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_handle, only : model_take, stage_prepared, stage_factored, stage_loaded
+      use sla_model, only : element_model, model_factor
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(out) :: node          !! free to move, 0 none
+      integer(c_int), intent(out) :: direction     !! 1 x, 2 y
+      real(c_double), intent(out) :: ratio         !! smallest over largest pivot
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      !f2py threadsafe
+      node = 0
+      direction = 0
+      ratio = 0.0_c_double
+      call model_take(handle, stage_prepared, stage_loaded, model, status)
+      if (status /= status_ok) return
+      model%stage = stage_prepared
+      call model_factor(model, node, direction, ratio, status)
+      if (status == status_ok) model%stage = stage_factored
+      call handle_leave(handle)
+   end subroutine factorise
+
+end module api_sla_model
