@@ -69,6 +69,12 @@
   ENTRY(2, exponential, "exponential") \
   ENTRY(3, hordijk, "hordijk")
 
+/* How cracked material behaves: fixed orthogonal cracks, cracks that turn with the strain, one damage for all */
+#define EXTRADOS_SLA_CRACKING_LIST(ENTRY) \
+  ENTRY(1, orthotropic, "orthotropic") \
+  ENTRY(2, rotating, "rotating") \
+  ENTRY(3, isotropic, "isotropic")
+
 /* What happens to a point in an event, by direction: n first crack's normal, s across it */
 #define EXTRADOS_SLA_EVENT_LIST(ENTRY) \
   ENTRY(1, tension, "tension n") \
@@ -119,6 +125,7 @@
   LIST(dem_energy, EXTRADOS_DEM_ENERGY_LIST) \
   LIST(sla_element, EXTRADOS_SLA_ELEMENT_LIST) \
   LIST(sla_law, EXTRADOS_SLA_LAW_LIST) \
+  LIST(sla_cracking, EXTRADOS_SLA_CRACKING_LIST) \
   LIST(sla_event, EXTRADOS_SLA_EVENT_LIST) \
   LIST(sla_stop, EXTRADOS_SLA_STOP_LIST) \
   LIST(envelope, EXTRADOS_ENVELOPE_LIST) \

@@ -5,6 +5,7 @@
 !> gets back the vectors by which the stiffness changes. New elements and materials are new groups.
 module sla_group
    use common_kinds, only : wp
+   use common_lists, only : orthotropic => sla_cracking_orthotropic
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -15,7 +16,7 @@ module sla_group
    real(wp), parameter :: unbounded = huge(1.0_wp)
    integer, parameter :: most_entries = 24, most_rank = 4
    !> Rows of a point's report, see plane and bar
-   integer, parameter :: report_rows = 18
+   integer, parameter :: report_rows = 19
 
    !> A limit of the load multiplier and the point that sets it
    type :: bound
@@ -44,7 +45,7 @@ module sla_group
 
    !> How cracked material behaves, the same for the whole model
    type :: material_options
-      logical :: isotropic = .false.       !! one damage for all directions
+      integer(c_int) :: cracking = orthotropic   !! of the list sla_cracking
       real(wp) :: retention = -1.0_wp      !! constant shear retention, negative: thesis Eq. 4.11
       logical :: closure = .false.         !! closed cracks regain their stiffness
       integer :: most_changes = 10         !! openings and closings of a crack before it is left open
@@ -82,8 +83,8 @@ module sla_group
       class(element_group), allocatable :: group
    end type group_holder
 
-   !> Rows of a point's stored damage: cosine, sine, cracked, tension teeth (2), compression teeth (2),
-   !> shut (2), changes (2)
+   !> Rows of a point's stored damage: cosine, sine, cracked (and which crack band, see sla_plane), tension teeth (2),
+   !> compression teeth (2), shut (2), changes (2)
    integer, parameter :: state_rows = 11
 
    abstract interface

@@ -192,12 +192,12 @@ def test_the_residual_is_measured_in_short_runs_too() -> None:
 
 
 def test_going_on_from_a_stored_event() -> None:
-    _, (whole,) = curves(wall(events=260))
+    _, (whole,) = curves(wall(events=260, cracking="orthotropic"))
     event = 140
     damage = damage_before(
         whole.damage_start, whole.damage_end, whole.events.point[: event - 1], whole.events.code[: event - 1]
     )
-    deck = make_deck(wall(events=120))
+    deck = make_deck(wall(events=120, cracking="orthotropic"))
     model = build(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     (rest,) = run_curves(model, deck.analyses[0], 1, lambda *_: None, damage)
     np.testing.assert_allclose(rest.events.load, whole.events.load[event - 1 : event + 119], rtol=1e-9)

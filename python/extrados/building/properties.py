@@ -36,6 +36,10 @@ class Material(Table):
     lateral_reduction: bool = key(
         False, "reduce ft under lateral compression, s1/ft - s2/fc <= 1; needs compressive_strength"
     )
+    confinement: float = key(
+        0.0, "what a lateral pressure adds to the compressive strength, over that pressure; 4.1 for concrete",
+        source="Richart and others (1928)", ge=0, le=10,
+    )  # fmt: skip
 
     @model_validator(mode="after")
     def _complete(self) -> "Material":
@@ -45,6 +49,8 @@ class Material(Table):
             raise ValueError("crushing_energy needs compressive_strength")
         if self.lateral_reduction and self.compressive_strength is None:
             raise ValueError("lateral_reduction needs compressive_strength")
+        if self.confinement and self.crushing_energy is None:
+            raise ValueError("confinement needs compressive_strength and crushing_energy")
         return self
 
 
@@ -52,8 +58,8 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground; the name of a layer of a drawing, those between its '
-        "stones or along its lines",
+        about='names of joints; "ground" means all joints to the ground, "rings" and "backing" those of a bridge; the name '
+        "of a layer of a drawing, those between its stones or along its lines",
         min_length=1,
         max_length=10000,
     )

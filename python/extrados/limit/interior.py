@@ -97,7 +97,7 @@ class CollapseProblem:
         self.system, self.friction, self.sense, self.dilates = system, friction, sense, dilates
         self.crush = np.zeros(len(friction)) if crush is None else crush
         self.crushes = crush is not None
-        self.corner = sparse.csr_array(system.matrix[:, :-1])
+        self.corner = system.corner_matrix
         self.corner_t = sparse.csr_array(self.corner.T)
         self.live = sense * system.matrix[:, [-1]].toarray().ravel()
         self.normal = NormalMatrix(system)

@@ -6,20 +6,28 @@ from functools import cached_property
 import numpy as np
 
 from extrados.building.geometry.assembly import Assembly
+from extrados.limit.fill import Resistance, passive_pressure
 from extrados.schema.constants import GRAVITY
 
 
 @dataclass(frozen=True)
 class Loads:
-    """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block."""
+    """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block; what else pushes
+    where blocks move towards it."""
 
     dead: np.ndarray
     live: np.ndarray
+    resistance: Resistance | None = None
 
     @cached_property
     def scale(self) -> float:
         """The force by which the programmes are scaled [N]."""
         return float(np.abs(self.dead[:, :2]).sum())
+
+    @property
+    def pushes(self) -> int:
+        """How many pushes answer to movement."""
+        return 0 if self.resistance is None else len(self.resistance.block)
 
 
 def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, float]) -> np.ndarray:
@@ -32,7 +40,8 @@ def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, flo
 def tilt_loads(assembly: Assembly, fill_sways: bool = True) -> Loads:
     """Weight at rest; the live load is weight turned to +x, so that gamma is an acceleration in g.
 
-    The fill of the assembly rests on its blocks; where fill_sways it is accelerated with them.
+    The fill of the assembly rests on its blocks; where fill_sways it is accelerated with them. Soil whose passive
+    pressure counts resists.
     """
     x, y = assembly.centroid.T
     weight = assembly.mass * GRAVITY
@@ -45,4 +54,4 @@ def tilt_loads(assembly: Assembly, fill_sways: bool = True) -> Loads:
         dead = dead + np.column_stack([nothing, -weight, -x * weight])
         if fill_sways:
             live = live + np.column_stack([weight, nothing, -y * weight])
-    return Loads(dead, live)
+    return Loads(dead, live, None if assembly.earth is None else passive_pressure(assembly.earth, assembly.depth))

@@ -40,8 +40,12 @@ INNER_REST = 1e-5
 
 # Of the total load: joints pressed by less carry nothing but rounding.
 CARRIES = 1e-7
+# Trials of which pushes act where friction does not dilate
+PUSHED = 20
 # Of a step's gain to that of the step before: more is creeping.
 CREEPS = 0.25
+# Of the load: what bounds of the unknowns may have of it by rounding.
+MADE_UP = 1e-6
 # Of the joints' length: where the search for the most central line may end.
 SETTLED = 1e-9
 
@@ -109,6 +113,10 @@ class LimitAnalysis:
         self._cuts: Constraints | None = None
         self._programme: Programme | None = None
 
+    def crush_as(self, other: "LimitAnalysis") -> None:
+        """Begin with the tangent planes of crushing that another found: the same stones, strength and dead weight."""
+        self._cuts = other._cuts
+
     @staticmethod
     def _rows(joint: np.ndarray, coefficient: tuple[float, float, float]) -> Constraints:
         k = len(joint)
@@ -167,7 +175,8 @@ class LimitAnalysis:
         return cost
 
     def _state(self, solution: Solution, corners: np.ndarray) -> State:
-        return read_state(float(solution.x[self.system.unknowns - 1]), corners, self.loads.scale)
+        x = solution.x
+        return read_state(float(x[self.system.unknowns - 1]), corners, self.loads.scale, x[self.system.shares])
 
     def collapse(self, direction: int = 1) -> tuple[State, Mechanism]:
         """Greatest gamma for the load gamma W to +x (direction 1) or -x (-1), and the mechanism.
@@ -176,13 +185,14 @@ class LimitAnalysis:
         """
         if not self.associated:
             return self._coulomb(direction)
-        wall = isinstance(self.system, Sparse) and self._cone is not None
+        inner = self._cone is not None and not self.loads.pushes
+        wall = isinstance(self.system, Sparse) and inner
         if wall and (found := self._interior(direction)):
             return found
         try:
             return self._by_programme(direction)
         except NoAnswer:
-            found = self._interior(direction) if self._cone is not None and not wall else None
+            found = self._interior(direction) if inner and not wall else None
             if found is None:
                 raise
             return found
@@ -190,9 +200,10 @@ class LimitAnalysis:
     def _by_programme(self, direction: int) -> tuple[State, Mechanism]:
         """Collapse by linear programmes."""
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
-        # Forces at the bound are made up by it, whatever the load is then.
-        bounded = np.abs(solution.x).max() if isinstance(self.system, Reduced) else abs(solution.value)
-        if bounded > 0.99 * BOUND:
+        # Forces at the bound may hold each other, as in stones wedged without sliding; what the bound has of the load it made up.
+        bounded = np.abs(solution.x) > 0.99 * BOUND
+        made_up = float(np.abs(solution.columns * solution.x)[bounded].sum())
+        if bounded[-1] or made_up > MADE_UP * max(1.0, abs(solution.value)):
             raise Immovable("no such load brings it down: the joints hold it from all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
         if isinstance(self.system, Reduced):
@@ -226,6 +237,8 @@ class LimitAnalysis:
         """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""
         if self.strength is None and self.certificate() is not None:
             raise NoEquilibrium("no admissible thrust line")
+        if self.loads.pushes:
+            return self._coulomb_pushed(direction)
         problem = CoulombProblem(self._equations, self._mu, direction, self._crush)
         found = problem.least(self.starts, 0.0)
         if found is None:
@@ -240,6 +253,34 @@ class LimitAnalysis:
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())
         return self._read(found.gamma, found.corners, found.twist, found.motion, taken)
+
+    def _coulomb_pushed(self, direction: int) -> tuple[State, Mechanism]:
+        """The same where pushes answer to movement: whole where blocks move against them, nothing where they move away,
+        and what equilibrium asked for where they rest, found by trying; the start is what they are with dilatancy."""
+        push = self.loads.resistance
+        assert push is not None
+        first, _ = LimitAnalysis(self.assembly, self._mu, strength=self.strength, loads=self.loads).collapse(direction)
+        share = np.asarray(first.mobilised)
+        x, y = self.assembly.centroid[push.block].T
+        for _ in range(PUSHED):
+            dead = self.loads.dead + (push.spread(len(self.loads.dead)) * share).sum(axis=2)
+            limit = LimitAnalysis(
+                self.assembly, self._mu, strength=self.strength, associated=False, loads=Loads(dead, self.loads.live),
+                starts=self.starts,
+            )  # fmt: skip
+            state, mechanism = limit.collapse(direction)
+            u, v, spin = mechanism.velocity[push.block].T
+            work = (push.wrench * np.column_stack([u + spin * y, v - spin * x, spin])).sum(axis=1)
+            fastest = float(np.hypot(*mechanism.velocity[:, :2].T).max())
+            rests = np.abs(work) < INNER_REST * fastest * np.abs(push.wrench[:, 0])
+            follows = np.where(rests, share, np.where(work < 0.0, 1.0, 0.0))
+            if np.abs(follows - share).max() < SETTLED:
+                self.coulomb[direction] = limit.coulomb[direction]
+                return replace(state, mobilised=share), mechanism
+            share = follows
+        raise NoAnswer(
+            'no state without dilatancy was found in which the fill pushes where it is pressed: take friction_rule = "associated"'
+        )
 
     def without_dilatancy_between(self, direction: int) -> tuple[float | None, float | None]:
         """Drucker's bounds (1954) on the collapse load without dilatancy: of joints without friction, and of joints whose
@@ -287,7 +328,7 @@ class LimitAnalysis:
         """The motion of greatest work of `force` + `other`, every twist at most one, that joints take no work from."""
         system = self._equations
         m, n = len(self._joints), system.equations
-        turned = sparse.csr_array(system.matrix[:, :-1].T)
+        turned = sparse.csr_array(system.corner_matrix.T)
         unit = self.loads.scale * np.array([1.0, 1.0, self.assembly.size])
         work = ((force + other) / unit).ravel()
         dilates = sparse.diags_array(np.zeros(m) if mu is None else mu)
@@ -298,21 +339,32 @@ class LimitAnalysis:
             sparse.hstack([turned[2::3], one if mu is not None else none, -one if mu is not None else none]),
         ])  # fmt: skip
         lower, upper = np.zeros(3 * m), np.concatenate([np.full(2 * m, INFINITY), np.zeros(m)])
-        bound = np.concatenate([np.ones(n), np.full(2 * m, INFINITY)])
-        found = linear_programme(
-            rows, lower, upper, np.concatenate([-work, np.zeros(2 * m)]), np.concatenate([-np.ones(n), np.zeros(2 * m)]), bound
-        )  # fmt: skip
+        k = self.loads.pushes
+        if k:  # what a push can take of the work: all of it that the motion does against it
+            pushes = sparse.csr_array(system.matrix[:, system.shares].T)
+            rows = sparse.vstack([
+                sparse.hstack([rows, sparse.csr_array((3 * m, k))]),
+                sparse.hstack([pushes, sparse.csr_array((k, 2 * m)), sparse.eye_array(k)]),
+            ])  # fmt: skip
+            lower, upper = np.append(lower, np.zeros(k)), np.append(upper, np.full(k, INFINITY))
+        bound = np.concatenate([np.ones(n), np.full(2 * m + k, INFINITY)])
+        cost = np.concatenate([-work, np.zeros(2 * m), np.ones(k)])
+        found = linear_programme(rows, lower, upper, cost, np.concatenate([-np.ones(n), np.zeros(2 * m + k)]), bound)
         twist = found.x[:n]
         motion = (turned @ twist).reshape(-1, 3)
         least = motion[:, :2].min(axis=1) - (0.0 if mu is None else mu) * np.abs(motion[:, 2])
         broken = max(0.0, -float(least.min()), 0.0 if mu is not None else float(np.abs(motion[:, 2]).max()))
-        if float(work @ twist) <= max(PROVES, 1e4 * broken):
+        taken = 0.0 if not k else float(np.maximum(-(pushes @ twist), 0.0).sum())
+        if float(work @ twist) - taken <= max(PROVES, 1e4 * broken):
             return None
         return twist.reshape(-1, 3)
 
     def stands(self, gamma: float = 0.0) -> bool:
         """True where an admissible thrust line exists, upright or at a given gamma."""
         try:
+            if self._crush is not None:  # without a cost the tangent planes of crushing would be sought all around
+                most, least = (-d * self.optimise(self._gamma_cost(-d), (-BOUND, BOUND))[0].value for d in (1.0, -1.0))
+                return least <= gamma <= most
             self.optimise(np.zeros(self.system.unknowns), (gamma, gamma))
         except NoEquilibrium:
             return False

@@ -28,11 +28,12 @@ class NoAnswer(RuntimeError):
 
 @dataclass(frozen=True)
 class Solution:
-    """x, the duals of the constraint rows, those of the equations, and the column duals."""
+    """x, the duals of the constraint rows, those of the equations and of the bounds of the columns, and the value."""
 
     x: np.ndarray
     rows: np.ndarray
     equations: np.ndarray
+    columns: np.ndarray
     value: float
 
 
@@ -74,11 +75,13 @@ class Programme:
             start, index, value = whole.indptr.astype(np.int32), whole.indices.astype(np.int32), whole.data
             row_lower = np.concatenate([system.right, lower])
             row_upper = np.concatenate([system.right, np.full(k, INFINITY)])
-        free = np.full(n, BOUND if e == 0 else INFINITY)
+        most = np.full(n, BOUND if e == 0 else INFINITY)
+        least = -most
+        least[system.shares], most[system.shares] = 0.0, 1.0
         basis = self._solver.getBasis()
         passed = self._solver.passModel(
             n, e + k, len(value), int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
-            np.zeros(n), -free, free, row_lower, row_upper, start, index, value,
+            np.zeros(n), least, most, row_lower, row_upper, start, index, value,
             np.zeros(n, dtype=np.int32),
         )  # fmt: skip
         if passed == highspy.HighsStatus.kError:
@@ -98,7 +101,9 @@ class Programme:
         solution = self._solver.getSolution()
         dual = np.array(solution.row_dual)
         e = self.system.equations
-        return Solution(np.array(solution.col_value), dual[e:], dual[:e], self._solver.getObjectiveValue())
+        return Solution(
+            np.array(solution.col_value), dual[e:], dual[:e], np.array(solution.col_dual), self._solver.getObjectiveValue()
+        )  # fmt: skip
 
 
 def _decided(solver: highspy.Highs) -> highspy.HighsModelStatus:

@@ -236,7 +236,7 @@ def _reference_stage(
 
 
 def _state(core_model: core.Model, event: int, load: float) -> State:
-    return State(event, load, core_model.displacement(load), core_model.report(load))
+    return State(event, load, core_model.displacement(load), core_model.report(load), core_model.damage())
 
 
 def _replay(
@@ -259,13 +259,13 @@ def _replay(
 def damage_before(start: np.ndarray, end: np.ndarray, point: np.ndarray, code: np.ndarray) -> np.ndarray:
     """The damage after the events (point, code), from the damage before the first and one after the last.
 
-    Crack directions never change once they are fixed, so they are taken from `end`.
+    For cracks that stay as they are once they are fixed: their directions are taken from `end`.
     """
     damage = start.copy()
     for p, c in zip(point.tolist(), code.tolist(), strict=True):
         k = (c - EVENT["tension"]) % 2  # 0 across the first crack, 1 across the second
         if not damage[2, p]:
-            damage[:2, p], damage[2, p] = end[:2, p], 1.0
+            damage[:3, p] = end[:3, p]
         if c <= EVENT["tension_s"]:
             damage[3 + k, p] += 1.0
         elif c <= EVENT["compression_s"]:

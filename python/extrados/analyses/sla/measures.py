@@ -94,9 +94,9 @@ def tooth_counts(model: SlaModel) -> list[int]:
         if group.tension is not None:
             for k, law in enumerate(group.tension):
                 if law is not None and (meshed.dry is None or not meshed.dry[k]):
-                    band = float(group.band[k])
-                    low, high = laws.get((law, float(group.young[k])), (band, band))
-                    laws[law, float(group.young[k])] = (min(low, band), max(high, band))
+                    narrow, wide = (group.band[k], group.band[k]) if group.reach is None else group.reach[k]
+                    low, high = laws.get((law, float(group.young[k])), (np.inf, 0.0))
+                    laws[law, float(group.young[k])] = (min(low, float(narrow)), max(high, float(wide)))
     counts = [len(teeth(law, young, h)[0]) for (law, young), ends in list(laws.items())[:50] for h in ends]
     return [min(counts), max(counts)] if counts else [0, 0]
 
@@ -109,7 +109,7 @@ def joint_openings(result: Result, model: SlaModel, curve: Curve) -> list[str]:
     groups = zip(model.mesh.groups, points_of_groups(model, len(model.point_xy)), strict=True)
     joint_of, rows = next((group.joint, points) for group, points in groups if group.joint is not None)
     joint = np.repeat(joint_of, len(rows) // len(joint_of))
-    width = point_fields(model, state, result.arrays["point_band"].data)["width_n"][rows]
+    width = point_fields(model, state)["width_n"][rows]
     area = state.report["volume"][rows]
     count = len(model.mesh.joint_names)
     share = np.bincount(joint, np.where(width > 0.0, area, 0.0), count) / np.bincount(joint, area, count)

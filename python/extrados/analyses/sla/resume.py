@@ -56,12 +56,26 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
                 int(get["event_point"][event - 1]),
                 totals,
             )
-        damage = damage_before(
-            get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
-        )
-        return damage, earlier
+        return _damage_at(event, get, stored["sla"].get("cracking")), earlier
     except (StoreError, BadFile, KeyError) as error:
         raise Refused(f"resume_from: {error}") from None
+
+
+def _damage_at(event: int, get: dict[str, np.ndarray], cracking: str | None) -> np.ndarray:
+    """The damage before an event: kept at the last one and at those of a state, else found by the events that were."""
+    kept = get["state_event"].tolist() if "state_event" in get else []
+    if event in kept:
+        return get["state_damage"][kept.index(event)].T
+    if event == len(get["event_point"]):
+        return get["damage_end"].T
+    if cracking == "rotating":
+        raise Refused(
+            f"resume_event: the damage before event {event} was not kept, and cracks that turn leave no trace of it; kept "
+            f"were events {', '.join(str(e) for e in kept)}: name others in states of that run"
+        )
+    return damage_before(
+        get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
+    )
 
 
 def carry_on(curve: Curve, earlier: Earlier | None, unit: float) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.earth import passive_left_out
 from extrados.building.geometry.polygons import following, signed_area
 from extrados.building.mesh.mesh import ElementGroup, Mesh, element_areas
 from extrados.building.mesh.options import LARGEST_MESH, MeshOptions
@@ -125,6 +126,7 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
     return Mesh(
         nodes, groups, [building.material, *materials], size, building.supports.held, selective=options.selective,
         mass=mass, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
+        warnings=passive_left_out(assembly.earth),
     )  # fmt: skip
 
 

@@ -113,7 +113,7 @@ class Panel(Laid, MeshedWall):
             raise NoView("a panel of an outline is no rectangle")
         return self.width, self.height
 
-    def piers(self, density: float) -> Assembly:
+    def pier_assembly(self, density: float) -> Assembly:
         if self.outline:
             raise NoView("the piers of a panel are found between rectangular openings, not in an outline")
         if any(region.material or region.thickness for region in self.regions):
