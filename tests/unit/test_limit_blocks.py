@@ -17,7 +17,9 @@ from extrados.building.geometry.inspection import inspect
 from extrados.building.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, signed_area
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Polygon, assemble, make_blocks
+from extrados.building.templates.brickwork import Bond, make_brickwork
 from extrados.limit.interior import RESIDUAL, CollapseProblem
+from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import Immovable, LimitAnalysis
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -131,6 +133,26 @@ def test_a_stone_in_a_vice_cannot_be_moved() -> None:
     for form in ("reduced", "sparse"):
         with pytest.raises(Immovable, match="no such load"):
             LimitAnalysis(held, form=form).collapse()
+
+
+def test_what_friction_holds_by_force_at_will_cannot_be_moved() -> None:
+    """Pressed between two walls that are ground, it bears any lift: the load is that of the bound, and not told."""
+    ground = np.array([[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 1.0, 1.0]])
+    held = make_blocks([square("held", 0, 0)], ground)
+    loads = tilt_loads(held)
+    lifted = Loads(loads.dead, -loads.dead)
+    with pytest.raises(Immovable, match="no such load"):
+        LimitAnalysis(held, 0.1, loads=lifted, form="reduced").collapse()
+
+
+def test_stones_wedged_without_sliding_have_a_capacity() -> None:
+    """Their forces on each other are at will and reach the bound; the load does not come from there."""
+    section = make_brickwork(Bond(0.3, 0.1, "half"), 0.9, 0.5)
+    for direction in (1, -1):
+        state, mechanism = LimitAnalysis(section, form="reduced").collapse(direction)
+        sparse, _ = LimitAnalysis(section, form="sparse").collapse(direction)
+        assert abs(state.gamma - mechanism.upper_bound) < 1e-8
+        assert state.gamma == pytest.approx(sparse.gamma, rel=1e-7)
 
 
 def test_contacts_of_many_stones() -> None:
