@@ -526,3 +526,26 @@ def test_a_sweep_reaches_into_fill_and_spans() -> None:
         "a number from 0 to 0 in place of '1'"
         in run({"kind": "sweep", "vary": "spans.1.rise", "values": [1.0, 2.0]}).reason
     )
+
+
+def test_pushes_go_with_sliding_that_does_not_dilate() -> None:
+    a = bridge(fill=FILL, backing={"height": 1.0})
+    loads = tilt_loads(a)
+    loads = Loads(loads.dead, under_load(a.earth, len(a.mass), 2.0, 1e5, 0.3), loads.resistance)
+    dilating, _ = LimitAnalysis(a, 0.5, loads=loads).collapse(1)
+    state, mechanism = LimitAnalysis(a, 0.5, loads=loads, associated=False).collapse(1)
+    assert 0.5 * dilating.gamma < state.gamma <= dilating.gamma * (1.0 + 1e-6)
+    push = loads.resistance
+    x, y = a.centroid[push.block].T
+    u, v, spin = mechanism.velocity[push.block].T
+    work = (push.wrench * np.column_stack([u + spin * y, v - spin * x, spin])).sum(axis=1)
+    moves = np.abs(work) > 1e-3 * np.abs(work).max()
+    assert state.mobilised[moves] == pytest.approx(np.where(work[moves] < 0.0, 1.0, 0.0), abs=1e-6)
+    force = loads.dead + state.gamma * loads.live + (push.spread(len(a.mass)) * state.mobilised).sum(axis=2)
+    joint = state.force(a)
+    at = state.points(a)
+    wrench = np.column_stack([joint, at[:, 0] * joint[:, 1] - at[:, 1] * joint[:, 0]])
+    for ends, sign in ((a.a, 1.0), (a.b, -1.0)):
+        held = ends != GROUND
+        np.add.at(force, ends[held], sign * wrench[held])
+    assert np.abs(force).max() < 1e-6 * loads.scale

@@ -17,7 +17,9 @@ from extrados.building.geometry.inspection import inspect
 from extrados.building.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, signed_area
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Polygon, assemble, make_blocks
-from extrados.limit.interior import collapse_load
+from extrados.building.templates.brickwork import Bond, make_brickwork
+from extrados.limit.interior import RESIDUAL, CollapseProblem
+from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import Immovable, LimitAnalysis
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -106,14 +108,17 @@ def test_interior_point_method_on_a_wall(friction: float) -> None:
     """Against HiGHS on the reduced form: capacity, bounds both ways, laws of the joints, work of the mechanism."""
     section = make_blocks(wall(10, 6), None)
     exact, _ = LimitAnalysis(section, friction, form="reduced").collapse()
-    inner = collapse_load(LimitAnalysis(section, friction, form="sparse").system, np.full(len(section.a), friction), 1)
-    assert inner is not None and inner.gamma == pytest.approx(exact.gamma, abs=2e-9)
-    assert inner.corners[:, :2].min() > 0.0
-    assert (np.abs(inner.corners[:, 2]) <= friction * inner.corners[:, :2].sum(axis=1)).all()
     system = LimitAnalysis(section, friction, form="sparse").system
-    assert system.matrix @ np.append(inner.corners.ravel(), inner.gamma) == pytest.approx(system.right, abs=3e-8)
+    problem = CollapseProblem(system, np.full(len(section.a), friction), 1, dilates=True)
+    inner, misfit = problem.state()
+    assert misfit < 10.0 * RESIDUAL and inner.gamma == pytest.approx(exact.gamma, abs=5e-9)
+    assert problem.residuals(inner.gamma, inner.corners, inner.u).worst < 1e-6
+    assert inner.n.min() > 0.0
+    assert (np.abs(inner.s) <= friction * inner.n.sum(axis=1)).all()
+    assert system.matrix @ np.append(inner.corners.ravel(), inner.gamma) == pytest.approx(system.right, abs=1e-9)
     # Openings dilate at least as much as they slide: the flow rule of the bound.
-    assert (inner.motion[:, :2].min(axis=1) >= friction * np.abs(inner.motion[:, 2]) - 1e-9).all()
+    motion = problem.motion(inner.u)
+    assert (motion[:, :2].min(axis=1) >= friction * np.abs(motion[:, 2]) - 1e-9).all()
     for direction in (1, -1):
         state, mechanism = LimitAnalysis(section, friction, form="sparse").collapse(direction)
         assert abs(state.gamma - mechanism.upper_bound) < 1e-9 and mechanism.defect < 1e-9
@@ -128,6 +133,26 @@ def test_a_stone_in_a_vice_cannot_be_moved() -> None:
     for form in ("reduced", "sparse"):
         with pytest.raises(Immovable, match="no such load"):
             LimitAnalysis(held, form=form).collapse()
+
+
+def test_what_friction_holds_by_force_at_will_cannot_be_moved() -> None:
+    """Pressed between two walls that are ground, it bears any lift: the load is that of the bound, and not told."""
+    ground = np.array([[0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 1.0, 1.0]])
+    held = make_blocks([square("held", 0, 0)], ground)
+    loads = tilt_loads(held)
+    lifted = Loads(loads.dead, -loads.dead)
+    with pytest.raises(Immovable, match="no such load"):
+        LimitAnalysis(held, 0.1, loads=lifted, form="reduced").collapse()
+
+
+def test_stones_wedged_without_sliding_have_a_capacity() -> None:
+    """Their forces on each other are at will and reach the bound; the load does not come from there."""
+    section = make_brickwork(Bond(0.3, 0.1, "half"), 0.9, 0.5)
+    for direction in (1, -1):
+        state, mechanism = LimitAnalysis(section, form="reduced").collapse(direction)
+        sparse, _ = LimitAnalysis(section, form="sparse").collapse(direction)
+        assert abs(state.gamma - mechanism.upper_bound) < 1e-8
+        assert state.gamma == pytest.approx(sparse.gamma, rel=1e-7)
 
 
 def test_contacts_of_many_stones() -> None:

@@ -7,9 +7,9 @@ import pytest
 
 from extrados.analyses.limit.variation import signature
 from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.assembly import GROUND, Assembly, part_of
 from extrados.building.geometry.builder import Builder
-from extrados.building.templates.aisled_vault import Aisle, Flyer, make_church
+from extrados.building.templates.aisled_vault import Added, Aisle, Flyer, make_church
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.vault import make_vault
 from extrados.limit.answer import assess
@@ -277,3 +277,56 @@ def test_support_movement(embrace: float, direction: tuple) -> None:
     assert 0.02 < last.movement / 20.0 < 1.0
     weight = arch.mass.sum() * GRAVITY
     assert abs(states[0].force[1]) < weight
+
+
+def test_buttress_alone() -> None:
+    """Fig. 3-4b: a buttress by itself turns about its toe as one block; the vault's curve lies below and vanishes with it."""
+    ratios = []
+    for height in (10.0, 25.5, 100.0, 400.0):
+        vault = reading_a(5.61, height)
+        buttress = part_of(vault, [vault.buttresses[-1]])
+        gamma = LimitAnalysis(buttress).collapse()[0].gamma
+        toe, (x, y) = np.maximum(buttress.p, buttress.q)[0], buttress.centroid[0]
+        assert gamma == pytest.approx((toe[0] - x) / (y - toe[1]), rel=1e-9)
+        assert gamma == pytest.approx(5.61 / height, rel=5e-3)  # nearly a rectangle
+        whole = LimitAnalysis(vault).collapse()[0].gamma
+        assert whole < gamma
+        ratios.append(whole / gamma)
+    assert ratios == sorted(ratios, reverse=True) and ratios[-1] == pytest.approx(0.4835, abs=5e-4)
+
+
+def colombier(width: float, added: Added | None = None) -> Assembly:
+    """The guessed church whose aisles are as tall as its nave (preset colombier-tall)."""
+    aisle = Aisle(8.9 - 2.075 - 1.05 - width, 0.36, 135.0, 14, 6.0, width)
+    leeward = Aisle(*(getattr(aisle, f) for f in aisle.__dataclass_fields__ if f != "added"), added=added)
+    return make_church(2.3, 0.45, 135.0, 20, 6.1, 1.05, aisle, leeward)
+
+
+def moves(church: Assembly) -> dict[str, str]:
+    return dict(signature(church, LimitAnalysis(church).collapse()[1]))
+
+
+def test_all_three_vaults_of_colombier_move() -> None:
+    """Fig. 3-7, mirrored: 1 the leeward aisle alone; 2b all three vaults, the windward aisle in least thrust, the others
+    between; 3b the same with the leeward aisle in greatest thrust; three times the tilt of the nave alone."""
+    one = moves(colombier(1.1))
+    assert one["right aisle"] == "i-e-i" and "nave" not in one and "left aisle" not in one
+    two, three = moves(colombier(1.7)), moves(colombier(2.6))
+    for found, leeward in ((two, "e-i"), (three, "e-i-e")):
+        assert found["left aisle"] == "i-e-i" and found["nave"] == "e-i" and found["right aisle"] == leeward
+    assert "right buttress base" in two and "right buttress base" not in three
+    alone = tilt(make_church(2.3, 0.45, 135.0, 20, 6.1, 1.05, None, None))
+    best = max(tilt(colombier(width)) for width in np.linspace(2.6, 3.8, 13))
+    assert best / alone == pytest.approx(3.06, abs=0.01)
+    assert best > tilt(colombier(2.0)) and best > tilt(colombier(4.2))
+
+
+def test_added_buttress() -> None:
+    """Fig. 3-8: a buttress added on the leeward side forces mechanism 3b in place of 2b, and the church bears more."""
+    added = Added(1.8, 1.8, 5.4, Flyer(5.4, 4.5, 0.4, 2.6, 5))
+    before, after = colombier(1.7), colombier(1.7, added)
+    assert moves(before)["right aisle"] == "e-i" and moves(after)["right aisle"] == "e-i-e"
+    assert tilt(before) == pytest.approx(8.541, abs=1e-3) and tilt(after) == pytest.approx(9.479, abs=1e-3)
+    back = LimitAnalysis(after).collapse(-1)[0].gamma
+    assert np.degrees(np.arctan(-back)) == pytest.approx(tilt(before), abs=1e-6)  # to the other side it does nothing
+    assert after.block_names[after.buttresses[-1]] == "right added buttress"

@@ -146,7 +146,7 @@ def assess(
     except Immovable:
         raise
     except NoEquilibrium:
-        raise CannotStand(why_not(limit)) from None
+        raise CannotStand(f"{why_not(limit)}; {_proof(limit)}") from None
     ends = {name: pair for name, pair in thrusts.items() if pair is not None}
     moving = sorted({j for j, _ in mechanism.hinges} | set(mechanism.sliding))
     drawn, central = state, None
@@ -165,6 +165,27 @@ def assess(
         {name: pair[0] for name, pair in ends.items()}, {name: pair[1] for name, pair in ends.items()},
         upright, part, tuple(warnings),
     )  # fmt: skip
+
+
+def _proof(limit: LimitAnalysis) -> str:
+    """What proves that nothing can stand upright: a motion by which the loads do work that no joint takes.
+
+    NoAnswer where there is no such motion: that the solver found no state is then no statement about the structure.
+    """
+    motion = limit.certificate()
+    if motion is None and limit.strength is not None:
+        try:
+            upright = [limit.collapse(direction)[1].upper_bound for direction in (1, -1)]
+        except NoEquilibrium:
+            return "proof: planes outside the curves of strength already leave no forces"
+        if upright[0] < 0.0 or upright[1] > 0.0:
+            return "proof: the work of loads and crushing in the mechanism that this load sets in motion"
+    if motion is None:
+        raise NoAnswer("no state was found upright, but no motion proves that there is none")
+    assembly = limit.assembly
+    x, y = (assembly.centroid / assembly.size).T
+    speed = np.hypot(motion[:, 0] - motion[:, 2] * y, motion[:, 1] + motion[:, 2] * x)
+    return f"proof: a motion, fastest at {assembly.block_names[int(speed.argmax())]}, by which the loads do work that no joint takes"
 
 
 def why_not(limit: LimitAnalysis) -> str:

@@ -1,116 +1,300 @@
-"""An interior-point method for the collapse load of walls: many loops, friction, no crushing.
+"""Collapse of joints that press, slide and crush: an interior-point method for the whole complementarity problem.
 
-Mehrotra's predictor and corrector on the friction cones' edges: each joint carries four non-negative forces,
-at either end along either edge of its cone, so that equilibrium (three equations per block) is all that is
-left. The normal equations couple blocks that touch and stay as sparse as the wall; gamma is a free unknown
-beside them. On a wall of a thousand stones this is several times faster than a general programme, whose
-simplex and crossover labour over its many equal answers. Where it does not close the gap, HiGHS is asked.
+Equilibrium of the blocks, the laws of the joints, and a motion that goes with the forces are solved for together:
+ends part only where they do not press (or crush), joints slide only where |s| = mu N. Where sliding dilates by the
+angle of friction this is a linear programme and its dual, and Mehrotra's method with Gondzio's corrections; where it
+does not, the same Newton steps lead to a state, though to one of several. The unknowns of the joints are eliminated
+joint by joint, which leaves three equations per block, as sparse as the wall.
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy import sparse
 
+from extrados.limit.normal import NormalMatrix
 from extrados.limit.systems import Sparse
 
-if TYPE_CHECKING:
-    from scipy.sparse.linalg import SuperLU
-
-GAP = 5e-10  # of gamma: where the iteration may end
-RESIDUAL = 1e-9  # of the total load
-# What is still taken when the factor gives out on the last steps, where some weights are all but infinite.
-LOOSE_GAP, LOOSE_RESIDUAL = 9e-10, 2e-8
-ROUNDS = 90
-SHIFT = 1e-13  # keeps the factor alive where a block hangs by an edge; far below the weights that matter
-SMALLEST = 1e-150  # beyond, quotients overflow: the iteration has lost its way
+GAP = 1e-9  # of the work of the load: where the iteration may end
+RESIDUAL = 1e-8  # a hundredth of it of the total load, and of the fastest motion
+ROUNDS = 150
+PATIENCE, POLISH = 25, 8  # rounds without a better state, before and after the gap is closed
+FLOOR = 0.2  # of GAP
 TOWARDS_EDGE = 0.9995  # of the way to the nearest bound
+CORRECTIONS = 3  # of the centring, each a solve with the factor of the step
+FAR, FURTHER, GAINED = 0.95, 0.3, 0.03  # steps that need none; how much longer they should be, and at least become
+LEAST_FRICTION = 1e-6  # what joints without friction have
+FLAT = 1e-9  # of the strength: so near to half of it the bounds of both ends are one
+SLIGHT = 0.25  # of the strength: joints pressed by less are taken as uncrushed by the formulas of small forces
 
 
 @dataclass(frozen=True)
-class Interior:
-    """gamma, corner forces (joints, 3), multipliers of the equations, and the motion (joints, 3) they stand for."""
+class Residuals:
+    """How far a state is from the laws; forces over the total load, motions over the fastest joint.
 
+    equilibrium; friction, |s| - mu N; tension (or crushing); overlap; complementarity: opening where a joint is
+    pressed, or sliding where friction holds, each as the lesser of force and motion; work: of the load against
+    what weight and friction take, over the former.
+    """
+
+    equilibrium: float
+    friction: float
+    tension: float
+    overlap: float
+    complementarity: float
+    work: float
+
+    @property
+    def worst(self) -> float:
+        return max(
+            self.equilibrium, self.friction, self.tension, self.overlap, self.complementarity, self.work
+        )  # fmt: skip
+
+
+@dataclass
+class Point:
+    """Iterate of the interior-point method, or a step of it.
+
+    n (joints, 2) and s: forces; v, w (joints, 2): how far the ends are from tension (or crushing) and the shear from
+    +-mu N; o, slip (joints, 2): the motions that go with v and w; u: twists; gamma.
+    """
+
+    n: np.ndarray
+    s: np.ndarray
+    v: np.ndarray
+    w: np.ndarray
+    o: np.ndarray
+    slip: np.ndarray
+    u: np.ndarray
     gamma: float
-    corners: np.ndarray
-    twist: np.ndarray
-    motion: np.ndarray
+
+    def moved(self, step: "Point", force: float, motion: float) -> "Point":
+        return Point(
+            self.n + force * step.n, self.s + force * step.s, self.v + force * step.v, self.w + force * step.w,
+            self.o + motion * step.o, self.slip + motion * step.slip, self.u + motion * step.u,
+            self.gamma + force * step.gamma,
+        )  # fmt: skip
+
+    @property
+    def gap(self) -> float:
+        return float((self.v * self.o).sum() + (self.slip * self.w).sum())
+
+    @property
+    def corners(self) -> np.ndarray:
+        return np.column_stack([self.n, self.s])
 
 
-def collapse_load(system: Sparse, friction: np.ndarray, direction: int) -> Interior | None:
-    """Greatest direction * gamma under friction (joints); None where the iteration does not settle."""
-    corner = system.matrix[:, :-1].tocsc()
-    live = system.matrix[:, [-1]].toarray().ravel()
-    normal_p, normal_q, shear = (corner[:, k::3] for k in range(3))
-    sheared = shear @ sparse.diags_array(friction)
-    edges = [normal_p + sheared, normal_p - sheared, normal_q + sheared, normal_q - sheared]
-    a = sparse.csr_array(sparse.hstack(edges))
-    at = sparse.csr_array(a.T)
-    found = _mehrotra(a, at, live, system.right, direction)
-    if found is None:
-        return None
-    x, gamma, y = found
-    pp, pm, qp, qm = x.reshape(4, -1)
-    corners = np.column_stack([pp + pm, qp + qm, friction * (pp - pm + qp - qm)])
-    return Interior(gamma, corners, -y.reshape(-1, 3), -(corner.T @ y).reshape(-1, 3))
+class CollapseProblem:
+    """Forces and motion of an assembly under the load sense * gamma at which it gives way.
+
+    friction (joints). crush (joints), if given: the ends press n_p, n_q >= crush N^2, and crush by the flow of that
+    bound. dilates: sliding opens the joint by the friction it overcomes.
+    """
+
+    def __init__(
+        self, system: Sparse, friction: np.ndarray, sense: int, crush: np.ndarray | None = None, *, dilates: bool
+    ):
+        self.system, self.friction, self.sense, self.dilates = system, friction, sense, dilates
+        self.crush = np.zeros(len(friction)) if crush is None else crush
+        self.crushes = crush is not None
+        self.corner = system.corner_matrix
+        self.corner_t = sparse.csr_array(self.corner.T)
+        self.live = sense * system.matrix[:, [-1]].toarray().ravel()
+        self.normal = NormalMatrix(system)
+        self.joints = len(friction)
+
+    def state(self, scatter: np.random.Generator | None = None) -> tuple[Point, float]:
+        """The best iterate from a start that `scatter` chooses, and how far it is from a state: done below RESIDUAL."""
+        friction = np.maximum(self.friction, LEAST_FRICTION)
+        dilatancy = friction if self.dilates else np.zeros(self.joints)
+        point = self._start(friction, scatter)
+        best, least, since = point, np.inf, 0
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # an iteration that runs away is given up
+            for _ in range(ROUNDS):
+                rest = self._rest(point, friction, dilatancy)
+                misfit = max(
+                    point.gap / max(1.0, abs(point.gamma)) * RESIDUAL / GAP,
+                    100.0 * max(float(np.abs(r).max()) for r in (rest.u, rest.v, rest.w)),
+                    max(float(np.abs(r).max()) for r in (rest.o, rest.s)) / max(1.0, float(np.abs(point.u).max())),
+                )
+                if not np.isfinite(misfit):
+                    break
+                since += 1
+                if misfit < least:
+                    best, least, since = point, misfit, 0
+                if misfit < RESIDUAL or since > (PATIENCE if point.gap > GAP else POLISH):
+                    break
+                try:
+                    point = self._stepped(point, rest, friction, dilatancy)
+                except RuntimeError:  # the factor met an exact zero
+                    break
+        return best, least
+
+    def _start(self, friction: np.ndarray, scatter: np.random.Generator | None) -> Point:
+        m = self.joints
+        n, o, slip = np.full((m, 2), 3.0 / m), np.ones((m, 2)), np.ones((m, 2))
+        if self.crushes:  # inside the bounds
+            n = np.minimum(n, 0.1 / np.maximum(self.crush, 1e-300)[:, None])
+        if scatter is not None:
+            n = n * 10.0 ** scatter.uniform(-1.0, 1.0, (m, 1) if not self.crushes else (1, 1))
+            o, slip = o * 10.0 ** scatter.uniform(-1.0, 1.0, (m, 2)), slip * 10.0 ** scatter.uniform(-1.0, 1.0, (m, 2))
+        normal = n.sum(axis=1)
+        v = np.maximum(n - (self.crush * normal**2)[:, None], 0.1 * n)
+        w = np.repeat((friction * normal)[:, None], 2, axis=1)
+        return Point(n, np.zeros(m), v, w, o, slip, np.zeros(self.system.equations), 0.0)
+
+    def _rest(self, x: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point:
+        """What is left of the equations, each under the name of the unknown it would fix."""
+        normal, motion = x.n.sum(axis=1), self.motion(x.u)
+        bend = 2.0 * self.crush * normal
+        return Point(
+            n=np.empty(0),
+            u=self.system.right - self.corner @ x.corners.ravel() - self.live * x.gamma,
+            v=x.n - (self.crush * normal**2)[:, None] - x.v,
+            w=np.column_stack([friction * normal - x.s, friction * normal + x.s]) - x.w,
+            o=x.o + (dilatancy * x.slip.sum(axis=1) - bend * x.o.sum(axis=1))[:, None] - motion[:, :2],
+            s=x.slip[:, 1] - x.slip[:, 0] - motion[:, 2],
+            slip=np.empty(0),
+            gamma=1.0 - float(self.live @ x.u),
+        )
+
+    def _stepped(self, x: Point, rest: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point:
+        """The next iterate."""
+        stiff = x.slip / x.w
+        both = stiff.sum(axis=1)
+        share = stiff / both[:, None]
+        lean, press = share[:, 0] - share[:, 1], x.o / x.v
+        # What slips both ways at once, which only the iteration knows, opens the joint and stiffens it.
+        between = 4.0 * stiff[:, 0] * share[:, 1]
+        bend = 2.0 * self.crush * x.n.sum(axis=1)
+        curve = 2.0 * self.crush * x.o.sum(axis=1)
+        # Inverse of the joint's law: openings to normal forces, a 2 x 2 without cancellation; slip to shear.
+        t_p, t_q, far, level = press[:, 0], press[:, 1], 1.0 - bend, curve + dilatancy * friction * between
+        det = (1.0 - 2.0 * bend) ** 2 * t_p * t_q + level * (t_p + t_q)
+        give = np.empty((self.joints, 2, 2))
+        give[:, 0, 0] = (far**2 * t_q + bend**2 * t_p + level) / det
+        give[:, 1, 1] = (bend**2 * t_q + far**2 * t_p + level) / det
+        give[:, 0, 1] = give[:, 1, 0] = (bend * far * (t_p + t_q) - level) / det
+        # Of all of it: its columns' sums, (far t_q + bend t_p, bend t_q + far t_p) / det.
+        total = np.column_stack([far * t_q + bend * t_p, bend * t_q + far * t_p]) / det[:, None]
+        spring = np.empty((self.joints, 3, 3))
+        spring[:, :2, :2] = give
+        spring[:, 2, :2] = (friction * lean)[:, None] * total
+        spring[:, :2, 2] = (dilatancy * lean)[:, None] * total
+        spring[:, 2, 2] = 1.0 / both + friction * dilatancy * lean**2 * (t_p + t_q) / det
+        solver = self.normal.factor(spring, symmetric=self.dilates)
+        along = solver.solve(self.live)
+
+        def newton(aim: float, second_v: np.ndarray | float, second_w: np.ndarray | float) -> Point:
+            """Step towards complementarity `aim`, with the products of the predictor taken off."""
+            want_v, want_w = aim - x.v * x.o - second_v, aim - x.w * x.slip - second_w
+            opens, slips = (want_v - x.o * rest.v) / x.v, (want_w - x.slip * rest.w) / x.w
+            free = np.empty((self.joints, 3))
+            free[:, :2] = rest.o + opens + (dilatancy * slips.sum(axis=1) - bend * opens.sum(axis=1))[:, None]
+            free[:, 2] = rest.s + slips[:, 1] - slips[:, 0]
+            part = solver.solve(self.corner @ np.matmul(spring, free[..., None]).ravel() - rest.u)
+            dgamma = (rest.gamma - float(self.live @ part)) / float(self.live @ along)
+            du = part + along * dgamma
+            moved = self.motion(du)
+            left = free - moved
+            shear = left[:, 2] / both
+            driven = left[:, :2] + (dilatancy * lean * left[:, 2])[:, None]
+            dn = np.matmul(give, driven[..., None])[..., 0]
+            dv = dn - (bend * dn.sum(axis=1))[:, None] + rest.v
+            do = (want_v - x.o * dv) / x.v
+            more = friction * (total * driven).sum(axis=1)
+            # (1 - lean) / 2 is the share of the other sense: no differences of nearly equal numbers.
+            dw = np.column_stack([2.0 * more * share[:, 1] - shear, 2.0 * more * share[:, 0] + shear]) + rest.w
+            dslip = slips - 0.5 * (more * between)[:, None]
+            dslip += np.column_stack([stiff[:, 0] * shear, -stiff[:, 1] * shear])
+            # Where an end opens its force is small and its opening known: the better of two equal formulas.
+            opening = (x.v < x.o) & (bend < SLIGHT)[:, None]
+            known = moved[:, :2] - rest.o + (curve * dn.sum(axis=1) - dilatancy * dslip.sum(axis=1))[:, None]
+            do = np.where(opening, self._unbent(known, bend), do)
+            dv = np.where(opening, (want_v - x.v * do) / x.o, dv)
+            dn = np.where((bend < SLIGHT)[:, None], self._unbent(dv - rest.v, bend), dn)
+            return Point(dn, more * lean + shear, dv, dw, do, dslip, du, dgamma)
+
+        mean = x.gap / (4 * self.joints)
+        guess = newton(0.0, 0.0, 0.0)
+        reached = x.moved(guess, *_reaches(x, guess))
+        # Not far below what ends the iteration: the forces must not vanish before the equations are met.
+        aim = max(min(1.0, max(reached.gap, 0.0) / x.gap) ** 3 * mean, FLOOR * GAP / (4 * self.joints))
+        second_v, second_w = guess.v * guess.o, guess.w * guess.slip
+        step = newton(aim, second_v, second_w)
+        reach = _reaches(x, step)
+        for _ in range(CORRECTIONS):
+            if min(reach) >= FAR:
+                break
+            # Gondzio (1996): products that a longer step would carry far from the aim are led back to it.
+            tried = x.moved(step, *(min(1.0, r + FURTHER) for r in reach))
+            more_v, more_w = (
+                second_v - _led_back(tried.v * tried.o, aim),
+                second_w - _led_back(tried.w * tried.slip, aim),
+            )
+            other = newton(aim, more_v, more_w)
+            longer = _reaches(x, other)
+            if sum(longer) < sum(reach) + GAINED:
+                break
+            step, reach, second_v, second_w = other, longer, more_v, more_w
+        force, motion = (1.0 if r >= 1.0 else TOWARDS_EDGE * r for r in reach)
+        if not self.dilates:  # forces and motions bear on each other: they go together
+            force = motion = min(force, motion)
+        return x.moved(step, force, motion)
+
+    @staticmethod
+    def _unbent(value: np.ndarray, bend: np.ndarray) -> np.ndarray:
+        """The (joints, 2) that less `bend` times their sum are `value`."""
+        return value + (bend / np.where(bend < SLIGHT, 1.0 - 2.0 * bend, 1.0) * value.sum(axis=1))[:, None]
+
+    def motion(self, twist: np.ndarray) -> np.ndarray:
+        """Motion (joints, 3) of block a against b: opening at p, at q, slip."""
+        return (self.corner_t @ twist).reshape(-1, 3)
+
+    def residuals(self, gamma: float, corners: np.ndarray, twist: np.ndarray) -> Residuals:
+        """Of a state whose load is sense * gamma."""
+        motion = self.motion(twist)
+        motion = motion / max(float(np.abs(motion).max()), 1e-300)
+        normal, shear = corners[:, :2].sum(axis=1), corners[:, 2]
+        room, opening = corners[:, :2] - (self.crush * normal**2)[:, None], motion[:, :2]
+        slip = motion[:, 2]
+        if self.dilates:
+            opening = opening - (self.friction * np.abs(slip))[:, None]
+        if self.crushes:
+            opening = self._straightened(opening, normal)
+        limit = self.friction * normal
+        held = np.minimum(limit + np.sign(slip) * shear, np.abs(slip))
+        forced, dead = float(gamma * (self.live @ twist)), float(self.system.right @ twist)
+        taken = dead - float((corners * self.motion(twist)).sum())
+        return Residuals(
+            equilibrium=float(np.abs(self.corner @ corners.ravel() + gamma * self.live - self.system.right).max()),
+            friction=max(0.0, float((np.abs(shear) - limit).max())),
+            tension=max(0.0, float(-room.min())),
+            overlap=max(0.0, float(-opening.min())),
+            complementarity=max(0.0, float(held.max()), float(np.minimum(room, np.abs(opening)).max())),
+            work=abs(forced - taken) / max(abs(forced), abs(dead), 1e-300),
+        )
+
+    def _straightened(self, opening: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """Rates of the bounds n - crush N^2 >= 0 from openings: the flow is their gradient."""
+        bend = 2.0 * self.crush * normal
+        turn = opening[:, 0] - opening[:, 1]
+        mean = opening.sum(axis=1) / np.where(np.abs(1.0 - 2.0 * bend) > FLAT, 1.0 - 2.0 * bend, np.inf)
+        mean = np.maximum(mean, np.abs(turn))
+        return 0.5 * np.column_stack([mean + turn, mean - turn])
 
 
-@np.errstate(over="ignore", invalid="ignore")  # an iteration that runs away is seen by its numbers and given up
-def _mehrotra(
-    a: sparse.csr_array, at: sparse.csr_array, live: np.ndarray, right: np.ndarray, direction: int
-) -> tuple[np.ndarray, float, np.ndarray] | None:
-    """Minimise -direction * gamma subject to a x + live gamma = right, x >= 0: x, gamma and the multipliers."""
-    from scipy.sparse.linalg import splu  # takes a tenth of a second to load, and most sections do without
-
-    rows, n = a.shape
-
-    def factor(weight: np.ndarray) -> "SuperLU":
-        matrix = sparse.csc_array(a @ sparse.diags_array(weight) @ at)
-        matrix = matrix + sparse.eye_array(rows, format="csc") * SHIFT
-        return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-
-    x, z, y, gamma = np.full(n, 10.0 / n), np.ones(n), np.zeros(rows), 0.0
-    good = None
-    for _ in range(ROUNDS):
-        primal, dual, free = right - a @ x - live * gamma, -(at @ y) - z, -direction - live @ y
-        gap, residual = abs(-direction * gamma - right @ y) / max(1.0, abs(gamma)), np.abs(primal).max()
-        if gap < GAP and residual < RESIDUAL:
-            return x, gamma, y
-        if gap < LOOSE_GAP and residual < LOOSE_RESIDUAL:
-            good = x, gamma, y
-        if x.min() < SMALLEST or z.min() < SMALLEST:
-            return good
-        try:
-            solver = factor(x / z)
-        except RuntimeError:  # SuperLU met an exact zero
-            return good
-        along = solver.solve(live)
-
-        def newton(
-            complement: np.ndarray,
-            solver: "SuperLU" = solver, along: np.ndarray = along, primal: np.ndarray = primal, dual: np.ndarray = dual,
-            free: np.floating | np.ndarray = free, x: np.ndarray = x, z: np.ndarray = z,
-        ) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:  # fmt: skip
-            part = solver.solve(primal + a @ ((x * dual - complement) / z))
-            dgamma = float((live @ part - free) / (live @ along))
-            dy = part - along * dgamma
-            dz = dual - at @ dy
-            return (complement - x * dz) / z, dy, dz, dgamma
-
-        dx, _, dz, _ = newton(-x * z)
-        reach, reach_dual = _reach(x, dx), _reach(z, dz)
-        mean = x @ z / n
-        aimed = ((x + reach * dx) @ (z + reach_dual * dz) / n / mean) ** 3 * mean
-        dx, dy, dz, dgamma = newton(aimed - x * z - dx * dz)
-        step, step_dual = TOWARDS_EDGE * _reach(x, dx), TOWARDS_EDGE * _reach(z, dz)
-        x, gamma, y, z = x + step * dx, gamma + step * dgamma, y + step_dual * dy, z + step_dual * dz
-        if not (np.isfinite(gamma) and np.isfinite(y).all()):
-            break
-    return good
+def _reaches(x: Point, step: Point) -> tuple[float, float]:
+    """How much of a step keeps the forces, and the motions, from going below zero; at most one."""
+    force = min(1.0, _reach(x.v, step.v), _reach(x.w, step.w))
+    return force, min(1.0, _reach(x.o, step.o), _reach(x.slip, step.slip))
 
 
 def _reach(value: np.ndarray, change: np.ndarray) -> float:
-    """How much of a step keeps all values from going below zero, at most one over the edge factor."""
     falling = change < 0.0
-    return min(1.0, float((-value[falling] / change[falling]).min())) if falling.any() else 1.0
+    return float((-value[falling] / change[falling]).min()) if falling.any() else np.inf
+
+
+def _led_back(product: np.ndarray, aim: float) -> np.ndarray:
+    """What brings products back between a tenth and ten times the aim, large ones no farther than that."""
+    return np.maximum(np.clip(product, 0.1 * aim, 10.0 * aim) - product, -10.0 * aim)

@@ -1,6 +1,6 @@
 """Loads on the blocks of an assembly: weight, fill and point loads at rest, and what the multiplier gamma scales."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -23,9 +23,6 @@ class Loads:
     def scale(self) -> float:
         """The force by which the programmes are scaled [N]."""
         return float(np.abs(self.dead[:, :2]).sum())
-
-    def with_dead(self, extra: np.ndarray) -> "Loads":
-        return replace(self, dead=self.dead + extra)
 
     @property
     def pushes(self) -> int:

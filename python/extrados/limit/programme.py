@@ -1,29 +1,51 @@
 """The questions of limit analysis put to an assembly: collapse, standing, thrust, safety (thesis chapter 3)."""
 
 from dataclasses import replace
+from functools import cached_property
 
 import numpy as np
+from scipy import sparse
 
 from extrados.building.geometry.assembly import Assembly
+from extrados.limit.coulomb import CoulombProblem, CoulombState
 from extrados.limit.equilibrium import spanning_tree
 from extrados.limit.graphic import senses
-from extrados.limit.interior import Interior, collapse_load
+from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
-from extrados.limit.solver import BOUND, Immovable, NoAnswer, NoEquilibrium, Programme, Solution
+from extrados.limit.solver import (
+    BOUND,
+    INFINITY,
+    Immovable,
+    NoAnswer,
+    NoEquilibrium,
+    Programme,
+    Solution,
+    linear_programme,
+)
 from extrados.limit.states import Mechanism, State, read_mechanism, read_state
 from extrados.limit.systems import LOOPS_REDUCED, Constraints, Reduced, Sparse
 
 __all__ = ["Immovable", "LimitAnalysis", "Mechanism", "NoAnswer", "NoEquilibrium", "State"]
 
-# Of the total load: how far crushing and dry friction may be from their laws when iteration ends.
+# Of the total load: how far crushing may be from its law when iteration ends.
 LAW = 1e-9
 ROUNDS = 300
+# Joints of a wall for which a programme would take long: a tenth of the precision is enough there, less for larger ones.
+MANY = 600
+# Of the total load times the size: less work than this proves nothing.
+PROVES = 1e-7
 # Joints that move less than this part of the fastest block are at rest to an interior-point method.
 INNER_REST = 1e-5
 
 
 # Of the total load: joints pressed by less carry nothing but rounding.
 CARRIES = 1e-7
+# Trials of which pushes act where friction does not dilate
+PUSHED = 20
+# Of a step's gain to that of the step before: more is creeping.
+CREEPS = 0.25
+# Of the load: what bounds of the unknowns may have of it by rounding.
+MADE_UP = 1e-6
 # Of the joints' length: where the search for the most central line may end.
 SETTLED = 1e-9
 
@@ -60,16 +82,18 @@ class LimitAnalysis:
         associated: bool = True,
         loads: Loads | None = None,
         form: str | None = None,
+        starts: int = 6,
     ):
         """`friction`: coefficient of all joints, or one each; None forbids sliding.
 
         strength: compressive [Pa], a rectangular stress block; associated: sliding dilates by the friction
-        angle (an upper bound), else it is found by iteration without dilatancy; loads: gravity and the same
-        turned to +x unless given; form: "reduced" or "sparse", by the number of loops unless given.
+        angle (an upper bound), else not, and the collapse load is the least that `starts` starts lead to; loads:
+        gravity and the same turned to +x unless given; form: "reduced" or "sparse", by the number of loops unless given.
         """
         self.assembly = assembly
         self.friction, self.strength = friction, strength
-        self.associated = associated or friction is None
+        self.associated, self.starts = associated or friction is None, starts
+        self.coulomb: dict[int, CoulombState] = {}  # states without dilatancy by the sense of the load, once found
         self.loads = tilt_loads(assembly) if loads is None else loads
         tree = spanning_tree(assembly)
         loops = len(assembly.a) - len(assembly.mass)
@@ -82,7 +106,7 @@ class LimitAnalysis:
         self._cone = None
         if friction is not None:
             self._mu = np.broadcast_to(np.asarray(friction, dtype=float), m)
-            self._cone = self._sliding(self._mu, np.zeros(m))
+            self._cone = self._sliding(self._mu)
         self._crush = (
             None if strength is None else self.loads.scale / (2.0 * strength * assembly.depth * assembly.length)
         )
@@ -98,38 +122,27 @@ class LimitAnalysis:
         k = len(joint)
         return Constraints(joint, np.tile(coefficient, (k, 1)), np.zeros(k))
 
-    def _sliding(self, slope: np.ndarray, reserve: np.ndarray) -> Constraints:
-        """|s| <= slope (n_p + n_q) + reserve."""
+    def _sliding(self, slope: np.ndarray) -> Constraints:
+        """|s| <= slope (n_p + n_q)."""
         one = np.ones(len(slope))
         return Constraints(
             np.tile(self._joints, 2),
             np.concatenate([np.column_stack([slope, slope, -one]), np.column_stack([slope, slope, one])]),
-            -np.tile(reserve, 2),
+            np.zeros(2 * len(slope)),
         )
 
-    def _whole(self, cone: Constraints | None = None) -> Constraints:
+    def _whole(self) -> Constraints:
         whole = self._base
-        for part in (cone if cone is not None else self._cone, self._cuts):
+        for part in (self._cone, self._cuts):
             whole = whole if part is None else whole + part
         return whole
 
     def optimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> tuple[Solution, Constraints, np.ndarray]:
-        """Minimise under all laws of the joints: solution, the rows it obeys, and the scaled corner forces."""
-        if self.associated:
-            return self._crushing(cost, gamma, None)
-        return self._without_dilatancy(cost, gamma)
+        """Minimise over the forces that obey all laws of the joints: solution, its rows, and the scaled corner forces.
 
-    def _own_programme(self) -> Programme:
-        """The programme of the laws themselves, kept: other loads change its costs only."""
-        if self._programme is None:
-            self._programme = Programme(self.system, self._whole())
-        return self._programme
-
-    def _crushing(
-        self, cost: np.ndarray, gamma: tuple[float, float], cone: Constraints | None
-    ) -> tuple[Solution, Constraints, np.ndarray]:
-        """Tangent planes of min(n_p, n_q) >= N^2 / (2 f L), added where the last solution breaks it."""
-        programme = Programme(self.system, self._whole(cone)) if cone is not None else self._own_programme()
+        Whether sliding dilates is no question of forces alone: that bears on `collapse` only.
+        """
+        programme = self._own_programme()
         for _ in range(ROUNDS):
             solution = programme.minimise(cost, gamma)
             corners = self.system.corners(solution.x)
@@ -140,40 +153,21 @@ class LimitAnalysis:
             weak = np.flatnonzero(need - corners[:, :2].min(axis=1) > LAW)
             if not len(weak):
                 return solution, programme.constraints, corners
+            # Tangent planes of min(n_p, n_q) >= N^2 / (2 f L) where the solution breaks it.
             slope, lower = 2.0 * (self._crush * normal)[weak], -need[weak]
             zero = np.zeros(len(weak))
             cuts = Constraints(weak, np.column_stack([1.0 - slope, -slope, zero]), lower) + Constraints(
                 weak, np.column_stack([-slope, 1.0 - slope, zero]), lower
             )
             self._cuts = cuts if self._cuts is None else self._cuts + cuts
-            programme = Programme(self.system, self._whole(cone))
-            if cone is None:
-                self._programme = programme
+            programme = self._programme = Programme(self.system, self._whole())
         raise NoAnswer("the crushing of the joints did not settle")
 
-    def _without_dilatancy(
-        self, cost: np.ndarray, gamma: tuple[float, float]
-    ) -> tuple[Solution, Constraints, np.ndarray]:
-        """Dry friction by iteration after Gilbert, Casapulla and Ahmed (2006).
-
-        Each round holds |s| <= (1 + a) mu N0 - a mu N, whose slope hardly dilates, and moves N0 to the
-        normal forces found; `a` shrinks while the load factor still jumps.
-        """
-        _, _, corners = self._crushing(cost, gamma, self._cone)
-        held = corners[:, 0] + corners[:, 1]
-        dilatancy, last = 0.3, np.inf
-        for _ in range(ROUNDS):
-            cone = self._sliding(-dilatancy * self._mu, (1.0 + dilatancy) * self._mu * held)
-            solution, rows, corners = self._crushing(cost, gamma, cone)
-            normal = corners[:, 0] + corners[:, 1]
-            broken = (np.abs(corners[:, 2]) - self._mu * normal).max()
-            change = abs(solution.value - last)
-            if broken < LAW and change < LAW:
-                return solution, rows, corners
-            if change > 0.1 * abs(solution.value):
-                dilatancy *= 0.7
-            held, last = 0.6 * held + 0.4 * normal, solution.value
-        raise NoAnswer("friction without dilatancy did not settle")
+    def _own_programme(self) -> Programme:
+        """The programme of the laws themselves, kept: other loads change its costs only."""
+        if self._programme is None:
+            self._programme = Programme(self.system, self._whole())
+        return self._programme
 
     def _gamma_cost(self, value: float) -> np.ndarray:
         cost = np.zeros(self.system.unknowns)
@@ -189,13 +183,27 @@ class LimitAnalysis:
 
         gamma is negative where the structure cannot stand upright and needs support from that side.
         """
-        plain = self._crush is None and not self.loads.pushes
-        if isinstance(self.system, Sparse) and self._cone is not None and self.associated and plain:
-            inner = collapse_load(self.system, self._mu, direction)
-            if inner is not None:
-                return self._interior_answer(self.system, inner)
+        if not self.associated:
+            return self._coulomb(direction)
+        inner = self._cone is not None and not self.loads.pushes
+        wall = isinstance(self.system, Sparse) and inner
+        if wall and (found := self._interior(direction)):
+            return found
+        try:
+            return self._by_programme(direction)
+        except NoAnswer:
+            found = self._interior(direction) if inner and not wall else None
+            if found is None:
+                raise
+            return found
+
+    def _by_programme(self, direction: int) -> tuple[State, Mechanism]:
+        """Collapse by linear programmes."""
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
-        if abs(solution.value) > 0.99 * BOUND:
+        # Forces at the bound may hold each other, as in stones wedged without sliding; what the bound has of the load it made up.
+        bounded = np.abs(solution.x) > 0.99 * BOUND
+        made_up = float(np.abs(solution.columns * solution.x)[bounded].sum())
+        if bounded[-1] or made_up > MADE_UP * max(1.0, abs(solution.value)):
             raise Immovable("no such load brings it down: the joints hold it from all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
         if isinstance(self.system, Reduced):
@@ -207,14 +215,149 @@ class LimitAnalysis:
         )
         return self._state(solution, corners), mechanism
 
-    def _interior_answer(self, system: Sparse, inner: Interior) -> tuple[State, Mechanism]:
-        """State and mechanism in the middle of all that are equally good: whatever can move does."""
-        nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
-        twist, defect = system.velocities(inner.motion, -inner.twist.ravel())
-        mechanism = read_mechanism(
-            self.assembly, self.loads, nothing, np.empty(0), inner.motion, twist, defect, at_rest=INNER_REST
+    @cached_property
+    def _equations(self) -> Sparse:
+        """The system with three equations per block."""
+        if isinstance(self.system, Sparse):
+            return self.system
+        return Sparse(self.assembly, self.loads, self.system.tree)
+
+    def _interior(self, direction: int) -> tuple[State, Mechanism] | None:
+        """Collapse by the interior-point method; None where it does not settle."""
+        problem = CollapseProblem(self._equations, self._mu, direction, self._crush, dilates=True)
+        point, misfit = problem.state()
+        if misfit > (RESIDUAL if problem.joints < MANY else 10.0 * RESIDUAL * np.sqrt(problem.joints / MANY)):
+            return None
+        motion = problem.motion(point.u)
+        # No forces the joints bear take more work than these and what is left of the gap (weak duality).
+        taken = point.gap - float((point.corners * motion).sum())
+        return self._read(direction * point.gamma, point.corners, point.u.reshape(-1, 3), motion, taken)
+
+    def _coulomb(self, direction: int) -> tuple[State, Mechanism]:
+        """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""
+        if self.strength is None and self.certificate() is not None:
+            raise NoEquilibrium("no admissible thrust line")
+        if self.loads.pushes:
+            return self._coulomb_pushed(direction)
+        problem = CoulombProblem(self._equations, self._mu, direction, self._crush)
+        found = problem.least(self.starts, 0.0)
+        if found is None:
+            self._refuse_immovable(direction)
+            lower, upper = (
+                "nothing" if g is None else f"{direction * g:.4f}" for g in self.without_dilatancy_between(direction)
+            )
+            raise NoAnswer(
+                f"no state of collapse without dilatancy was found; the load lies between that without friction ({lower}) and "
+                f"that with dilatancy ({upper}); stones that friction alone holds between their neighbours may have none"
+            )
+        self.coulomb[direction] = found
+        taken = -float((found.corners * found.motion).sum())
+        return self._read(found.gamma, found.corners, found.twist, found.motion, taken)
+
+    def _coulomb_pushed(self, direction: int) -> tuple[State, Mechanism]:
+        """The same where pushes answer to movement: whole where blocks move against them, nothing where they move away,
+        and what equilibrium asked for where they rest, found by trying; the start is what they are with dilatancy."""
+        push = self.loads.resistance
+        assert push is not None
+        first, _ = LimitAnalysis(self.assembly, self._mu, strength=self.strength, loads=self.loads).collapse(direction)
+        share = np.asarray(first.mobilised)
+        x, y = self.assembly.centroid[push.block].T
+        for _ in range(PUSHED):
+            dead = self.loads.dead + (push.spread(len(self.loads.dead)) * share).sum(axis=2)
+            limit = LimitAnalysis(
+                self.assembly, self._mu, strength=self.strength, associated=False, loads=Loads(dead, self.loads.live),
+                starts=self.starts,
+            )  # fmt: skip
+            state, mechanism = limit.collapse(direction)
+            u, v, spin = mechanism.velocity[push.block].T
+            work = (push.wrench * np.column_stack([u + spin * y, v - spin * x, spin])).sum(axis=1)
+            fastest = float(np.hypot(*mechanism.velocity[:, :2].T).max())
+            rests = np.abs(work) < INNER_REST * fastest * np.abs(push.wrench[:, 0])
+            follows = np.where(rests, share, np.where(work < 0.0, 1.0, 0.0))
+            if np.abs(follows - share).max() < SETTLED:
+                self.coulomb[direction] = limit.coulomb[direction]
+                return replace(state, mobilised=share), mechanism
+            share = follows
+        raise NoAnswer(
+            'no state without dilatancy was found in which the fill pushes where it is pressed: take friction_rule = "associated"'
         )
-        return read_state(inner.gamma, inner.corners, self.loads.scale), mechanism
+
+    def without_dilatancy_between(self, direction: int) -> tuple[float | None, float | None]:
+        """Drucker's bounds (1954) on the collapse load without dilatancy: of joints without friction, and of joints whose
+        sliding dilates; None where nothing stands without friction, or no load brings down what dilates."""
+
+        def load(friction: float | np.ndarray) -> float | None:
+            limit = LimitAnalysis(self.assembly, friction, strength=self.strength, loads=self.loads)
+            try:
+                return limit.collapse(direction)[0].gamma
+            except (NoEquilibrium, NoAnswer):
+                return None
+
+        return load(0.0), load(self._mu)
+
+    def _refuse_immovable(self, direction: int) -> None:
+        """Immovable where not even joints without friction let the load do work."""
+        if (
+            self._certificate(np.zeros_like(self.loads.live), direction * self.loads.live, np.zeros(len(self._mu)))
+            is None
+        ):
+            raise Immovable("no such load brings it down: the joints hold it from all sides")
+
+    def _read(
+        self, gamma: float, corners: np.ndarray, twist: np.ndarray, motion: np.ndarray, taken: float
+    ) -> tuple[State, Mechanism]:
+        """State and mechanism of a collapse whose forces and motion were found together; taken: work of the joints."""
+        nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
+        _, defect = self._equations.velocities(motion, -twist.ravel())
+        mechanism = read_mechanism(
+            self.assembly, self.loads, nothing, np.empty(0), motion, twist, defect, INNER_REST, taken
+        )  # fmt: skip
+        return read_state(gamma, corners, self.loads.scale), mechanism
+
+    def certificate(self, gamma: float = 0.0) -> np.ndarray | None:
+        """A motion (blocks, 3) that proves that nothing can stand at gamma, or None where there is none.
+
+        By it the loads do work, while no joint that presses or is held by friction could take any (Farkas' lemma):
+        the openings are at least mu times the slip. Twists about the origin, lengths over the size of the assembly.
+        Crushing is left out of account.
+        """
+        mu = None if self._cone is None else self._mu
+        return self._certificate(self.loads.dead + gamma * self.loads.live, np.zeros_like(self.loads.live), mu)
+
+    def _certificate(self, force: np.ndarray, other: np.ndarray, mu: np.ndarray | None) -> np.ndarray | None:
+        """The motion of greatest work of `force` + `other`, every twist at most one, that joints take no work from."""
+        system = self._equations
+        m, n = len(self._joints), system.equations
+        turned = sparse.csr_array(system.corner_matrix.T)
+        unit = self.loads.scale * np.array([1.0, 1.0, self.assembly.size])
+        work = ((force + other) / unit).ravel()
+        dilates = sparse.diags_array(np.zeros(m) if mu is None else mu)
+        one, none = sparse.eye_array(m), sparse.csr_array((m, m))
+        rows = sparse.vstack([
+            sparse.hstack([turned[0::3], -dilates, -dilates]),
+            sparse.hstack([turned[1::3], -dilates, -dilates]),
+            sparse.hstack([turned[2::3], one if mu is not None else none, -one if mu is not None else none]),
+        ])  # fmt: skip
+        lower, upper = np.zeros(3 * m), np.concatenate([np.full(2 * m, INFINITY), np.zeros(m)])
+        k = self.loads.pushes
+        if k:  # what a push can take of the work: all of it that the motion does against it
+            pushes = sparse.csr_array(system.matrix[:, system.shares].T)
+            rows = sparse.vstack([
+                sparse.hstack([rows, sparse.csr_array((3 * m, k))]),
+                sparse.hstack([pushes, sparse.csr_array((k, 2 * m)), sparse.eye_array(k)]),
+            ])  # fmt: skip
+            lower, upper = np.append(lower, np.zeros(k)), np.append(upper, np.full(k, INFINITY))
+        bound = np.concatenate([np.ones(n), np.full(2 * m + k, INFINITY)])
+        cost = np.concatenate([-work, np.zeros(2 * m), np.ones(k)])
+        found = linear_programme(rows, lower, upper, cost, np.concatenate([-np.ones(n), np.zeros(2 * m + k)]), bound)
+        twist = found.x[:n]
+        motion = (turned @ twist).reshape(-1, 3)
+        least = motion[:, :2].min(axis=1) - (0.0 if mu is None else mu) * np.abs(motion[:, 2])
+        broken = max(0.0, -float(least.min()), 0.0 if mu is not None else float(np.abs(motion[:, 2]).max()))
+        taken = 0.0 if not k else float(np.maximum(-(pushes @ twist), 0.0).sum())
+        if float(work @ twist) - taken <= max(PROVES, 1e4 * broken):
+            return None
+        return twist.reshape(-1, 3)
 
     def stands(self, gamma: float = 0.0) -> bool:
         """True where an admissible thrust line exists, upright or at a given gamma."""
@@ -262,7 +405,7 @@ class LimitAnalysis:
             leans = [s.normal * (2.0 * s.position - 1.0) for s in start]
             lean = np.sum(leans, axis=0) / len(start) / self.loads.scale
             part, share = _eccentric(lean, normal), np.maximum(normal, CARRIES)
-        programme, best, low, high = None, None, 0.0, np.inf
+        programme, best, low, high, last = None, None, 0.0, np.inf, np.inf
         for _ in range(ROUNDS):
             rows = self._rows(self._joints, (part + 1.0, part - 1.0, 0.0)) + self._rows(
                 self._joints, (part - 1.0, part + 1.0, 0.0)
@@ -279,7 +422,9 @@ class LimitAnalysis:
             new = _eccentric(corners[:, 1] - corners[:, 0], normal)
             if solution.x[-1] < -SETTLED:
                 low = part
-            creeps = best is not None and new > 0.5 * (low + high)
+            # It gains ever more per step, or creeps.
+            gain = part - new
+            creeps, last = best is not None and gain > CREEPS * last, gain
             if new < high:
                 best, high, share = self._unclipped(solution, corners), new, np.maximum(normal, CARRIES)
             if best is not None and (abs(part - new) < SETTLED or high - low < SETTLED):

@@ -28,11 +28,12 @@ class NoAnswer(RuntimeError):
 
 @dataclass(frozen=True)
 class Solution:
-    """x, the duals of the constraint rows, those of the equations, and the column duals."""
+    """x, the duals of the constraint rows, those of the equations and of the bounds of the columns, and the value."""
 
     x: np.ndarray
     rows: np.ndarray
     equations: np.ndarray
+    columns: np.ndarray
     value: float
 
 
@@ -92,7 +93,7 @@ class Programme:
         """Minimise cost @ x with gamma in the given range."""
         self._solver.changeColsCost(self.columns, self._index, cost)
         self._solver.changeColBounds(self._gamma, *gamma)
-        status = self._solved()
+        status = _decided(self._solver)
         if status in _INFEASIBLE:
             raise NoEquilibrium("no admissible thrust line")
         if status != highspy.HighsModelStatus.kOptimal:
@@ -100,25 +101,67 @@ class Programme:
         solution = self._solver.getSolution()
         dual = np.array(solution.row_dual)
         e = self.system.equations
-        return Solution(np.array(solution.col_value), dual[e:], dual[:e], self._solver.getObjectiveValue())
+        return Solution(
+            np.array(solution.col_value), dual[e:], dual[:e], np.array(solution.col_dual), self._solver.getObjectiveValue()
+        )  # fmt: skip
 
-    def _solved(self) -> highspy.HighsModelStatus:
-        """Status of the solve from the last basis; where that ends without a word, from scratch by other methods."""
-        self._solver.run()
-        status = self._solver.getModelStatus()
-        if status in _DECIDED:
-            return status
-        kept = self._solver.getOptions()
-        for method in ("simplex", "ipm"):
-            self._solver.clearSolver()
-            self._solver.setOptionValue("presolve", "on")
-            self._solver.setOptionValue("solver", method)
-            self._solver.run()
-            status = self._solver.getModelStatus()
-            if status in _DECIDED:
-                break
-        self._solver.passOptions(kept)
+
+def _decided(solver: highspy.Highs) -> highspy.HighsModelStatus:
+    """Status of the solve from the last basis; where that ends without a word, from scratch by other methods."""
+    solver.run()
+    status = solver.getModelStatus()
+    if status in _DECIDED:
         return status
+    kept = solver.getOptions()
+    for method in ("simplex", "ipm"):
+        solver.clearSolver()
+        solver.setOptionValue("presolve", "on")
+        solver.setOptionValue("solver", method)
+        solver.run()
+        status = solver.getModelStatus()
+        if status in _DECIDED:
+            break
+    solver.passOptions(kept)
+    return status
+
+
+@dataclass(frozen=True)
+class Optimum:
+    """x, its value, and by how much the value would change per unit of each row and of each bound of a column."""
+
+    x: np.ndarray
+    value: float
+    rows: np.ndarray
+    columns: np.ndarray
+
+
+def linear_programme(
+    matrix: sparse.sparray, row_lower: np.ndarray, row_upper: np.ndarray, cost: np.ndarray, lower: np.ndarray, upper: np.ndarray
+) -> Optimum:  # fmt: skip
+    """Minimise cost . x with row_lower <= matrix x <= row_upper and lower <= x <= upper.
+
+    NoEquilibrium where nothing obeys all of them, NoAnswer where the solver gives up.
+    """
+    rows = sparse.csr_array(matrix)
+    count = len(cost)
+    solver = highspy.Highs()
+    solver.passOptions(_options(True, False))
+    passed = solver.passModel(
+        count, rows.shape[0], rows.nnz, int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0, cost,
+        lower, upper, row_lower, row_upper, rows.indptr.astype(np.int32), rows.indices.astype(np.int32), rows.data,
+        np.zeros(count, dtype=np.int32),
+    )  # fmt: skip
+    if passed == highspy.HighsStatus.kError:
+        raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
+    status = _decided(solver)
+    if status in _INFEASIBLE:
+        raise NoEquilibrium("no admissible thrust line")
+    if status != highspy.HighsModelStatus.kOptimal:
+        raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
+    found = solver.getSolution()
+    return Optimum(
+        np.array(found.col_value), solver.getObjectiveValue(), np.array(found.row_dual), np.array(found.col_dual)
+    )
 
 
 _INFEASIBLE = (highspy.HighsModelStatus.kInfeasible, highspy.HighsModelStatus.kUnboundedOrInfeasible)

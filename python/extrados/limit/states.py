@@ -82,11 +82,13 @@ def read_mechanism(
     twist: np.ndarray,
     defect: float,
     at_rest: float = AT_REST,
+    taken: float = 0.0,
 ) -> Mechanism:
     """Mechanism from the scaled twists about the origin and the duals of the constraints.
 
-    Virtual work gives the bound: -(dead . u + sum dual * lower + pushes against it) / (live . u); a push is whole
-    where its block moves against it, and nothing where it moves away.
+    Virtual work gives the bound: (taken - dead . u - sum dual * lower - pushes against it) / (live . u); taken is the
+    work that the joints take up by sliding and crushing, where no constraint says so; a push is whole where its block
+    moves against it, and nothing where it moves away.
     """
     size = assembly.size
     unit = loads.scale * np.array([1.0, 1.0, size])
@@ -96,7 +98,7 @@ def read_mechanism(
     if loads.resistance is not None:
         work = (loads.resistance.wrench / unit * twist[loads.resistance.block]).sum(axis=1)
         resisted = float(np.minimum(work, 0.0).sum())
-    upper = -(dead + float(dual @ constraints.lower) + resisted) / live
+    upper = (taken - dead - float(dual @ constraints.lower) - resisted) / live
     x, y = (assembly.centroid / size).T
     velocity = np.column_stack([twist[:, 0] - twist[:, 2] * y, twist[:, 1] + twist[:, 2] * x, twist[:, 2]])
 

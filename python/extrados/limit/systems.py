@@ -101,7 +101,8 @@ class Sparse:
             moment = point[:, 0] * direction[:, 1] - point[:, 1] * direction[:, 0]
             return np.column_stack([direction, moment])
 
-        on_a = np.stack([wrench(n, p), wrench(n, q), wrench(t, 0.5 * (p + q))], axis=1)  # (m, corner, equation)
+        on_a = np.stack([wrench(n, p), wrench(n, q), wrench(t, 0.5 * (p + q))], axis=1)
+        self.wrench = on_a  # of unit corner forces on block a (m, corner, equation)
         row, column, value = [], [], []
         for ends, sign in ((assembly.a, 1.0), (assembly.b, -1.0)):
             held = np.flatnonzero(ends != GROUND)
@@ -128,6 +129,11 @@ class Sparse:
         row, corner = np.nonzero(rows.coefficient)
         entries = rows.coefficient[row, corner], (row, 3 * rows.joint[row] + corner)
         return sparse.csr_array(entries, shape=(k, self.unknowns)), np.zeros(k)
+
+    @property
+    def corner_matrix(self) -> sparse.csr_array:
+        """The columns of the corner forces."""
+        return sparse.csr_array(self.matrix[:, : self.shares.start])
 
     def corners(self, x: np.ndarray) -> np.ndarray:
         return x[: self.shares.start].reshape(-1, 3)

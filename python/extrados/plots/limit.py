@@ -13,6 +13,7 @@ from extrados.results.store import Stored
 
 MOST_LETTERED = 26  # hinges: more are dots
 MOST_FLOW = 3.0  # points: width of the greatest force between stones
+MOST_OPENINGS = 12  # openings that are written beside their joints
 HATCH = "#cfc6b2"
 LONG = 0.5  # height over length: below it section and mechanism stand one over the other
 MOST_LETTERS = 8  # hinges of a moving load: letters of more would run into each other
@@ -257,7 +258,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
         earth(ax, run, name)
         stone(ax, blocks)
-        ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
+        ground(ax, run, name, [reaction.joint for reaction in (r.central or r.least).reactions])
         for which, colour in colours.items():
             label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m" if arched else f"{which} state"
             thrust_lines(ax, run, name, which, colour, label)
@@ -308,6 +309,9 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         if "fractured" in run.arrays[name]:
             cracked = np.degrees(np.arctan(run.array(name, "fractured")))
             ax.plot(value, cracked, "--", color=style.HINGE, linewidth=1.0, label="buttress cracked")
+        if "buttress_alone" in run.arrays[name]:
+            alone = np.degrees(np.arctan(run.array(name, "buttress_alone")))
+            ax.plot(value, alone, "-.", color=style.GROUND, linewidth=1.0, label="buttress alone")
         crowded = 0.04 * (value[-1] - value[0])
         shown = -np.inf
         for change in r.changes:
@@ -409,9 +413,11 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
 
 
 def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """The arch on the way to its fall, and how the thrust changes."""
+    """The arch on the way to its fall, and how the thrust changes; of any structure, the joints that open."""
     r = run[name]
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
+    if "settled_pose" in run.arrays[name]:
+        return [_draw_settled(run, name, folder, blocks, centroid)]
     movement, pose, points = (run.array(name, f"shown_{what}") for what in ("movement", "pose", "point"))
     with style.figure(11.0, 5.6, rows=2, columns=3) as (fig, axes):
         for ax in axes[len(movement) :]:
@@ -443,6 +449,43 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
             )
         )
     return found
+
+
+def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tuple[str, str]:
+    """The structure before and after its supports gave way, magnified, with the widest openings in mm."""
+    r, pose = run[name], run.array(name, "settled_pose")
+    place = np.column_stack([centroid, np.zeros(len(centroid))])
+    size = float(np.ptp(np.concatenate(blocks), axis=0).max())
+    raw = 0.05 * size / max(float(np.hypot(*(pose - place)[:, :2].T).max()), 1e-300)
+    power = 10.0 ** np.floor(np.log10(raw))
+    factor = max(1.0, power * max(step for step in (1.0, 2.0, 5.0) if step * power <= raw * (1.0 + 1e-9)))
+    moved = place + factor * (pose - place)
+    openings = run.array(name, "settled_opening")
+    p, q = run.array(name, "joint_p"), run.array(name, "joint_q")
+    with style.figure(7.5, 5.2) as (fig, (ax,)):
+        stone(ax, blocks, ghost=True)
+        stone(ax, carried(blocks, centroid, moved))
+        sides = run.array(name, "joint_block")
+        for o in [o for o in r.openings if o.opening_mm > 0.0][:MOST_OPENINGS]:
+            end = (p if openings[o.joint, 0] > openings[o.joint, 1] else q)[o.joint]
+            block = int(sides[o.joint].max())
+            cos, sin = np.cos(moved[block, 2]), np.sin(moved[block, 2])
+            arm = end - centroid[block]
+            at = moved[block, :2] + (cos * arm[0] - sin * arm[1], sin * arm[0] + cos * arm[1])
+            other = (q if end is p[o.joint] or np.array_equal(end, p[o.joint]) else p)[o.joint]
+            away = (end - other) / max(float(np.hypot(*(end - other))), 1e-300)
+            ax.annotate(
+                f"{o.opening_mm:.3g} mm", at, textcoords="offset points", xytext=tuple(22.0 * away), ha="center",
+                va="center", fontsize=7, color=style.HINGE,
+                arrowprops={"arrowstyle": "-", "linewidth": 0.6, "color": style.HINGE},
+            )  # fmt: skip
+        ax.set_title(f"Supports that give way: movements and openings {factor:g} times as large")
+        style.section_axes(ax)
+        ax.margins(0.08)
+        return (
+            style.save(fig, folder, f"{name}-openings"),
+            f"Where supports give way joints open; movements and openings are drawn {factor:g} times as large, dotted: before.",
+        )
 
 
 def earth(ax: Axes, run: Stored, name: str) -> None:

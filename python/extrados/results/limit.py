@@ -66,6 +66,29 @@ class Fracture(ResultModel):
     hinges: list[Hinge] = maybe("hinges of the cracked structure")
 
 
+class NonDilatant(ResultModel):
+    """Collapse to one side by sliding that does not dilate: the least state found, its bounds and residuals."""
+
+    associated_g: float | None = fact(
+        "upper bound: the same with sliding that dilates; null where that cannot be brought down",
+        "g",
+        source="Drucker 1954",
+    )
+    frictionless_g: float | None = fact(
+        "lower bound: the same without friction; null where nothing stands then", "g", source="Drucker 1954"
+    )
+    starts_g: list[float] = fact("load that each start led to; the least is the answer", "g")
+    spread_g: float = fact("greatest less least of them: such states are not unique", "g")
+    equilibrium_residual: float = fact("greatest force left over at a stone, over the total load")
+    friction_residual: float = fact("greatest excess of |s| over mu N, over the total load")
+    tension_residual: float = fact("greatest tension (or crushing beyond the strength), over the total load")
+    overlap_residual: float = fact("greatest overlap of the motion, over the fastest joint")
+    complementarity_residual: float = fact(
+        "greatest lesser of force and motion where a joint presses and opens, or holds and slides"
+    )
+    work_residual: float = fact("work of the load less what weight and friction take, over the former")
+
+
 class Tilt(KindResults):
     """tilt: the constant horizontal acceleration at which a structure becomes a mechanism."""
 
@@ -100,6 +123,8 @@ class Tilt(KindResults):
     right_aisle_span_m: float = maybe("clear span of the right aisle", "m")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     fracture: Fracture = maybe("collapse with the leeward buttress cracked")
+    non_dilatant: NonDilatant = maybe("non-associated friction: what the collapse to +x rests on")
+    non_dilatant_opposite: NonDilatant = maybe("non-associated friction: what the collapse to -x rests on")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
@@ -128,17 +153,19 @@ class Thrust(KindResults):
     geometric_safety_factor: float | None = fact(
         "one over the least part of the joints that holds a thrust line; null where one runs through all middles"
     )
-    least_part_of_joints: float = fact("the part of the joints, about their middles, that the most central line needs")
+    least_part_of_joints: float = maybe("the part of the joints, about their middles, that the most central line needs")
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
     least: ThrustLine = maybe("the line of least thrust")
     most: ThrustLine = maybe("the line of greatest thrust")
-    central: ThrustLine = fact("the most central line")
+    central: ThrustLine = maybe("the most central line; a warning says why where it is missing")
 
     def judged(self, demand: Demand) -> Verdict:
         """The part of the joints that the most central line needs against the whole; the ratio is the safety factor."""
         part = self.least_part_of_joints
+        if part is None:
+            return judge("The most central thrust line was not found.", None, None)
         return judge(
             f"At {self.gamma_g:g} g a thrust line stays within the middle {100.0 * part:.3g} % of the joints.", part, 1.0
         )  # fmt: skip
@@ -187,22 +214,38 @@ class Stage(ResultModel):
     hinges: list[str] = fact("the three hinges")
 
 
-class Supports(KindResults):
-    """supports: an arch whose right support spreads or settles until it falls."""
+class JointOpening(ResultModel):
+    """A joint that opens or slides while supports give way."""
 
-    movement_at_fall_m: float = fact("movement of the support at which the arch falls", "m")
-    movement_at_fall_over_span: float = fact("movement at the fall over the span")
-    span_change_at_fall_ratio: float = fact("growth of the span at the fall, over the span")
-    thrust_at_rest_N: float = fact("horizontal thrust at the start", "N")
-    thrust_at_fall_N: float = fact("horizontal thrust at the fall", "N")
-    hinges_at_rest: list[JointHinge] = fact("the three hinges at the start")
-    hinges_at_fall: list[JointHinge] = fact("the three hinges at the fall")
-    joints_touched_at_fall: list[int] = fact("joints where the thrust line touches a further end at the fall")
-    stages: list[Stage] = fact("from the start on, each change of hinges")
+    joint: int = fact("number of the joint")
+    name: str = fact("its name")
+    opening_mm: float = fact("how far its wider end opens", "mm")
+    side: Side | Literal["first end", "second end"] = fact("end that opens more: of arches intrados or extrados")
+    slip_mm: float = fact("how far it slides", "mm")
+
+
+class Supports(KindResults):
+    """supports: what opens where supports give way; of an arch, until it falls."""
+
+    movement_at_fall_m: float = maybe("movement of the support at which the arch falls", "m")
+    movement_at_fall_over_span: float = maybe("movement at the fall over the span")
+    span_change_at_fall_ratio: float = maybe("growth of the span at the fall, over the span")
+    thrust_at_rest_N: float = maybe("horizontal thrust at the start", "N")
+    thrust_at_fall_N: float = maybe("horizontal thrust at the fall", "N")
+    hinges_at_rest: list[JointHinge] = maybe("the three hinges at the start")
+    hinges_at_fall: list[JointHinge] = maybe("the three hinges at the fall")
+    joints_touched_at_fall: list[int] = maybe("joints where the thrust line touches a further end at the fall")
+    stages: list[Stage] = maybe("from the start on, each change of hinges")
+    openings: list[JointOpening] = maybe("joints that open or slide under [[initial.movements]], the widest first")
+    work_J: float = maybe("work of the weight in the movements of [[initial.movements]]", "J")
+    work_gap_J: float = maybe("difference between that and the work on the supports, which should be none", "J")
+    reactions: list[Reaction] = maybe("forces of the ground while its supports give way")
 
     def judged(self, demand: Demand) -> Verdict:
         """The movement that the arch can follow [m]; the deck asks for none."""
         move = self.movement_at_fall_m
+        if move is None:
+            return judge("Under the given movements it stands and cracks; no limit is sought.", None, None, "m")
         return judge(
             f"The arch follows its support by {move:.4g} m, {100.0 * self.movement_at_fall_over_span:.3g} % of the span, "
             "before it falls.", None, move, "m",
@@ -253,6 +296,9 @@ class Sweep(KindResults):
     duality_gap: float = fact("greatest difference between the bounds", "g")
     fractured_collapse_accelerations_g: list[float | None] = maybe(
         "collapse accelerations with the leeward buttress cracked", "g"
+    )
+    buttress_alone_accelerations_g: list[float | None] = maybe(
+        "collapse accelerations of the leeward buttress by itself", "g", source="thesis Fig. 3-4b"
     )
 
     def judged(self, demand: Demand) -> Verdict:

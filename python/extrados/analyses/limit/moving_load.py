@@ -1,6 +1,6 @@
 """moving-load: the load or train that brings a vault or a bridge down, at every place along it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -198,7 +198,7 @@ def factored(assembly: Assembly, loads: Loads, factors: PartialFactors) -> Loads
     for mass, place, factor in resting:
         weight = (factor - 1.0) * GRAVITY * mass
         extra -= np.column_stack([np.zeros_like(weight), weight, place[:, 0] * weight])
-    return loads.with_dead(extra)
+    return replace(loads, dead=loads.dead + extra)
 
 
 def run(context: Context, options: MovingLoad) -> Result:

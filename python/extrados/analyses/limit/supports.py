@@ -3,16 +3,20 @@
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.common import geometry_arrays
+from extrados.analyses.limit.common import geometry_arrays, state_arrays
 from extrados.analyses.limit.tables import Supports
-from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.chains import in_order
+from extrados.building.errors import BadGeometry
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.chains import in_order, is_stack
 from extrados.limit.places import place_of
-from extrados.limit.programme import NoEquilibrium
+from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.limit.settlement import settle
 from extrados.limit.supports import support_movement
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
+OPENS = 1e-7  # of the greatest opening: joints that move by less do not
+LARGE = 0.05  # rad: beyond, motions of first order are coarse
 SHOWN = (0.0, 0.25, 0.5, 0.75, 1.0)  # of the movement at the fall
 
 
@@ -24,9 +28,16 @@ def _place(arch: Assembly, hinge: tuple[int, str]) -> str:
 
 def run(context: Context, options: Supports) -> Result:
     """States on the way, the movement at the fall, how the thrust and the hinges change."""
+    if context.building.initial.movements:
+        return _any_structure(context)
+    try:
+        arch = in_order(context.building.blocks())
+    except BadGeometry as error:
+        raise Refused(
+            f"supports: {error}; of other structures say which supports give way by [[initial.movements]]"
+        ) from None
     if options.spread == 0.0 and options.settle == 0.0:
         raise Refused("supports: with spread = 0 and settle = 0 nothing moves")
-    arch = in_order(context.building.blocks())
     try:
         states = support_movement(arch, (options.spread, -options.settle), options.steps)
     except NoEquilibrium as error:
@@ -81,5 +92,83 @@ def run(context: Context, options: Supports) -> Result:
         f"and falls at {movement[-1]:.4g} m, {100 * movement[-1] / span:.2f} % of the span, after "
         f"{len(stages) - 1} change{'s' if len(stages) != 2 else ''} of hinges; meanwhile the thrust goes from "
         f"{force[0, 0] / 1e3:.4g} to {force[-1, 0] / 1e3:.4g} kN."
+    )
+    return result
+
+
+def _any_structure(context: Context) -> Result:
+    """The joints that open under the movements of the deck, all at once and small."""
+    building = context.building
+    assembly = building.blocks()
+    movement = np.zeros((len(assembly.a), 3))
+    for one in building.initial.movements:
+        if one.joint not in assembly.joint_names:
+            names = [n for j, n in enumerate(assembly.joint_names) if GROUND in (assembly.a[j], assembly.b[j])]
+            raise Refused(
+                f"initial.movements names no joint '{one.joint}'; on the ground there are {', '.join(names[:8])}"
+            )
+        j = assembly.joint_names.index(one.joint)
+        if GROUND not in (assembly.a[j], assembly.b[j]):
+            raise Refused(f"initial.movements: joint '{one.joint}' is not on the ground")
+        movement[j] += one.dx, one.dy, np.radians(one.turn)
+    if not movement.any():
+        raise Refused("initial.movements: nothing moves")
+    limit = LimitAnalysis(assembly, building.friction())
+    try:
+        found = settle(limit, movement)
+    except NoEquilibrium as error:
+        raise Refused(f"the {building.structure.word} cannot follow the movement: {error}") from None
+    motion = found.motion
+    wide = motion[:, :2].max(axis=1)
+    moving = np.flatnonzero(np.abs(motion).max(axis=1) > OPENS * np.abs(motion).max())
+    arched = {j for joints in assembly.chains.values() if not is_stack(assembly, joints) for j in joints}
+    sides = {True: ("intrados", "extrados"), False: ("first end", "second end")}
+    result = Result("supports")
+    opened = [
+        out.JointOpening(
+            joint=j, name=assembly.joint_names[j], opening_mm=1e3 * float(wide[j]),
+            side=sides[j in arched][int(motion[j, 1] > motion[j, 0])], slip_mm=1e3 * float(motion[j, 2]),
+        )
+        for j in moving[np.argsort(-wide[moving], kind="stable")].tolist()
+    ]  # fmt: skip
+    force = found.state.force(assembly)
+    result.results = out.Supports(
+        openings=opened,
+        work_J=found.work,
+        work_gap_J=found.gap,
+        reactions=[
+            out.Reaction(
+                joint=j, name=assembly.joint_names[j], horizontal_N=sign * force[j, 0], vertical_N=sign * force[j, 1]
+            )
+            for j, sign in enumerate(np.where(assembly.b == GROUND, 1.0, -1.0).tolist())
+            if GROUND in (assembly.a[j], assembly.b[j])
+        ],
+    )
+    result.arrays = {
+        **geometry_arrays(assembly),
+        **state_arrays(assembly, "settled", found.state, "while supports give way"),
+        "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
+        "settled_opening": Array(motion, ("joint", "component"), "m", "opening at the first and second end, slip"),
+        "support_movement": Array(movement, ("joint", "component"), "m, m, rad", "movements of the supports"),
+    }
+    result.tables = {
+        "openings": TableData(
+            {"joint": [o.name for o in opened], "opening": [o.opening_mm for o in opened],
+             "side": [o.side for o in opened], "slip": [o.slip_mm for o in opened]},
+            {"opening": "mm", "slip": "mm"},
+        )
+    }  # fmt: skip
+    if np.abs(found.pose[:, 2]).max() > LARGE:
+        result.warnings.append(
+            f"stones turn by up to {np.degrees(np.abs(found.pose[:, 2]).max()):.1f} degrees: the motion is of first order, "
+            "smaller movements are meant"
+        )
+    shown = "; ".join(f"{o.name} by {o.opening_mm:.3g} mm" for o in opened[:6] if o.opening_mm > 0.0)
+    slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
+    result.answer = (
+        f"Where its supports give way {len(opened)} joints of the {building.structure.word} move: {shown}"
+        + (f" and {len(opened) - 6} more" if len(opened) > 6 else "")
+        + (f"; {len(slid)} of them slide" if slid else "")
+        + f". Its weight does {found.work:.4g} J of work."
     )
     return result

@@ -47,15 +47,16 @@ class Range:
     options: Sweep
     whole: bool
 
-    def at(self, value: float, *, fracture: bool = False, explain: bool = False) -> Outcome:
+    def at(self, value: float, *, beside: bool = False, explain: bool = False) -> Outcome:
         data = changed(self.data, self.path, round(value) if self.whole else float(value))
         try:
             table = read_table(type(getattr(self.building, self.table)), data)
         except BadGeometry as error:
             return Outcome(reason=str(error))
         return evaluate(
-            self.building.apart().having(**{self.table: table}), self.options, fracture=fracture, explain=explain
-        )
+            self.building.apart().having(**{self.table: table}), self.options, fracture=beside and self.options.fracture,
+            alone=beside and self.options.buttress_alone, explain=explain,
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -66,9 +67,7 @@ class Values:
     values: np.ndarray
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
-        return stacked(
-            lambda k: self.ask.at(self.values[k], fracture=self.ask.options.fracture, explain=True).row(), first, count
-        )
+        return stacked(lambda k: self.ask.at(self.values[k], beside=True, explain=True).row(), first, count)
 
 
 def _placed(vary: str) -> tuple[str, str]:
@@ -178,6 +177,7 @@ def run(context: Context, options: Sweep) -> Result:
         gaps=[out.Gap(value=v, reason=o.reason) for v, o in zip(values, outcomes, strict=True) if o.reason],
         duality_gap=max(o.gap for o in outcomes),
         **({"fractured_collapse_accelerations_g": fractured} if options.fracture else {}),
+        **({"buttress_alone_accelerations_g": [o.alone for o in outcomes]} if options.buttress_alone else {}),
     )
     result.results = r
     gamma = np.array([np.nan if o.gamma is None else o.gamma for o in outcomes])
@@ -198,6 +198,10 @@ def run(context: Context, options: Sweep) -> Result:
         cracked = np.array([np.nan if f is None else f for f in fractured])
         result.arrays["fractured"] = Array(cracked, ("value",), "g", "with the leeward buttress cracked")
         columns["fractured_collapse_acceleration"] = cracked
+    if options.buttress_alone:
+        alone = np.array([np.nan if o.alone is None else o.alone for o in outcomes])
+        result.arrays["buttress_alone"] = Array(alone, ("value",), "g", "the leeward buttress by itself")
+        columns["buttress_alone_acceleration"] = alone
     for name in next((o.measures for o in outcomes if o.measures), {}):
         columns[name] = [o.measures.get(name, np.nan) for o in outcomes]
     columns["reason"] = [o.reason for o in outcomes]
@@ -205,6 +209,7 @@ def run(context: Context, options: Sweep) -> Result:
         options.vary: r.unit,
         "collapse_acceleration": "g",
         "fractured_collapse_acceleration": "g",
+        "buttress_alone_acceleration": "g",
         "tilt_angle": "deg",
     }
     result.tables = {"sweep": TableData(columns, units)}

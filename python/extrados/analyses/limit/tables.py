@@ -8,16 +8,29 @@ from extrados.analyses.table import BuildingAnalysis
 from extrados.schema.quantities import Force, Gravities, Length, LineForce
 from extrados.schema.table import Table, key
 
-ARCHES = ("arch", "pointed-arch", "elliptical-arch")
 
-
-class PointLoad(Table):
-    """A vertical load that rests on the structure."""
+class AppliedLoad(Table):
+    """A load on the structure: at a place, or spread from x to x_end; upright, oblique or horizontal; it may sway."""
 
     x: Length = key(
-        about="where it stands; it acts on the highest block below, through the fill of a bridge on all it spreads to"
+        about="where it stands; it acts on the highest block below, or on the block at y; without y its weight spreads "
+        "through the fill of a bridge"
     )
-    force: Force = key(about="its weight, downward", gt=0)
+    force: Force = key(0.0, "its weight, downward; of a spread load all of it")
+    horizontal: Force = key(0.0, "its part to +x; of a spread load all of it")
+    x_end: Length | None = key(None, "where a spread load ends, even per length of plan; it starts at x")
+    y: Length | None = key(None, "height at which it acts; default the surface below")
+    sways: bool = key(False, "whether its weight is accelerated with the ground, as a floor's or a roof's is")
+
+    @model_validator(mode="after")
+    def _acts(self) -> "AppliedLoad":
+        if self.force == 0.0 and self.horizontal == 0.0:
+            raise ValueError("give force, horizontal, or both")
+        if self.x_end is not None and self.x_end <= self.x:
+            raise ValueError("x_end must lie to the right of x")
+        if self.sways and self.force <= 0.0:
+            raise ValueError("what sways is the weight: give a force above 0")
+        return self
 
 
 class LimitAnalysisTable(BuildingAnalysis):
@@ -26,10 +39,11 @@ class LimitAnalysisTable(BuildingAnalysis):
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
-        "associated sliding dilates (an upper bound); non-associated is found by iteration",
-        source="Gilbert, Casapulla and Ahmed 2006",
+        "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
+        source="Ferris and Tin-Loi 2001; Gilbert, Casapulla and Ahmed 2006",
     )
-    load: list[PointLoad] = key([], "vertical point loads at rest, which do not sway", max_length=1000)
+    starts: int = key(6, "non-associated: starts from which states are sought, the least of them counts", ge=1, le=1000)
+    load: list[AppliedLoad] = key([], "loads at rest beside weight and fill, of which some may sway", max_length=1000)
 
 
 class Tilt(LimitAnalysisTable):
@@ -63,6 +77,7 @@ class Sweep(LimitAnalysisTable):
         None, "the values, in place of start and stop", min_length=2, max_length=2000
     )
     fracture: bool = key(False, "also with the leeward buttress cracked")
+    buttress_alone: bool = key(False, "also the leeward buttress by itself", source="thesis Fig. 3-4b")
     locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
 
     @model_validator(mode="after")
@@ -97,10 +112,9 @@ class Imperfections(LimitAnalysisTable):
 
 
 class Supports(BuildingAnalysis):
-    """An arch whose supports spread or settle, also one of free blocks: three-hinge states on the way, until it falls."""
+    """Supports that give way: any structure under [[initial.movements]]; an arch through its three-hinge states to its fall."""
 
     kind: Literal["supports"]
-    structures: ClassVar = (*ARCHES, "blocks")
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     steps: int = key(200, "steps from rest to the fall", ge=10, le=5000)

@@ -16,7 +16,7 @@ from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer, CannotStand, assess, safety_factor
 from extrados.limit.graphic import thrust_of
-from extrados.limit.programme import NoEquilibrium, State
+from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.results import limit as out
 from extrados.results.model import Result, TableData
 
@@ -24,25 +24,24 @@ from extrados.results.model import Result, TableData
 def run(context: Context, options: Thrust) -> Result:
     """Least, greatest and most central thrust line, each with its force polygon."""
     assembly: Assembly = context.building.blocks()
-    limit = limit_of(context.building, options)
+    limit = limit_of(context.building, options, forces_only=True)
     chain = chain_of(assembly, options.chain)
     try:
         answer = assess(assembly, limit=limit)
     except CannotStand as error:
         raise Refused(f"the structure cannot stand under its own weight: {error}") from None
     low, high = answer.back_state.gamma, answer.gamma
-    ends = {}
+    ends: dict[str, State] = {}
+    result = Result("thrust")
     try:
         if chain is not None:
             ends = dict(zip(("least", "most"), limit.thrust(assembly.chains[chain], options.gamma), strict=True))
-        central, part = limit.central(options.gamma, start=list(ends.values()))
+        states, part = _with_central(limit, options.gamma, ends, result)
     except NoEquilibrium:
         raise Refused(
             f"at {options.gamma:g} g no thrust line is admissible: the structure bears {low:.4f} to {high:.4f} g"
         ) from None
-    states = {**ends, "central": central}
-    safety = safety_factor(part)
-    result = Result("thrust")
+    safety = None if part is None else safety_factor(part)
     lines = {}
     for name, state in states.items():
         lines[name] = out.ThrustLine(
@@ -75,6 +74,21 @@ def run(context: Context, options: Thrust) -> Result:
     return result
 
 
+def _with_central(
+    limit: LimitAnalysis, gamma: float, ends: dict[str, State], result: Result
+) -> tuple[dict[str, State], float | None]:
+    """The states with the most central one, and the part of the joints that holds it; without it, and a warning, where
+    lines of least and greatest thrust are there and it does not settle."""
+    try:
+        central, part = limit.central(gamma, start=list(ends.values()))
+    except (NoAnswer, NoEquilibrium) as error:
+        if not ends:
+            raise
+        result.warnings.append(f"the most central line is left out: {error}")
+        return ends, None
+    return {**ends, "central": central}, part
+
+
 def _horizontal(answer: Answer, state: State, chain: str | None) -> dict[str, float]:
     """Horizontal thrust of a chain; nothing where there is none."""
     if chain is None:
@@ -89,26 +103,36 @@ def _horizontal(answer: Answer, state: State, chain: str | None) -> dict[str, fl
 
 def _words(r: out.Thrust, assembly: Assembly) -> str:
     part, safety, central = r.least_part_of_joints, r.geometric_safety_factor, r.central
-    keeps = (
-        "can run through the middles of all joints"
-        if safety is None
-        else f"keeps to the middle {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
-    )
-    needed = np.inf if central.required_friction is None else central.required_friction
-    needs = f"{keeps} and needs a friction of {needed:.2f}"
+    needs = ""
+    if central is not None:
+        keeps = (
+            "can run through the middles of all joints"
+            if safety is None
+            else f"keeps to the middle {100 * part:.1f} % of the joints (geometric safety factor {safety:.2f})"
+        )
+        needed = np.inf if central.required_friction is None else central.required_friction
+        needs = f"{keeps} and needs a friction of {needed:.2f}"
     if r.chain is None:
         text = (
             f"At {r.gamma_g:g} g the most central state {needs}. No stones form an arch or a stack here, so no chain has "
             "a least and a greatest thrust."
         )
     else:
-        least, most, middle = (line.horizontal_kN_per_m for line in (r.least, r.most, r.central))
-        if is_stack(assembly, assembly.chains[r.chain]):  # statically determinate: all lines are one at its base
-            text = f"At {r.gamma_g:g} g the most central line of the stack ({middle:.4g} kN/m horizontally at its base) {needs}."
+        least, most = (line.horizontal_kN_per_m for line in (r.least, r.most))
+        if central is not None and is_stack(
+            assembly, assembly.chains[r.chain]
+        ):  # determinate: all lines are one at its base
+            text = (
+                f"At {r.gamma_g:g} g the most central line of the stack ({central.horizontal_kN_per_m:.4g} kN/m horizontally "
+                f"at its base) {needs}."
+            )
         else:
             text = (
                 f"At {r.gamma_g:g} g the thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre of "
-                f"depth at its left springing; the most central line ({middle:.4g} kN/m) {needs}."
+                "depth at its left springing"
+            )
+            text += (
+                "." if central is None else f"; the most central line ({central.horizontal_kN_per_m:.4g} kN/m) {needs}."
             )
     low, high = r.admissible_interval_g
     return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g."

@@ -9,6 +9,7 @@ from extrados.analyses.limit.common import (
     geometry_arrays,
     graphic_arrays,
     hinge_rows,
+    limit_of,
     mended_capacity,
     reaction_rows,
     state_arrays,
@@ -20,13 +21,15 @@ from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_of
 from extrados.limit.motion import finite_motion
-from extrados.limit.programme import NoEquilibrium
+from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.results import limit as out
 from extrados.results.model import Array, Result
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 
 MOST_NAMED = 6  # hinges and sliding joints told in words
+
+SETTLED = 1e-7  # residual of a state without dilatancy that is worth a word
 
 #: Above this the joints of masonry slide
 USUAL_FRICTION = 0.7
@@ -40,16 +43,18 @@ def degrees(gamma: float) -> float:
 def run(context: Context, options: Tilt) -> Result:
     """Capacity both ways, hinges, mechanism, thrust line at collapse, least and greatest thrust upright."""
     assembly: Assembly = context.building.blocks()
-    answer = answer_of(context.building, options)
+    limit = limit_of(context.building, options)
+    answer = answer_of(context.building, options, limit)
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
     fracture = _fracture(context.building, options, answer, result) if options.fracture else {}
+    sliding = _non_dilatant(limit, result)
     found = out.Tilt(
         collapse_acceleration_g=state.gamma,
         collapse_acceleration_opposite_g=-answer.back_state.gamma,
         tilt_angle_deg=degrees(state.gamma),
         tilt_angle_opposite_deg=degrees(-answer.back_state.gamma),
-        admissible_interval_g=[answer.back_state.gamma, state.gamma],
+        admissible_interval_g=_admissible(answer, sliding),
         load_direction="+x",
         hinges=hinge_rows(assembly, mechanism.hinges, mechanism.pivot),
         sliding_joints=mechanism.sliding,
@@ -65,6 +70,7 @@ def run(context: Context, options: Tilt) -> Result:
         **assembly.measures,
         duality_gap=answer.gap,
         **fracture,
+        **sliding,
     )
     result.results = found
     result.arrays |= {
@@ -118,6 +124,37 @@ def _thrusts(answer: Answer) -> dict[str, object]:
     return {"thrust_min_N": first.min_N, "thrust_max_N": first.max_N, "thrusts": table}
 
 
+def _admissible(answer: Answer, sliding: dict[str, out.NonDilatant]) -> list[float]:
+    """Accelerations between which forces find a way: how joints slide is no question there, so dilatant loads bound it."""
+    low, high = answer.back_state.gamma, answer.gamma
+    if sliding:
+        back, forth = sliding["non_dilatant_opposite"].associated_g, sliding["non_dilatant"].associated_g
+        low, high = low if back is None else -back, high if forth is None else forth
+    return [low, high]
+
+
+def _non_dilatant(limit: LimitAnalysis, result: Result) -> dict[str, out.NonDilatant]:
+    """What the collapse loads without dilatancy rest on, both ways; nothing where sliding dilates."""
+    told = {}
+    for direction, name in ((1, "non_dilatant"), (-1, "non_dilatant_opposite")):
+        if direction not in limit.coulomb:
+            continue
+        found = limit.coulomb[direction]
+        lower, upper = (None if g is None else direction * g for g in limit.without_dilatancy_between(direction))
+        r = found.residuals
+        starts = [direction * g for g in found.starts]
+        told[name] = out.NonDilatant(
+            associated_g=upper, frictionless_g=lower, starts_g=starts, spread_g=max(starts) - min(starts),
+            equilibrium_residual=r.equilibrium, friction_residual=r.friction, tension_residual=r.tension,
+            overlap_residual=r.overlap, complementarity_residual=r.complementarity, work_residual=r.work,
+        )  # fmt: skip
+        if r.worst > SETTLED:
+            result.warnings.append(
+                f"the state without dilatancy {'to +x' if direction > 0 else 'to -x'} obeys the laws of the joints to {r.worst:.1e} only"
+            )
+    return told
+
+
 def _fracture(building: Building, options: Tilt, answer: Answer, result: Result) -> dict[str, out.Fracture]:
     """The key of the capacity with a cracked buttress beside the monolithic one; its arrays go to `result`."""
     assembly = building.blocks()
@@ -163,6 +200,18 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
     return {"fracture": told}
 
 
+def _told(r: out.NonDilatant) -> str:
+    """The bounds and the spread of a state without dilatancy in words."""
+    upper = "no load" if r.associated_g is None else f"{r.associated_g:.4f} g"
+    lower = (
+        "nothing stands without friction" if r.frictionless_g is None else f"{r.frictionless_g:.4f} g without friction"
+    )
+    return (
+        f"Sliding does not dilate: it is the least of {len(r.starts_g)} states found, which spread over {r.spread_g:.4f} g; "
+        f"with dilatancy it bears {upper}, {lower}. "
+    )
+
+
 def _some(names: list[str], apart: str = ", ") -> str:
     """The first of many names."""
     return apart.join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
@@ -179,6 +228,8 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     )
     if abs(back - gamma) > 1e-6 * max(1.0, abs(gamma)):
         text += f"To -x it bears {back:.4f} g ({degrees(back):.2f} degrees). "
+    if found.non_dilatant:
+        text += _told(found.non_dilatant)
     needed = np.inf if found.required_friction is None else found.required_friction
     text += f"Friction of {needed:.2f} is needed" + (
         f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."

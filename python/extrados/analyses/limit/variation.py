@@ -2,7 +2,7 @@
 
 import copy
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import fracture_of, limit_of
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
-from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.assembly import GROUND, Assembly, part_of
 from extrados.building.geometry.builder import BadGeometry
 from extrados.limit.answer import CannotStand, why_not
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
@@ -39,6 +39,7 @@ class Outcome:
     notes: list[str] = field(default_factory=list)
     locked: bool = False  # no load of the kind brings it down: it stands, but has no capacity to give
     measures: dict[str, float] = field(default_factory=dict)  # derived lengths of the section [m]
+    alone: float | None = None  # of the leeward buttress by itself
 
     def row(self) -> dict[str, np.ndarray]:
         """What a sweep keeps of it: all but the assembly and its mechanism."""
@@ -47,17 +48,18 @@ class Outcome:
             np.nan if self.gamma is None else self.gamma,
             np.nan if self.fractured is None else self.fractured,
             self.gap,
+            np.nan if self.alone is None else self.alone,
         ]
         return {"numbers": np.array(numbers), "locked": np.array(self.locked), "words": np.array(json.dumps(words))}
 
 
 def outcome_of(row: dict[str, np.ndarray]) -> Outcome:
     """The outcome of a kept row."""
-    gamma, fractured, gap = (None if np.isnan(x) else float(x) for x in row["numbers"])
+    gamma, fractured, gap, alone = (None if np.isnan(x) else float(x) for x in row["numbers"])
     marks, reason, notes, measures = json.loads(str(row["words"]))
     return Outcome(
         gamma, fractured, tuple((name, mark) for name, mark in marks), gap or 0.0, reason, notes=notes,
-        locked=bool(row["locked"]), measures=measures,
+        locked=bool(row["locked"]), measures=measures, alone=alone,
     )  # fmt: skip
 
 
@@ -120,13 +122,39 @@ def read_table(model: type[Table], data: dict[str, Any]) -> Any:
 
 
 def evaluate(
-    building: Building, options: LimitAnalysisTable, *, fracture: bool = False, explain: bool = True
+    building: Building,
+    options: LimitAnalysisTable,
+    *,
+    fracture: bool = False,
+    alone: bool = False,
+    explain: bool = True,
 ) -> Outcome:
     """Build the section and load it to +x."""
     try:
         assembly, limit = building.blocks(), limit_of(building, options)
     except (BadGeometry, Refused, ValueError) as error:
         return Outcome(reason=str(error))
+    found = _evaluate(building, options, assembly, limit, fracture, explain)
+    return replace(found, alone=_buttress_alone(building, assembly)) if alone else found
+
+
+def _buttress_alone(building: Building, assembly: Assembly) -> float:
+    """Collapse load to +x of the leeward buttress by itself, with its own weight only."""
+    if not assembly.buttresses:
+        raise Refused("buttress_alone needs a buttress that stands on the ground: a vault or an aisled vault")
+    friction = building.friction()
+    if friction is not None and np.ndim(friction):
+        kept = assembly.joints_of(assembly.buttresses[-1])
+        on_ground = (assembly.a[kept] == GROUND) | (assembly.b[kept] == GROUND)
+        friction = np.asarray(friction)[kept[on_ground]]
+    buttress = replace(part_of(assembly, [assembly.buttresses[-1]]), fill=None)
+    return LimitAnalysis(buttress, friction, strength=building.material.compressive_strength).collapse(1)[0].gamma
+
+
+def _evaluate(
+    building: Building, options: LimitAnalysisTable, assembly: Assembly, limit: LimitAnalysis, fracture: bool, explain: bool
+) -> Outcome:  # fmt: skip
+    """The section under load to +x."""
     try:
         state, mechanism = limit.collapse(1)
         if state.gamma <= 0.0:

@@ -1,6 +1,6 @@
 """The one block-and-joint model of any plane assembly, shared by limit analysis, rocking and discrete elements."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -94,3 +94,21 @@ class Assembly:
     def joints_of(self, block: int) -> np.ndarray:
         """Joints that bound a block."""
         return np.flatnonzero((self.a == block) | (self.b == block))
+
+
+def part_of(assembly: Assembly, blocks: list[int]) -> Assembly:
+    """Some blocks by themselves, in the order given: with the joints between them and to the ground, without chains."""
+    number = np.full(len(assembly.mass) + 1, len(assembly.mass))
+    number[blocks] = np.arange(len(blocks))
+    number[GROUND] = GROUND
+    a, b = number[assembly.a], number[assembly.b]
+    kept = np.flatnonzero((a < len(blocks)) & (b < len(blocks)))
+    return replace(
+        assembly, outlines=[assembly.outlines[i] for i in blocks], mass=assembly.mass[blocks],
+        centroid=assembly.centroid[blocks], inertia=assembly.inertia[blocks], p=assembly.p[kept], q=assembly.q[kept],
+        a=a[kept], b=b[kept], block_names=[assembly.block_names[i] for i in blocks],
+        joint_names=[assembly.joint_names[j] for j in kept],
+        inward=None if assembly.inward is None else np.asarray(assembly.inward)[kept], chains={}, buttresses=[],
+        fill=None if assembly.fill is None else assembly.fill[blocks], measures={}, groups={},
+        materials=[assembly.materials[i] for i in blocks] if assembly.materials else [],
+    )  # fmt: skip

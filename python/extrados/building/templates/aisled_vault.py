@@ -26,6 +26,11 @@ AISLED_PRESETS = {
         "aisle_thickness": 0.35, "aisle_embrace": 150.0, "aisle_voussoirs": 14, "aisle_springing": 6.6,
         "buttress_width": 1.7, "half_width": 8.2,
     },
+    "colombier-tall": {
+        "radius": 2.3, "thickness": 0.45, "embrace": 135.0, "voussoirs": 20, "springing": 6.1, "pier_width": 1.05,
+        "aisle_thickness": 0.36, "aisle_embrace": 135.0, "aisle_voussoirs": 14, "aisle_springing": 6.0,
+        "buttress_width": 1.7, "half_width": 8.9,
+    },
 }  # fmt: skip
 
 
@@ -44,6 +49,16 @@ class Flyer:
 
 
 @dataclass(frozen=True)
+class Added:
+    """A buttress that stands free beside the outer one, `gap` away, and props it by a flyer (thesis Fig. 3-8)."""
+
+    gap: float
+    width: float
+    top: float
+    flyer: Flyer
+
+
+@dataclass(frozen=True)
 class Aisle:
     """One side of a church: pier, aisle vault, outer buttress, flyer. Heights are above the ground.
 
@@ -59,6 +74,7 @@ class Aisle:
     buttress_width: float
     buttress_top: float | None = None
     flyer: Flyer | None = None
+    added: Added | None = None
 
 
 def make_church(
@@ -148,50 +164,63 @@ def _aisle(
     chains = {f"{word} aisle": chain}
     if aisle.flyer is not None:
         chains[f"{word} flyer"] = _flyer(
-            builder, word, side, aisle, aisle.flyer, pier, buttress, back, face, pier_top, top
+            builder, f"{word} flyer", side, aisle.span, aisle.flyer, pier, buttress, back, pier_top, top
         )
+    if aisle.added is not None:
+        chains[f"{word} prop"], buttress = _prop(builder, word, side, aisle.added, buttress, rear, top)
     return chains, outside, buttress
 
 
+def _prop(
+    builder: Builder, word: str, side: int, added: Added, buttress: int, rear: float, top: float
+) -> tuple[list[int], int]:
+    """The flyer and the block of an added buttress, beyond the rear face of the outer one."""
+    face = rear + side * added.gap
+    outer = face + side * added.width
+    outline = np.array([[face, 0.0], [outer, 0.0], [outer, added.top], [face, added.top]])
+    block = builder.block(f"{word} added buttress", outline if side > 0 else outline[::-1])
+    builder.joint(f"{word} added buttress base", outline[0], outline[1], block, GROUND, side)
+    chain = _flyer(builder, f"{word} prop", side, added.gap, added.flyer, buttress, block, rear, top, added.top)
+    return chain, block
+
+
 def _flyer(
-    builder: Builder, word: str, side: int, aisle: Aisle, flyer: Flyer, pier: int, buttress: int,
-    back: float, face: float, pier_top: float, top: float,
+    builder: Builder, word: str, side: int, span: float, flyer: Flyer, pier: int, buttress: int,
+    back: float, pier_top: float, top: float,
 ) -> list[int]:  # fmt: skip
     """Voussoirs with radial joints between vertical end joints at the two faces; joints from left to right."""
-    head, foot = np.array([0.0, flyer.head]), np.array([aisle.span, flyer.foot])  # u outward from the pier
+    head, foot = np.array([0.0, flyer.head]), np.array([span, flyer.foot])  # u outward from the pier
     chord = foot - head
     length = float(np.hypot(*chord))
     if flyer.radius < 0.5 * length:
-        raise BadGeometry(f"{word} flyer: the radius {flyer.radius:g} m is less than half its chord ({length:.4g} m)")
+        raise BadGeometry(f"{word}: the radius {flyer.radius:g} m is less than half its chord ({length:.4g} m)")
     sag = np.sqrt(flyer.radius**2 - 0.25 * length**2)
     down = np.array([chord[1], -chord[0]]) / length  # to the lower side of the chord
     centre = 0.5 * (head + foot) + sag * down
-    if centre[0] > 1e-9 * length or aisle.span - centre[0] > 0.97 * flyer.radius:
-        raise BadGeometry(
-            f"{word} flyer: with a radius of {flyer.radius:g} m its crown does not lie at or before the pier"
-        )
+    if centre[0] > 1e-9 * length or span - centre[0] > 0.97 * flyer.radius:
+        raise BadGeometry(f"{word}: with a radius of {flyer.radius:g} m its crown does not lie at or before the pier")
     outer = flyer.radius + flyer.thickness
 
     def at(radius: float, u: float) -> float:
         return float(centre[1] + np.sqrt(radius**2 - (u - centre[0]) ** 2))
 
-    for what, u, limit in (("pier", 0.0, pier_top), ("buttress", aisle.span, top)):
+    for what, u, limit in (("pier", 0.0, pier_top), ("buttress", span, top)):
         if at(outer, u) > limit + 1e-9 * outer:
             raise BadGeometry(
-                f"{word} flyer: its extrados meets the {what} at {at(outer, u):.4g} m, above the top at {limit:.4g} m"
+                f"{word}: its extrados meets the {what} at {at(outer, u):.4g} m, above the top at {limit:.4g} m"
             )
     start = np.arctan2(flyer.head - centre[1], -centre[0])
-    end = np.arctan2(flyer.foot - centre[1], aisle.span - centre[0])
+    end = np.arctan2(flyer.foot - centre[1], span - centre[0])
     angle = np.linspace(start, end, flyer.voussoirs + 1)[1:-1]
     p = [head, *(centre + flyer.radius * np.column_stack([np.cos(angle), np.sin(angle)])), foot]
     q = [
         np.array([0.0, at(outer, 0.0)]),
         *(centre + outer * np.column_stack([np.cos(angle), np.sin(angle)])),
-        np.array([aisle.span, at(outer, aisle.span)]),
+        np.array([span, at(outer, span)]),
     ]
     if np.any(np.diff([point[0] for point in q]) <= 0.0):
         raise BadGeometry(
-            f"{word} flyer: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer"
+            f"{word}: {flyer.voussoirs} voussoirs do not fit between its vertical end joints; take a larger radius or fewer"
         )
 
     def place(points: np.ndarray) -> np.ndarray:
@@ -203,7 +232,7 @@ def _flyer(
 
     blocks = [
         builder.block(
-            f"{word} flyer voussoir {i + 1}",
+            f"{word} voussoir {i + 1}",
             place(np.concatenate([arc(flyer.radius, p[i], p[i + 1]), arc(outer, q[i], q[i + 1])[::-1]])),
         )
         for i in range(flyer.voussoirs)
@@ -211,7 +240,7 @@ def _flyer(
     ends = [pier, *blocks, buttress]
     pp, qq = place(np.array(p)), place(np.array(q))
     joints = [
-        builder.joint(f"{word} flyer joint {j}", pp[j], qq[j], ends[j + 1], ends[j], -side)
+        builder.joint(f"{word} joint {j}", pp[j], qq[j], ends[j + 1], ends[j], -side)
         for j in range(flyer.voussoirs + 1)
     ]
     return joints if side > 0 else joints[::-1]
@@ -227,6 +256,15 @@ class FlyerTable(Table):
     voussoirs: int = key(6, "number of voussoirs of the flyer", ge=2, le=500)
 
 
+class AddedTable(Table):
+    """A buttress added outside later, that props the outer one by a flyer (thesis Fig. 3-8)."""
+
+    gap: Length = key(about="clear distance from the outer face of the outer buttress", gt=0)
+    width: Length = key(about="its width", gt=0)
+    top: Length = key(about="its height", gt=0)
+    flyer: FlyerTable = key(about="the flyer between them; its head lies on the outer buttress")
+
+
 class RightSide(Table):
     """What differs on the right-hand side of a church."""
 
@@ -237,6 +275,7 @@ class RightSide(Table):
     buttress_width: Length | None = key(None, "width of the outer buttress", gt=0)
     buttress_top: Length | None = key(None, "height of the outer buttress", gt=0)
     flyer: FlyerTable | None = key(None, "flying buttress over the aisle")
+    added: AddedTable | None = key(None, "a buttress added on this side", source="thesis Fig. 3-8")
 
 
 class AisledVault(PresetStructure):
@@ -256,7 +295,7 @@ class AisledVault(PresetStructure):
     }
     word: ClassVar = "church section"
     kind: Literal["aisled-vault"]
-    preset: Literal["vezelay-like", "colombier-like"] | None = key(
+    preset: Literal["vezelay-like", "colombier-like", "colombier-tall"] | None = key(
         None, "guessed sizes of a church in the manner of thesis 3.5; other keys overrule it"
     )
     radius: Length = key(about="radius of the nave vault's centre line", gt=0)
@@ -280,6 +319,7 @@ class AisledVault(PresetStructure):
         None, "height of the outer buttresses; default the extrados of the aisle's springing", gt=0
     )
     flyer: FlyerTable | None = key(None, "flying buttresses over the aisles")
+    added: AddedTable | None = key(None, "buttresses added on both sides", source="thesis Fig. 3-8")
     right: RightSide | None = key(None, "what differs on the right-hand side")
     fill_level: Length | None = key(None, "top of the fill over the nave vault, above the ground", gt=0)
     aisle_fill_level: Length | None = key(None, "top of the fill over the aisle vaults, above the ground", gt=0)
@@ -318,8 +358,9 @@ class AisledVault(PresetStructure):
         width, span = value("buttress_width"), value("aisle_span")
         if span is None:
             span = self.half_width - (self.radius - 0.5 * self.thickness) - self.pier_width - width
-        flyer = value("flyer")
+        flyer, added = value("flyer"), value("added")
         return Aisle(
             span, value("aisle_thickness"), self.aisle_embrace, self.aisle_voussoirs, value("aisle_springing"), width,
             value("buttress_top"), None if flyer is None else Flyer(**flyer.model_dump()),
+            None if added is None else Added(added.gap, added.width, added.top, Flyer(**added.flyer.model_dump())),
         )  # fmt: skip
