@@ -118,13 +118,14 @@ contains
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_invalid_argument
       use sla_handle, only : model_take, stage_prepared, stage_loaded
-      use sla_model, only : element_model
+      use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nodes
       real(c_double), intent(out) :: ua(2, nodes)     !! [m]
       real(c_double), intent(out) :: ub(2, nodes)     !! [m]
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      real(c_double), allocatable :: all_a(:), all_b(:)
       integer :: i, k
       ua = 0.0_c_double
       ub = 0.0_c_double
@@ -133,13 +134,14 @@ contains
       if (nodes /= model%nodes) then
          status = status_invalid_argument
       else
-         do i = 1, nodes
-            do k = 1, 2
-               ua(k, i) = model%factor(k, i) * model%ua(model%equation(k, i))
-               ub(k, i) = model%factor(k, i) * model%ub(model%equation(k, i))
-            end do
-         end do
+         call model_displacements(model, all_a, all_b, status)
       end if
+      do i = 1, merge(nodes, 0_c_int, status == status_ok)
+         do k = 1, 2
+            ua(k, i) = model%factor(k, i) * all_a(model%equation(k, i))
+            ub(k, i) = model%factor(k, i) * all_b(model%equation(k, i))
+         end do
+      end do
       call handle_leave(handle)
    end subroutine displacement
 
@@ -149,17 +151,21 @@ contains
       use common_status, only : status_ok
       use sla_events, only : residual
       use sla_handle, only : model_take, stage_loaded
-      use sla_model, only : element_model
+      use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(out) :: ratio
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      real(c_double), allocatable :: ua(:), ub(:)
       !f2py threadsafe
       ratio = 0.0_c_double
       call model_take(handle, stage_loaded, stage_loaded, model, status)
       if (status /= status_ok) return
-      call residual(model)
-      ratio = model%residual
+      call model_displacements(model, ua, ub, status)
+      if (status == status_ok) then
+         call residual(model, ua, ub)
+         ratio = model%residual
+      end if
       call handle_leave(handle)
    end subroutine measure
 
@@ -169,13 +175,14 @@ contains
       use common_status, only : status_ok, status_invalid_argument
       use sla_group, only : point_group
       use sla_handle, only : model_take, stage_prepared, stage_loaded
-      use sla_model, only : element_model
+      use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(in) :: lambda
       integer(c_int), intent(in) :: points
       real(c_double), intent(out) :: values(18, points)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      real(c_double), allocatable :: ua(:), ub(:)
       integer :: g
       !f2py threadsafe
       values = 0.0_c_double
@@ -184,10 +191,13 @@ contains
       if (points /= model%points) then
          status = status_invalid_argument
       else
+         call model_displacements(model, ua, ub, status)
+      end if
+      if (status == status_ok) then
          do g = 1, size(model%holders)
             select type (group => model%holders(g)%group)
             class is (point_group)
-               call group%report(model%ua, model%ub, lambda, model%noise, &
+               call group%report(ua, ub, lambda, model%noise, &
                   values(:, group%offset + 1:group%offset + group%points))
             end select
          end do

@@ -1,8 +1,8 @@
 !> The event loop of sequentially linear analysis under loads A + lambda B (thesis 4.3.1).
 !>
-!> Each event: apply the last damage (one solve with its vectors, Sherman-Morrison-Woodbury correction of
-!> both displacements, rank-one changes of the factor), scan all points for the admissible range of lambda,
-!> choose the point that leaves it, record the state. The loop knows groups, not materials.
+!> Each event: apply the last damage (change the factor along the path of its element, bring the displacements up to
+!> date there), look for the admissible range of lambda wherever it can have changed enough (sla_regions), choose
+!> the point that leaves it, record the state. The loop knows groups, not materials.
 module sla_events
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
@@ -11,9 +11,10 @@ module sla_events
       stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction
    use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
    use sla_assembly, only : add_event
-   use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
+   use sla_c_bindings, only : extrados_sparse_change, extrados_sparse_solve
    use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
-   use sla_model, only : element_model, model_factor, model_solve
+   use sla_model, only : element_model, model_factor, model_settled, model_solve
+   use sla_regions, only : levels, regions_bring, regions_calm, regions_home, regions_margins, regions_window
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -21,6 +22,7 @@ module sla_events
 
    integer, parameter :: log_reals = 9, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
+   integer, parameter :: few = 100                    !! regions that are looked at sooner by one thread
    integer, parameter :: guard_every = 500
    real(wp), parameter :: most_residual = 1.0e-8_wp
 
@@ -55,11 +57,13 @@ contains
       integer(c_int), intent(out) :: reason       !! of the list sla_stop
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
+      real(wp) :: ratio(size(first) - 1)
       logical :: equilibrium
 
       reason = stop_none
       status = status_ok
       log%count = 0
+      call watch(model, first, equation, share, ratio)
       do while (log%count < size(log%reals, 2))
          if (cancel_requested()) then
             status = status_cancelled
@@ -69,7 +73,8 @@ contains
             call apply_event(model, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
-         call scan_model(model, found)
+         call scan_model(model, found, status)
+         if (status /= status_ok) return
          model%hot(:, 1) = [found%hi%group, found%hi%point]
          model%hot(:, 2) = [found%lo%group, found%lo%point]
          equilibrium = found%empty%point == 0 .and. found%hi%value >= found%lo%value
@@ -100,7 +105,7 @@ contains
          else
             call account(model, model%lambda)
          end if
-         call record(model, found, equilibrium, first, equation, share, log)
+         call record(model, found, equilibrium, first, equation, share, ratio, log)
          if (reason /= stop_none) return
          if (equilibrium) then
             if (model%lambda > model%peak) then
@@ -118,46 +123,201 @@ contains
       end do
    end subroutine run_events
 
-   !> Limits over all points, the same for any number of threads: pieces are joined in their order
-   subroutine scan_model(model, found)
+   !> Limits over all points; regions that cannot hold the least ones are left out. The same for any number of
+   !> threads
+   subroutine scan_model(model, found, status)
       type(element_model), intent(inout) :: model
       type(scan_result), intent(out) :: found
-      type(scan_result) :: guess
+      integer(c_int), intent(out) :: status
+      integer :: k, near, count
+      logical :: calm
+
+      found = scan_result()
+      associate (tree => model%tree)
+         count = size(tree%part)
+         if (tree%settled) then
+            ! First what is surely concerned, which gives limits to ask the others with.
+            do k = 1, size(model%hot, 2)
+               if (model%hot(1, k) > 0) model%wanted(element_region(model, model%hot(:, k))) = .true.
+            end do
+            call bring_wanted(model, near, status)
+            if (status /= status_ok) return
+            call scan_list(model, 1, near, found)
+            if (found%hi%value < tree%lambda(levels) .and. found%lo%value > tree%lambda(1) .and. &
+                found%hi%value > tree%lambda(1) .and. found%lo%value < tree%lambda(levels)) then
+               count = near
+               k = size(tree%part)
+               do while (k >= 1)
+                  if (tree%part(k)%seen /= tree%now) then
+                     call regions_calm(tree, k, model%ua, model%ub, found%hi%value, found%lo%value, calm)
+                     if (calm) then
+                        k = tree%part(k)%lowest - 1
+                        cycle
+                     end if
+                     call bring(model, k, count, status)
+                     if (status /= status_ok) return
+                  end if
+                  k = k - 1
+               end do
+               call scan_list(model, near + 1, count, found)
+               call regions_margins(tree, model%holders, model%ua, model%ub)
+               return
+            end if
+         end if
+         ! All are brought up to date and looked at, then may wait again.
+         call bring_all(model, status)
+         if (status /= status_ok) return
+         found = scan_result()
+         model%list = [(k, k = 1, count)]
+         call scan_list(model, 1, count, found)
+         tree%settled = tree%measured .and. found%hi%value < unbounded .and. found%lo%value > -unbounded
+         if (.not. tree%settled) return
+         call regions_window(tree, found%hi%value, found%lo%value)
+         call regions_margins(tree, model%holders, model%ua, model%ub)
+      end associate
+   end subroutine scan_model
+
+   !> The region of the first freedom of a point's element
+   pure function element_region(model, place) result(k)
+      type(element_model), intent(in) :: model
+      integer, intent(in) :: place(2)        !! group and point
       integer :: k
+      k = size(model%tree%part)
+      select type (group => model%holders(place(1))%group)
+      class is (point_group)
+         k = regions_home(model%tree, group%equation(:, 1 + (place(2) - 1) / (group%points / group%elements)))
+      end select
+   end function element_region
+
+   !> Bring the wanted regions and those above them up to date, unless they are; all that are go to the list
+   subroutine bring_wanted(model, count, status)
+      type(element_model), intent(inout) :: model
+      integer, intent(out) :: count
+      integer(c_int), intent(out) :: status
+      integer :: k
+      status = status_ok
+      count = 0
+      associate (tree => model%tree)
+         do k = 1, size(tree%part)
+            if (.not. model%wanted(k) .and. tree%part(k)%seen /= tree%now) cycle
+            if (tree%part(k)%parent > 0) model%wanted(tree%part(k)%parent) = .true.
+         end do
+         do k = size(tree%part), 1, -1
+            if (tree%part(k)%seen == tree%now) then
+               count = count + 1
+               model%list(count) = k
+            else if (model%wanted(k)) then
+               call bring(model, k, count, status)
+               if (status /= status_ok) return
+            end if
+         end do
+         model%wanted(:) = model%watched
+      end associate
+   end subroutine bring_wanted
+
+   !> Bring one region up to date and put it on the list
+   subroutine bring(model, k, count, status)
+      type(element_model), intent(inout) :: model
+      integer, intent(in) :: k
+      integer, intent(inout) :: count
+      integer(c_int), intent(out) :: status
+      call regions_bring(model%tree, k, model%handle, .false., model%ua, model%ub, model%z, status)
+      count = count + 1
+      model%list(count) = k
+   end subroutine bring
+
+   !> Bring all regions up to date
+   subroutine bring_all(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer :: k, count
+      status = status_ok
+      count = 0
+      do k = size(model%tree%part), 1, -1
+         if (model%tree%part(k)%seen /= model%tree%now) call bring(model, k, count, status)
+         if (status /= status_ok) return
+      end do
+      model%tree%part(:)%patience = 0
+      model%tree%part(:)%failed = 0
+   end subroutine bring_all
+
+   !> Limits over the listed regions, joined to those found before
+   subroutine scan_list(model, first, last, found)
+      type(element_model), intent(inout) :: model
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      type(scan_result), intent(inout) :: found
+      type(scan_result) :: guess
+      integer :: i, k
 
       ! The limits of the point damaged last are near the new ones: loosened, they spare most points the roots.
       call guess_limits(model, guess)
-      !$omp parallel do schedule(static) default(none) shared(model, guess) private(k) &
-      !$omp num_threads(model%threads) if(model%threads > 1)
-      do k = 1, size(model%piece, 2)
-         model%part(k) = guess
-         select type (group => model%holders(model%piece(1, k))%group)
-         class is (point_group)
-            call group%scan(model%piece(2, k), model%piece(3, k), model%ua, model%ub, model%lambda, model%noise, &
-               model%part(k))
-         end select
+      call loosen(found, guess)
+      !$omp parallel do schedule(static) default(none) shared(model, guess, first, last) private(i, k) &
+      !$omp num_threads(model%threads) if(model%threads > 1 .and. last - first > few)
+      do i = first, last
+         model%part(i) = guess
+         associate (part => model%tree%part(model%list(i)))
+            do k = part%run + 1, part%run + part%runs
+               select type (group => model%holders(model%tree%run(1, k))%group)
+               class is (point_group)
+                  call scan_run(group, model%tree%run(:, k), model%ua, model%ub, model%lambda, model%noise, &
+                     model%part(i))
+               end select
+            end do
+         end associate
       end do
       !$omp end parallel do
-      found = scan_result()
-      do k = 1, size(model%part)
-         associate (g => model%piece(1, k))
-            found%bounded = found%bounded .or. model%part(k)%bounded
-            if (model%part(k)%hi%point /= 0 .and. below(model%part(k)%hi%value, found%hi%value)) then
-               found%hi = model%part(k)%hi
-               found%hi%group = g
-            end if
-            if (model%part(k)%lo%point /= 0 .and. below(-model%part(k)%lo%value, -found%lo%value)) then
-               found%lo = model%part(k)%lo
-               found%lo%group = g
-            end if
-            if (model%part(k)%empty%point /= 0 .and. &
-                (found%empty%point == 0 .or. model%part(k)%empty%value > found%empty%value)) then
-               found%empty = model%part(k)%empty
-               found%empty%group = g
+      do i = first, last
+         associate (part => model%part(i))
+            found%bounded = found%bounded .or. part%bounded
+            if (part%hi%point /= 0 .and. wins(part%hi, part%hi%value, found%hi, found%hi%value)) found%hi = part%hi
+            if (part%lo%point /= 0 .and. wins(part%lo, -part%lo%value, found%lo, -found%lo%value)) found%lo = part%lo
+            if (part%empty%point == 0) cycle
+            if (found%empty%point == 0 .or. part%empty%value > found%empty%value .or. &
+                (.not. part%empty%value < found%empty%value .and. earlier(part%empty, found%empty))) then
+               found%empty = part%empty
             end if
          end associate
       end do
-   end subroutine scan_model
+   end subroutine scan_list
+
+   !> Limits over one run of elements; what it finds carries the group's number
+   subroutine scan_run(group, run, ua, ub, lambda, noise, found)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: run(3)          !! group, first and last element
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(inout) :: found
+      type(scan_result) :: new
+      new = found
+      call group%scan(run(2), run(3), ua, ub, lambda, noise, new)
+      ! The group gives new limits no number.
+      if (new%hi%group == 0 .and. new%hi%point /= 0) new%hi%group = run(1)
+      if (new%lo%group == 0 .and. new%lo%point /= 0) new%lo%group = run(1)
+      if (new%empty%group == 0 .and. new%empty%point /= 0) new%empty%group = run(1)
+      found = new
+   end subroutine scan_run
+
+   !> Does a limit take the place of another one: it is less, or the same of an earlier point
+   pure function wins(new, value, old, least) result(better)
+      type(bound), intent(in) :: new
+      real(wp), intent(in) :: value          !! of the new, the least wins
+      type(bound), intent(in) :: old
+      real(wp), intent(in) :: least          !! of the old
+      logical :: better
+      better = below(value, least)
+      if (.not. better .and. old%point /= 0 .and. .not. below(least, value)) better = earlier(new, old)
+   end function wins
+
+   !> Does a point come before another
+   pure function earlier(a, b) result(first)
+      type(bound), intent(in) :: a, b
+      logical :: first
+      first = a%group < b%group .or. (a%group == b%group .and. a%point < b%point)
+   end function earlier
 
    !> Loosened limits of the points that set the last ones
    subroutine guess_limits(model, guess)
@@ -175,13 +335,48 @@ contains
             e = 1 + (model%hot(2, k) - 1) / (group%points / group%elements)
             found = scan_result()
             call group%scan(e, e, model%ua, model%ub, model%lambda, model%noise, found)
-            if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, &
-               found%hi%value + 1.0e-9_wp * abs(found%hi%value))
-            if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, &
-               found%lo%value - 1.0e-9_wp * abs(found%lo%value))
+            call loosen(found, guess)
          end select
       end do
    end subroutine guess_limits
+
+   !> Limits that leave room for equals of those found
+   pure subroutine loosen(found, guess)
+      type(scan_result), intent(in) :: found
+      type(scan_result), intent(inout) :: guess
+      real(wp), parameter :: room = 1.0e-9_wp
+      if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, found%hi%value + room * abs(found%hi%value))
+      if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, found%lo%value - room * abs(found%lo%value))
+   end subroutine loosen
+
+   !> A monitor on which the reference load does its work follows from that work. The regions of the others are
+   !> brought up to date in each event
+   subroutine watch(model, first, equation, share, ratio)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(in) :: first(:)
+      integer(c_int), intent(in) :: equation(:)
+      real(wp), intent(in) :: share(:)
+      real(wp), intent(out) :: ratio(:)           !! (monitors) to the work, 0: not of this kind [1/N]
+      real(wp), parameter :: same = 1.0e-12_wp
+      integer :: i, k, greatest
+      model%watched = .false.
+      do k = 1, size(ratio)
+         model%force = 0.0_wp
+         do i = int(first(k)), int(first(k + 1)) - 1
+            model%force(equation(i)) = model%force(equation(i)) + share(i)
+         end do
+         model%force(0) = 0.0_wp
+         greatest = maxloc(abs(model%fb), dim=1) - 1
+         ratio(k) = 0.0_wp
+         if (abs(model%fb(greatest)) > 0.0_wp) ratio(k) = model%force(greatest) / model%fb(greatest)
+         if (maxval(abs(model%force - ratio(k) * model%fb)) <= same * maxval(abs(model%force))) cycle
+         ratio(k) = 0.0_wp
+         do i = int(first(k)), int(first(k + 1)) - 1
+            if (equation(i) > 0) model%watched(model%tree%of(equation(i))) = .true.
+         end do
+      end do
+      model%wanted = model%watched
+   end subroutine watch
 
    !> The point to damage next and its multiplier
    pure subroutine choose(model, chosen)
@@ -191,30 +386,31 @@ contains
       model%lambda = chosen%value
    end subroutine choose
 
-   !> Damage the pending point; the displacements and the factor follow
+   !> Damage the pending point; the factor follows, and the displacements on the path of its element
    subroutine apply_event(model, reason, status)
       type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: reason
       integer(c_int), intent(out) :: status
-      real(wp) :: m(most_rank, most_rank), wa(most_rank), wb(most_rank)
-      integer(c_int) :: index0(most_entries)
-      integer :: i, j, r, n, tooth
+      real(wp) :: w(most_entries * most_rank), b(most_entries * 2), before(2, most_rank), after(2), least
+      integer(c_int) :: index0(most_entries), sense(most_rank)
+      integer :: i, k, n, tooth, pass, changes, path
 
       reason = stop_none
       status = status_ok
-      n = model%equations
       select type (group => model%holders(model%pending(1))%group)
       class is (point_group)
          call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
       end select
       model%pending = 0
       model%events = model%events + 1
-      associate (event => model%event)
-         r = event%rank
-         if (r == 0) return
-         do i = 1, r
-            model%before(i) = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
-               model%lambda * model%ub(event%index(1:event%entries)))
+      model%tree%now = model%tree%now + 1
+      associate (event => model%event, tree => model%tree)
+         if (event%rank == 0) return
+         n = event%entries
+         do i = 1, event%rank
+            before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
+               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            model%before(i) = before(1, i) + model%lambda * before(2, i)
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -226,68 +422,49 @@ contains
             end if
             return
          end if
+         ! (K - W S W') du = W S W' u. Stiffening first: no way-station is less definite than the ends.
+         changes = 0
+         b = 0.0_wp
+         do pass = 1, 2
+            do i = 1, event%rank
+               if ((event%sign(i) > 0.0_wp) .eqv. (pass == 1)) cycle
+               w(changes * n + 1:changes * n + n) = event%w(1:n, i)
+               changes = changes + 1
+               sense(changes) = int(-sign(1.0_wp, event%sign(i)), c_int)
+               b(1:n) = b(1:n) + event%sign(i) * before(1, i) * event%w(1:n, i)
+               b(n + 1:2 * n) = b(n + 1:2 * n) + event%sign(i) * before(2, i) * event%w(1:n, i)
+            end do
+         end do
+         path = 0
+         k = regions_home(tree, event%index(1:n))
+         do while (k > 0)
+            path = path + 1
+            model%list(path) = k
+            model%z(tree%part(k)%first:tree%part(k)%last, :) = 0.0_wp   ! part of a region may lie off the path
+            k = tree%part(k)%parent
+         end do
          index0 = event%index - 1_c_int
-         status = extrados_sparse_event(model%handle, int(r, c_int), int(event%entries, c_int), index0, &
-            reshape(event%w(1:event%entries, 1:r), [event%entries * r]), model%z)
-         if (status /= status_ok) return
-         do j = 1, r
-            do i = 1, r
-               m(i, j) = -dot_product(event%w(1:event%entries, i), model%z(event%index(1:event%entries), j))
-            end do
-            m(j, j) = m(j, j) + event%sign(j)
-            wa(j) = dot_product(event%w(1:event%entries, j), model%ua(event%index(1:event%entries)))
-            wb(j) = dot_product(event%w(1:event%entries, j), model%ub(event%index(1:event%entries)))
+         status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(n, c_int), index0, w, 2_c_int, &
+            b, model%z, least)
+         if (status == status_not_positive_definite .or. (status == status_ok .and. least < least_pivot)) then
+            status = status_ok
+            reason = stop_mechanism
+         end if
+         if (status /= status_ok .or. reason /= stop_none) return
+         ! From the root down to the element
+         do i = path, 1, -1
+            call regions_bring(tree, model%list(i), model%handle, .true., model%ua, model%ub, model%z, status)
+            if (status /= status_ok) return
          end do
-         call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), reason)
-         if (reason /= stop_none) return
-         do j = 1, r
-            model%ua(1:n) = model%ua(1:n) + wa(j) * model%z(:, j)
-            model%ub(1:n) = model%ub(1:n) + wb(j) * model%z(:, j)
-         end do
-         ! Stiffening first: no way-station is less definite than the ends.
-         do j = 1, 2
-            do i = 1, r
-               if ((event%sign(i) > 0.0_wp) .eqv. (j == 1)) cycle
-               status = extrados_sparse_rank1(model%handle, int(-sign(1.0_wp, event%sign(i)), c_int), &
-                  int(event%entries, c_int), index0, event%w(1:event%entries, i))
-               if (status == status_not_positive_definite) then
-                  status = status_ok
-                  reason = stop_mechanism
-               end if
-               if (status /= status_ok .or. reason /= stop_none) return
-            end do
+         do i = 1, event%rank
+            after = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
+               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            model%work_now = model%work_now + event%sign(i) * &
+               [before(1, i) * after(1), before(1, i) * after(2), before(2, i) * after(2)]
          end do
       end associate
       if (mod(model%events, guard_every) == 0) call guard_residual(model, status)
    end subroutine apply_event
-
-   !> Solve m x = wa, m y = wb by elimination without pivoting: m is positive definite for softening events
-   pure subroutine small(m, wa, wb, r, definite, reason)
-      real(wp), intent(inout) :: m(:, :)
-      real(wp), intent(inout) :: wa(:)
-      real(wp), intent(inout) :: wb(:)
-      integer, intent(in) :: r
-      logical, intent(in) :: definite
-      integer(c_int), intent(inout) :: reason
-      real(wp) :: f
-      integer :: i, j
-      do j = 1, r
-         if ((definite .and. .not. m(j, j) > least_pivot) .or. .not. abs(m(j, j)) > least_pivot) then
-            reason = stop_mechanism
-            return
-         end if
-         do i = j + 1, r
-            f = m(i, j) / m(j, j)
-            m(i, j:r) = m(i, j:r) - f * m(j, j:r)
-            wa(i) = wa(i) - f * wa(j)
-            wb(i) = wb(i) - f * wb(j)
-         end do
-      end do
-      do j = r, 1, -1
-         wa(j) = (wa(j) - dot_product(m(j, j + 1:r), wa(j + 1:r))) / m(j, j)
-         wb(j) = (wb(j) - dot_product(m(j, j + 1:r), wb(j + 1:r))) / m(j, j)
-      end do
-   end subroutine small
 
    !> Residuals of both displacements by the elements; refine, then factorise anew, only where they ask for it
    subroutine guard_residual(model, status)
@@ -297,27 +474,34 @@ contains
       real(wp) :: ratio
       integer :: n
 
-      status = status_ok
       n = model%equations
+      call bring_all(model, status)
+      if (status /= status_ok) return
       model%guard(1) = model%guard(1) + 1
-      call residual(model)
-      if (model%residual <= most_residual) return
+      call residual(model, model%ua, model%ub)
+      if (model%residual <= most_residual) then
+         call model_settled(model)
+         return
+      end if
       model%guard(2) = model%guard(2) + 1
       status = extrados_sparse_solve(model%handle, 2_c_int, model%z)
       if (status /= status_ok) return
       model%ua(1:n) = model%ua(1:n) + model%z(:, 1)
       model%ub(1:n) = model%ub(1:n) + model%z(:, 2)
-      call residual(model)
+      call model_settled(model)
+      call residual(model, model%ua, model%ub)
       if (model%residual <= most_residual) return
       model%guard(3) = model%guard(3) + 1
       call model_factor(model, node, direction, ratio, status)
       if (status == status_ok) call model_solve(model, status)
-      if (status == status_ok) call residual(model)
+      if (status == status_ok) call residual(model, model%ua, model%ub)
    end subroutine guard_residual
 
    !> Residual forces into z, the larger relative norm into made%residual
-   subroutine residual(model)
+   subroutine residual(model, ua, ub)
       type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
       real(wp) :: load
       integer :: k, g, n
       n = model%equations
@@ -325,8 +509,8 @@ contains
       do k = 1, 2
          model%force = 0.0_wp
          do g = 1, size(model%holders)
-            if (k == 1) call model%holders(g)%group%force(model%ua, model%force)
-            if (k == 2) call model%holders(g)%group%force(model%ub, model%force)
+            if (k == 1) call model%holders(g)%group%force(ua, model%force)
+            if (k == 2) call model%holders(g)%group%force(ub, model%force)
          end do
          if (k == 1) model%z(:, k) = model%fa(1:n) - model%force(1:n)
          if (k == 2) model%z(:, k) = model%fb(1:n) - model%force(1:n)
@@ -344,7 +528,7 @@ contains
       integer :: i
 
       was = model%lambda_recorded
-      new = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), dot_product(model%fb, model%ub)]
+      new = model%work_now
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
          if (.not. model%carried) model%external = model%external + 0.5_wp * new(1)
@@ -371,15 +555,16 @@ contains
    end subroutine account
 
    !> One row of the log
-   subroutine record(model, found, equilibrium, first, equation, share, log)
+   subroutine record(model, found, equilibrium, first, equation, share, ratio, log)
       type(element_model), intent(inout) :: model
       type(scan_result), intent(in) :: found
       logical, intent(in) :: equilibrium
       integer(c_int), intent(in) :: first(:)
       integer(c_int), intent(in) :: equation(:)
       real(wp), intent(in) :: share(:)
+      real(wp), intent(in) :: ratio(:)      !! see watch
       type(event_log), intent(inout) :: log
-      real(wp) :: stored
+      real(wp) :: stored, slope
       integer :: k, i, offset
 
       log%count = log%count + 1
@@ -396,12 +581,19 @@ contains
       log%integers(:, log%count) = [int(offset + model%pending(2), c_int), int(model%pending(3), c_int), &
          int(model%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
       do k = 1, size(log%monitors, 1)
-         log%monitors(k, log%count) = 0.0_wp
-         do i = int(first(k)), int(first(k + 1)) - 1
-            log%monitors(k, log%count) = log%monitors(k, log%count) + &
-               share(i) * (model%ua(equation(i)) + model%lambda * model%ub(equation(i)))
-            if (k == 1) model%slope = merge(0.0_wp, model%slope, i == first(1)) + share(i) * model%ub(equation(i))
-         end do
+         if (abs(ratio(k)) > 0.0_wp) then
+            slope = ratio(k) * model%work(3)
+            log%monitors(k, log%count) = ratio(k) * model%work(2) + model%lambda * slope
+         else
+            log%monitors(k, log%count) = 0.0_wp
+            slope = 0.0_wp
+            do i = int(first(k)), int(first(k + 1)) - 1
+               log%monitors(k, log%count) = log%monitors(k, log%count) + &
+                  share(i) * (model%ua(equation(i)) + model%lambda * model%ub(equation(i)))
+               slope = slope + share(i) * model%ub(equation(i))
+            end do
+         end if
+         if (k == 1) model%slope = slope
       end do
    end subroutine record
 

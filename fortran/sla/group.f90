@@ -76,6 +76,7 @@ module sla_group
       procedure(damage_interface), deferred :: damage
       procedure(report_interface), deferred :: report
       procedure(state_interface), deferred :: state
+      procedure :: margin
    end type point_group
 
    type :: group_holder
@@ -158,6 +159,24 @@ module sla_group
    end interface
 
 contains
+
+   !> What a range of elements can bear before a point leaves its limits at one of the multipliers `lambda`: the
+   !> least sqrt(2 U) of the strain energies U [J] that a change of the displacements must bring into them.
+   !> For a component of the stress that has `slack` left at a point of volume w and stiffness D of that
+   !> component it is slack sqrt(w / D). Here for points of which nothing is known: they are looked at in each event.
+   pure subroutine margin(group, first, last, ua, ub, lambda, least)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda(:)
+      real(wp), intent(inout) :: least(:)     !! sqrt(2 U) by multiplier [J^1/2]
+      associate (unused_group => group%points, unused_first => first, unused_last => last, unused_a => ua, &
+         unused_b => ub, unused_load => lambda)
+      end associate
+      least = -1.0_wp
+   end subroutine margin
 
    !> Displacements of an element's own freedoms
    pure subroutine gather(group, element, u, local)
