@@ -168,7 +168,9 @@ contains
          call bring_all(model, status)
          if (status /= status_ok) return
          found = scan_result()
-         model%list = [(k, k = 1, count)]
+         do k = 1, count
+            model%list(k) = k
+         end do
          call scan_list(model, 1, count, found)
          tree%settled = tree%measured .and. found%hi%value < unbounded .and. found%lo%value > -unbounded
          if (.not. tree%settled) return

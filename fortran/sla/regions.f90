@@ -299,7 +299,7 @@ contains
    pure subroutine fit_edge(tree, part, energy)
       type(region_tree), intent(in) :: tree
       type(region), intent(inout) :: part
-      real(wp), intent(in) :: energy(:, :)          !! of the monomials of the whole [N/m]
+      real(wp), intent(in) :: energy(2 * terms, 2 * terms)   !! of the monomials of the whole [N/m]
       real(wp) :: gram(terms, terms), shift(terms, terms), full(2 * terms, 2 * terms), values(terms), c(2)
       integer :: i, d, q, count
 
@@ -343,13 +343,13 @@ contains
 
    !> Inverse of the lower Cholesky factor; a monomial that depends on those before it is left out (a row of zeros)
    pure subroutine inverse_cholesky(gram, inverse)
-      real(wp), intent(in) :: gram(:, :)
-      real(wp), intent(out) :: inverse(:, :)
+      real(wp), intent(in) :: gram(terms, terms)
+      real(wp), intent(out) :: inverse(terms, terms)
       real(wp), parameter :: dependent = 1.0e-6_wp
-      real(wp) :: row(size(gram, 1)), along
+      real(wp) :: row(terms), along
       integer :: i, j
       inverse = 0.0_wp
-      do i = 1, size(gram, 1)    ! Gram-Schmidt on the monomials, twice over
+      do i = 1, terms    ! Gram-Schmidt on the monomials, twice over
          row = 0.0_wp
          row(i) = 1.0_wp
          do j = 1, 2 * (i - 1)
