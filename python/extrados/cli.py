@@ -303,13 +303,16 @@ def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("
     """List the decks below a folder with their titles."""
     import tomllib
 
+    from extrados.decks.reader import LARGEST
+    from extrados.schema import files
+
     found = False
     for path in sorted(folder.rglob("*.toml")):
         if path.name.endswith(".expect.toml"):
             continue
         try:
-            title = tomllib.loads(path.read_text(encoding="utf-8")).get("title", "")
-        except (OSError, ValueError):
+            title = tomllib.loads(files.read(path, LARGEST).text()).get("title", "")
+        except (ValueError, RecursionError):
             title = "(cannot be read)"
         out_console.print(f"{path}: {title}", markup=False)
         found = True

@@ -17,7 +17,7 @@ MAY_IMPORT = {
     "schema": set(),
     "kinds": set(),
     "core": {"_core", "schema"},
-    "geometry": {"errors"},
+    "geometry": {"errors", "schema"},
     "errors": set(),
     "limit": {"geometry", "errors", "schema"},
     "rockers": {"building", "geometry", "errors", "limit", "core", "schema"},
@@ -32,7 +32,7 @@ MAY_IMPORT = {
     },
     "plots": {"kinds", "results", "schema"},
     "running": {"analyses", "tables", "building", "decks", "motions", "results", "plots", "schema", "_build_info"},
-    "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "_build_info"},
+    "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "schema", "_build_info"},
     "": {"analyses", "decks", "running"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit

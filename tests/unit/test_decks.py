@@ -101,7 +101,7 @@ def test_hostile_files(tmp_path) -> None:
     assert "nested too deeply" in complaints("x = " + "[" * 100000)[0]
     big = tmp_path / "big.toml"
     big.write_bytes(b"# " + b"x" * 5_000_000)
-    for path, words in ((big, "5.0 MB"), (tmp_path, "is not a file"), (tmp_path / "no.toml", "no such file")):
+    for path, words in ((big, "5.0 MB"), (tmp_path, "is a folder"), (tmp_path / "no.toml", "no such file")):
         with pytest.raises(DeckError, match=words):
             read_deck(path)
 

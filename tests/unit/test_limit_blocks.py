@@ -7,15 +7,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from extrados.building.files import read
+from extrados.building.geometry import drawing as drawings
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.builder import BadGeometry
 from extrados.building.geometry.contacts import Overlap, find_contacts
-from extrados.building.geometry.drawing import read_dxf
 from extrados.building.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, signed_area
 from extrados.building.templates.arch import make_arch
-from extrados.building.templates.blocks import Polygon, make_blocks, read_json
+from extrados.building.templates.blocks import Polygon, make_blocks
 from extrados.limit.interior import collapse_load
 from extrados.limit.programme import Immovable, LimitAnalysis
+
+
+def read_json(path: Path):
+    return drawings.read_json(read(path, drawings.LARGEST_FILE))
+
+
+def read_dxf(path: Path, *options, **layers):
+    return drawings.read_dxf(read(path, drawings.LARGEST_FILE), *options, **layers)
+
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 

@@ -252,7 +252,7 @@ def test_wrong_decks(deck, words) -> None:
         ({"kind": "suite", "files": ["r.at2"], "member": 2}, "holds 1 records"),
         ({"kind": "generated", "mmi": 11, "duration": 3.0}, "expected 4 to 9"),
         ({"kind": "generated", "mmi": 6, "duration": 3.0, "spectrum": "../s.csv"}, "out of the deck's folder"),
-        ({"kind": "compatible", "code": "table", "table": "t.csv"}, "cannot be read"),
+        ({"kind": "compatible", "code": "table", "table": "t.csv"}, "no such file"),
         ({"kind": "record", "file": "r.at2", "high_cut": 500.0}, "half the sampling rate"),
     ],
 )

@@ -18,6 +18,7 @@ from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.building.structure import Structure
 from extrados.decks.moved import MOVED, MOVED_KINDS
 from extrados.decks.positions import key_lines, line_of
+from extrados.schema import files
 from extrados.schema.table import Motion, Table
 
 LARGEST = 1_000_000  # bytes
@@ -86,14 +87,9 @@ def read_deck(path: str | Path) -> Deck:
     path = Path(path)
     name = str(path)
     try:
-        if not path.is_file():
-            raise DeckError([f"{name}: " + ("is not a file" if path.exists() else "no such file")])
-        size = path.stat().st_size
-        if size > LARGEST:
-            raise DeckError([f"{name}: is {size / 1e6:.1f} MB, a deck has at most {LARGEST / 1e6:g} MB"])
-        raw = path.read_bytes()
-    except OSError as error:
-        raise DeckError([f"{name}: cannot be read: {error.strerror or error}"]) from None
+        raw = files.read(path, LARGEST).content
+    except files.BadFile as error:
+        raise DeckError([str(error)]) from None
     return read_text(raw, name, path.resolve().parent)
 
 

@@ -7,6 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from extrados.schema.constants import GRAVITY
+from extrados.schema.files import BadFile, read
+
+LARGEST = 1_000_000  # bytes
 
 Spectrum = Callable[[np.ndarray], np.ndarray]
 
@@ -79,16 +82,13 @@ def tabulated(period: np.ndarray, acceleration: np.ndarray) -> Spectrum:
     return at
 
 
-def read_table(path: Path) -> Spectrum:
-    """A CSV file period_s,sa_g; ValueError with file and line."""
+def read_table(name: str | Path, folder: Path | None = None) -> Spectrum:
+    """A CSV file period_s,sa_g that a deck in `folder` names; ValueError with file and line."""
     try:
-        if path.stat().st_size > 1_000_000:
-            raise ValueError(f"{path}: is larger than 1 MB, too much for a spectrum")
-        reader = csv.reader(path.read_text("utf-8-sig").splitlines())
-    except OSError as error:
-        raise ValueError(f"{path}: cannot be read: {error.strerror or error}") from None
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: is not UTF-8 text; expected period_s,sa_g") from None
+        file = read(name, LARGEST, folder)
+        path, reader = file.path, csv.reader(file.text().splitlines())
+    except BadFile as error:
+        raise ValueError(f"{error}; expected a CSV file period_s,sa_g") from None
     header = [word.strip() for word in next(reader, [])]
     if header != ["period_s", "sa_g"]:
         raise ValueError(f"{path}:1: header is {','.join(header)[:60]!r}, expected period_s,sa_g")

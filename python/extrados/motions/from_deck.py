@@ -103,10 +103,8 @@ def generated_set(model: models.Generated, folder: Path, seed: int | None = None
     keys = model.model_dump(exclude={"kind", "member", "time_step"})
     if seed is not None:
         keys["seed"] = seed
-    if model.spectrum != "boore-worden":
-        keys["spectrum"] = str(records.locate(model.spectrum, folder))
     try:
-        return generated(**keys, step=model.time_step)
+        return generated(**keys, step=model.time_step, folder=folder)
     except ValueError as error:
         raise RecordError(f"[motion] generated: {error}") from None
 
@@ -139,7 +137,7 @@ def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
             )
         case "ASCE7":
             return code_spectra.asce7(model.sds, model.sd1, model.long_period)
-    spectrum = code_spectra.read_table(records.locate(model.table, folder))
+    spectrum = code_spectra.read_table(model.table, folder)
     spectrum(model.longest)  # refuses a table that ends before the band
     return spectrum
 
@@ -160,20 +158,20 @@ def _treatment(model: models.Treated) -> records.Treatment:
 
 
 def _record(model: models.Components, treatment: records.Treatment, folder: Path) -> Motion:
-    path = records.locate(model.file, folder)
-    seen = {(path, model.channel)}
+    seen = {(records.locate(model.file, folder), model.channel)}
 
     def component(file: str | None, channel: int | str | None) -> records.Record | None:
         if file is None and channel is None:
             return None
-        place = (path if file is None else records.locate(file, folder), channel)
+        file = model.file if file is None else file
+        place = (records.locate(file, folder), channel)
         if place in seen:
             raise RecordError(f"{place[0]}: is named for two components of one record")
         seen.add(place)
-        return records.read_record(*place)
+        return records.read_record(records.read_file(file, folder), channel)
 
     return records.record_motion(
-        records.read_record(path, model.channel),
+        records.read_record(records.read_file(model.file, folder), model.channel),
         treatment,
         second=component(model.second, model.second_channel),
         angle=model.angle or 0.0,

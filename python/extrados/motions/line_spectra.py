@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from extrados.core import motion as core
+from extrados.schema.files import BadFile, read
 
 SHIPPED = "boore-worden"
 LARGEST = 1_000_000  # bytes
@@ -52,19 +53,14 @@ class LineSpectrum:
 
 
 def load_spectrum(name: str = SHIPPED, folder: Path | None = None) -> LineSpectrum:
-    """The shipped spectrum by its name, or one in a CSV file (in `folder` when given)."""
+    """The shipped spectrum by its name, or one in a CSV file that a deck in `folder` names."""
     if name == SHIPPED:
         return _parse((files("extrados.motions") / "spectra" / f"{SHIPPED}.csv").read_text("utf-8"), name)
-    path = (folder / name) if folder else Path(name)
-    if not path.is_file():
-        raise SpectrumFileError(f"{path}: no such file; expected '{SHIPPED}' or a CSV file {','.join(COLUMNS)}")
-    if path.stat().st_size > LARGEST:
-        raise SpectrumFileError(f"{path}: is larger than {LARGEST / 1e6:g} MB, too much for a spectrum")
     try:
-        text = path.read_text("utf-8-sig")
-    except UnicodeDecodeError:
-        raise SpectrumFileError(f"{path}: is not UTF-8 text; expected {','.join(COLUMNS)}") from None
-    return _parse(text, str(path))
+        file = read(name, LARGEST, folder)
+        return _parse(file.text(), str(file.path))
+    except BadFile as error:
+        raise SpectrumFileError(f"{error}; expected '{SHIPPED}' or a CSV file {','.join(COLUMNS)}") from None
 
 
 def _parse(text: str, name: str) -> LineSpectrum:

@@ -10,6 +10,7 @@ from extrados.motions import processing
 from extrados.motions.directions import rotated
 from extrados.motions.formats.recognise import read_record as read_record
 from extrados.motions.formats.record import ACCELERATION, QUANTITIES, Record, RecordError
+from extrados.motions.formats.record import read_file as read_file
 from extrados.motions.motion import Motion
 from extrados.schema import files
 from extrados.schema.constants import GRAVITY
@@ -48,22 +49,22 @@ def locate(file: str, folder: Path) -> Path:
     """The file a deck means; RecordError where it cannot be."""
     try:
         return files.locate(file, folder)
-    except files.BadPlace as error:
+    except files.BadFile as error:
         raise RecordError(str(error)) from None
 
 
 def list_suite(names: list[str] | None, pattern: str | None, subfolder: str | None, folder: Path) -> list[Path]:
-    """The files of a suite, sorted where the deck gives a pattern or a folder; all inside the deck's folder."""
+    """The files of a suite, as a deck in `folder` would name them; sorted where it gives a pattern or a folder."""
+    root = folder.resolve()
     if names is not None:
         found = [locate(name, folder) for name in names]
     elif pattern is not None:
         if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
             raise RecordError(f"{pattern}: leads out of the deck's folder")
         try:
-            found = sorted(p for p in folder.glob(pattern) if p.is_file())
+            found = sorted(p for p in root.glob(pattern) if p.is_file())
         except (ValueError, NotImplementedError) as error:
             raise RecordError(f"{pattern}: is no pattern: {error}") from None
-        found = [locate(str(p.relative_to(folder)), folder) for p in found]
     else:
         inside = locate(subfolder or ".", folder)
         if not inside.is_dir():
@@ -73,7 +74,8 @@ def list_suite(names: list[str] | None, pattern: str | None, subfolder: str | No
         raise RecordError(f"{folder}: no records match {pattern or subfolder or names}")
     if len(found) > MOST_RECORDS:
         raise RecordError(f"{folder}: {len(found)} records, a suite has at most {MOST_RECORDS}")
-    return found
+    # told from the deck's folder on, so that the door asks of each whether it lies within
+    return [p.relative_to(root) if p.is_relative_to(root) else p for p in found]
 
 
 def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> tuple[np.ndarray, float, list[str]]:

@@ -22,6 +22,7 @@ from extrados.results.fields import plain
 from extrados.results.model import Array, Result, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
+from extrados.schema import files
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
@@ -333,13 +334,14 @@ def read(folder: str | Path) -> Stored:
 
     folder = Path(folder)
     try:
-        summary = json.loads((folder / SUMMARY).read_text(encoding="utf-8"))
+        summary = json.loads(files.read(SUMMARY, None, folder).text())
         _check_shape(summary)
         recorded = summary["files"].get(STORE)
-        if hashlib.sha256((folder / STORE).read_bytes()).hexdigest() != recorded:
+        content = files.read(STORE, None, folder).content
+        if hashlib.sha256(content).hexdigest() != recorded:
             raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
         arrays: dict[str, dict[str, Array]] = {}
-        with h5py.File(folder / STORE, "r") as file:
+        with h5py.File(io.BytesIO(content), "r") as file:
             for name, group in file.items():
                 arrays[name] = {}
                 for title, store in group.items():
@@ -350,7 +352,7 @@ def read(folder: str | Path) -> Stored:
                     arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
         head = {key: value for key, value in summary.items() if key != "analyses"}
         return Stored(folder, lambda: head, summary["analyses"], arrays)
-    except FileNotFoundError as error:
-        raise StoreError(f"{error.filename}: not found; {folder} holds no results of extrados") from None
+    except files.BadFile as error:
+        raise StoreError(f"{error}; {folder} holds no results of extrados") from None
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise StoreError(f"{folder}: results cannot be read: {error}") from None

@@ -1,9 +1,9 @@
 """survey: many sections from a table, one line of results each."""
 
 import csv
+import io
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,34 +15,31 @@ from extrados.analyses.limit.variation import Outcome, changed, evaluate, outcom
 from extrados.analyses.limit.variation import read_table as read_section
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.files import locate
+from extrados.building.files import read
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.schema.files import BadFile, File
 
 LARGEST_FILE = 50_000_000  # bytes
 MOST_ROWS = 200_000
 
 
-def read_table(path: Path) -> tuple[list[str], list[list[str]]]:
+def read_table(file: File) -> tuple[list[str], list[list[str]]]:
     """Header and rows of a CSV file; Refused with file and line where it is wrong."""
+    path = file.path
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise Refused(f"{path.name}: larger than {LARGEST_FILE / 1e6:g} MB")
-        with path.open(newline="", encoding="utf-8-sig") as file:
-            reader = csv.reader(file)
-            header = [name.strip() for name in next(reader, [])]
-            rows = []
-            for row in reader:
-                if not any(cell.strip() for cell in row):
-                    continue
-                if len(row) != len(header):
-                    raise Refused(f"{path.name}:{reader.line_num}: {len(row)} cells, the header has {len(header)}")
-                rows.append([cell.strip() for cell in row])
-                if len(rows) > MOST_ROWS:
-                    raise Refused(f"{path.name}: more than {MOST_ROWS} sections")
-    except OSError as error:
-        raise Refused(f"{path.name}: cannot be read: {error.strerror or error}") from None
-    except (UnicodeDecodeError, csv.Error) as error:
+        reader = csv.reader(io.StringIO(file.text(), newline=""))
+        header = [name.strip() for name in next(reader, [])]
+        rows = []
+        for row in reader:
+            if not any(cell.strip() for cell in row):
+                continue
+            if len(row) != len(header):
+                raise Refused(f"{path.name}:{reader.line_num}: {len(row)} cells, the header has {len(header)}")
+            rows.append([cell.strip() for cell in row])
+            if len(rows) > MOST_ROWS:
+                raise Refused(f"{path.name}: more than {MOST_ROWS} sections")
+    except (BadFile, csv.Error) as error:
         raise Refused(f"{path.name}: is not a CSV table in UTF-8: {error}") from None
     if not header or not rows:
         raise Refused(f"{path.name}: expected a header of [structure] keys and at least one row")
@@ -95,7 +92,7 @@ class Sections:
 def run(context: Context, options: Survey) -> Result:
     """The deck's structure with the keys of each row in their place; empty cells leave the deck's value."""
     model = type(context.deck.structure)
-    header, rows = read_table(locate(options.file, context.deck.folder))
+    header, rows = read_table(read(options.file, LARGEST_FILE, context.deck.folder))
     for name in header:
         if name != "name" and name.split(".")[0] not in model.model_fields:
             raise Refused(

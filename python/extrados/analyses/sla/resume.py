@@ -1,7 +1,6 @@
 """Going on from the stored events of an earlier run: the damage at one of them, and what had been counted by then."""
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -10,6 +9,7 @@ from extrados.analyses.sla.events import Curve, damage_before
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
 from extrados.results.store import StoreError, read
+from extrados.schema.files import BadFile, locate
 
 LEDGER = ("external", "dissipated", "crack")
 
@@ -30,10 +30,8 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
     """The damage stored by an earlier run before the event asked for, and what had been counted at that event."""
     if options.resume_from is None:
         return None, None
-    folder = Path(options.resume_from)
-    folder = folder if folder.is_absolute() else context.deck.folder / folder
     try:
-        stored = read(folder)
+        stored = read(locate(options.resume_from, context.deck.folder))
         get = {name: array.data for name, array in stored.arrays["sla"].items()}
         there, here = get["point_xy"], model.point_xy
         if len(there) != len(here):
@@ -62,7 +60,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
             get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
         )
         return damage, earlier
-    except (StoreError, KeyError) as error:
+    except (StoreError, BadFile, KeyError) as error:
         raise Refused(f"resume_from: {error}") from None
 
 

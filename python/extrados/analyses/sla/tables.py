@@ -134,7 +134,9 @@ class Sla(BuildingAnalysis):
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)
     strength_length: Length | None = key(None, "correlation length of the strength; default one element", gt=0)
     strength_seed: int = key(1, "of the strength field", ge=0, le=2**31 - 1)
-    resume_from: str | None = key(None, "results folder of an earlier run of the same wall to go on from")
+    resume_from: str | None = key(
+        None, "results folder of an earlier run of the same wall to go on from, inside the deck's folder or absolute"
+    )
     resume_event: int | None = key(None, "go on before this event of that run; default its last", ge=1)
 
     @field_validator("directions")

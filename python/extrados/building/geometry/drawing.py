@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from extrados.building.errors import BadGeometry
+from extrados.schema.files import File
 
-LARGEST_FILE = 20_000_000  # bytes
+LARGEST_FILE = 20_000_000  # bytes of a drawing or a JSON file
 MOST_BLOCKS = 20_000
 MOST_POINTS = 2_000
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "ft": 0.3048}
@@ -34,7 +35,7 @@ class Polygon:
 
 
 def read_dxf(
-    path: Path, unit: str | None = None, layers: list[str] | None = None
+    file: File, unit: str | None = None, layers: list[str] | None = None
 ) -> tuple[list[Polygon], np.ndarray | None]:
     """Blocks and ground of a drawing; `layers` (with the ground layer) are read, all where it is None.
 
@@ -46,10 +47,10 @@ def read_dxf(
         from ezdxf.lldxf.const import DXFError
     except ImportError:
         raise BadGeometry("reading DXF needs ezdxf: pip install 'extrados[dxf]'") from None
+    path = file.path
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise BadGeometry(f"{path.name}: larger than {LARGEST_FILE / 1e6:g} MB")
-        drawing = readfile(path)
+        with file.copied() as copy:
+            drawing = readfile(copy)
     except OSError as error:
         raise BadGeometry(f"{path.name}: cannot be read as DXF: {error}") from None
     except (DXFError, UnicodeDecodeError) as error:
@@ -112,14 +113,11 @@ def _segments(entity: Any, kind: str, where: str) -> list[list[float]]:
     return [[a.x, a.y, b.x, b.y] for a, b in itertools.pairwise(points)]
 
 
-def read_json(path: Path) -> tuple[list[Polygon], np.ndarray | None]:
+def read_json(file: File) -> tuple[list[Polygon], np.ndarray | None]:
     """Blocks and ground of {"unit": "m", "blocks": [{"name", "points", "density"}], "ground": [[x, y, x, y]]}."""
+    path = file.path
     try:
-        if path.stat().st_size > LARGEST_FILE:
-            raise BadGeometry(f"{path.name}: larger than {LARGEST_FILE / 1e6:g} MB")
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BadGeometry(f"{path.name}: cannot be read: {error.strerror or error}") from None
+        data = json.loads(file.text())
     except (ValueError, RecursionError) as error:
         raise BadGeometry(f"{path.name}: is not JSON: {error}") from None
     if not isinstance(data, dict) or not isinstance(data.get("blocks"), list):

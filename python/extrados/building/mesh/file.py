@@ -2,19 +2,24 @@
 
 import contextlib
 import io
+import re
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.building.errors import BadGeometry
-from extrados.building.files import locate
+from extrados.building.files import read
 from extrados.building.mesh.mesh import Mesh, build_mesh, element_areas
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.templates.walls import MeshFile
+from extrados.schema.files import File
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
 
+#: Formats that keep a mesh in several files: meshio would open whatever path the first one names
+IN_PARTS = {".xdmf", ".xmf", ".node", ".ele"}
+_INCLUDE = re.compile(rb"^\s*\*\s*include\b", re.IGNORECASE | re.MULTILINE)
 KINDS = {"triangle": "T3", "triangle6": "T6", "quad": "Q4", "quad8": "Q8"}
 LARGEST = 500_000_000  # bytes
 
@@ -25,18 +30,14 @@ def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mes
         import meshio
     except ImportError:
         raise BadGeometry("reading meshes needs meshio: pip install 'extrados[mesh]'") from None
-    path = locate(wall.file, building.folder)
+    file = read(wall.file, LARGEST, building.folder)
+    path = file.path
+    _refuse_parts(file)
     try:
-        if path.stat().st_size > LARGEST:
-            raise BadGeometry(f"{path.name}: larger than {LARGEST / 1e6:g} MB")
         # meshio prints its warnings and ends the process on some errors
-        with contextlib.redirect_stdout(io.StringIO()):
-            mesh = meshio.read(path)
-    except OSError as error:
-        raise BadGeometry(f"{path.name}: cannot be read: {error.strerror or error}") from None
+        with file.copied() as copy, contextlib.redirect_stdout(io.StringIO()):
+            mesh = meshio.read(copy)
     except (SystemExit, Exception) as error:
-        if isinstance(error, BadGeometry):
-            raise
         raise BadGeometry(f"{path.name}: is not a mesh that meshio reads: {str(error) or 'unknown format'}") from None
     found: dict[str, list[np.ndarray]] = {}
     for cells in mesh.cells:
@@ -62,3 +63,9 @@ def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mes
         order = {"T3": [0, 2, 1], "T6": [0, 2, 1, 5, 4, 3], "Q4": [0, 3, 2, 1], "Q8": [0, 3, 2, 1, 7, 6, 5, 4]}[kind]
         connect = connect[:, order]
     return build_mesh(wall, building, options, xy, kind, connect, float(np.sqrt(np.median(np.abs(area)))))
+
+
+def _refuse_parts(file: File) -> None:
+    """BadGeometry where the file draws on others: only what the deck names is read."""
+    if file.path.suffix.lower() in IN_PARTS or _INCLUDE.search(file.content):
+        raise BadGeometry(f"{file.path.name}: the mesh lies in several files; save it as one")

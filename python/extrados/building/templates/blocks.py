@@ -7,11 +7,11 @@ import numpy as np
 from pydantic import model_validator
 
 from extrados.building.errors import BadGeometry
-from extrados.building.files import locate
+from extrados.building.files import read
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import with_chains
 from extrados.building.geometry.contacts import find_contacts
-from extrados.building.geometry.drawing import MOST_POINTS, Polygon, read_dxf, read_json
+from extrados.building.geometry.drawing import LARGEST_FILE, MOST_POINTS, Polygon, read_dxf, read_json
 from extrados.building.geometry.polygons import crossing_edges, following, properties, signed_area
 from extrados.building.structure import Structure
 from extrados.schema.quantities import Density, Length
@@ -151,13 +151,11 @@ class Blocks(Structure):
     def assembly(self, density: float, folder: Path) -> Assembly:
         ground = None
         if self.file is not None:
-            path = locate(self.file, folder)
-            if path.suffix.lower() == ".dxf":
-                polygons, ground = read_dxf(path, self.unit, self.layers)
-            elif path.suffix.lower() == ".json":
-                polygons, ground = read_json(path)
-            else:
+            suffix = Path(self.file).suffix.lower()
+            if suffix not in (".dxf", ".json"):
                 raise BadGeometry(f"{self.file}: expected a .json or .dxf file")
+            file = read(self.file, LARGEST_FILE, folder)
+            polygons, ground = read_dxf(file, self.unit, self.layers) if suffix == ".dxf" else read_json(file)
         else:
             polygons = [
                 Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density)

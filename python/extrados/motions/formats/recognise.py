@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from extrados.motions.formats import columns, cosmos, csmip, esm, knet, peer, seismology, smc
-from extrados.motions.formats.record import Lines, Record, RecordError, read_lines
+from extrados.motions.formats.record import Lines, Record, RecordError, read_file, read_lines
+from extrados.schema.files import File
 
 READERS = {"COSMOS": cosmos, "K-NET": knet, "ESM": esm, "SMC": smc, "CSMIP": csmip, "PEER": peer}
 
@@ -13,21 +14,23 @@ def format_of(text: Lines) -> str:
     return next((name for name, reader in READERS.items() if reader.recognises(text)), "columns")
 
 
-def read_records(path: Path) -> list[Record]:
+def read_records(source: File | Path) -> list[Record]:
     """Every channel and quantity of a file; RecordError says file, line and what was expected."""
-    if seismology.recognises(path):
-        return seismology.read(path)
-    text = read_lines(path)
+    file = source if isinstance(source, File) else read_file(source)
+    if seismology.recognises(file):
+        return seismology.read(file)
+    text = read_lines(file)
     name = format_of(text)
     return (READERS[name].read if name in READERS else columns.read)(text)
 
 
-def read_record(path: Path, channel: str | int | None = None) -> Record:
+def read_record(source: File | Path, channel: str | int | None = None) -> Record:
     """The acceleration record of a file, or the one of a channel: its number from 1 or a part of its name.
 
     A file with several accelerations and no channel named is refused, with the names.
     """
-    records = read_records(path)
+    path = source.path if isinstance(source, File) else source
+    records = read_records(source)
     wanted = [r for r in records if r.quantity == "acceleration"] or records[:1]
     if isinstance(channel, int):
         if not 1 <= channel <= len(wanted):

@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from extrados.schema import files
+from extrados.schema.files import File
+
 LARGEST = 50_000_000  # bytes: three hours at 200 samples a second, ten times what a record needs
 
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
@@ -141,20 +144,17 @@ class Lines:
         ]
 
 
-def read_lines(path: Path) -> Lines:
-    """The lines of a record; refuses what is no plain text file of a sensible size, before reading it."""
-    if "\0" in str(path):
-        raise RecordError(f"{str(path)!r}: a file name cannot hold a zero byte")
+def read_file(file: str | Path, folder: Path | None = None, largest: int = LARGEST) -> File:
+    """The file that a deck in `folder` names, or the one at a path; RecordError where it cannot be read."""
     try:
-        if not path.is_file():
-            raise RecordError(f"{path}: " + ("is not a plain file" if path.exists() else "no such file"))
-        size = path.stat().st_size
-        if size > LARGEST:
-            raise RecordError(f"{path}: is {size / 1e6:.0f} MB, a record has at most {LARGEST / 1e6:.0f} MB")
-        with path.open("rb") as file:
-            raw = file.read(LARGEST + 1)
-    except OSError as error:
-        raise RecordError(f"{path}: cannot be read: {error.strerror or error}") from None
+        return files.read(file, largest, folder)
+    except files.BadFile as error:
+        raise RecordError(str(error)) from None
+
+
+def read_lines(file: File) -> Lines:
+    """The lines of a record; refuses what is no text."""
+    path, raw = file.path, file.content
     if not raw.strip():
         raise RecordError(f"{path}: is empty; expected an accelerogram")
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff"):

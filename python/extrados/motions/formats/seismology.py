@@ -1,37 +1,33 @@
 """miniSEED and SAC through obspy, an extra: pip install 'extrados[seismo]'."""
 
+import io
 import warnings
-from pathlib import Path
 
 import numpy as np
 
-from extrados.motions.formats.record import LARGEST, Record, RecordError
+from extrados.motions.formats.record import Record, RecordError
+from extrados.schema.files import File
 
 
-def recognises(path: Path) -> bool:
+def recognises(file: File) -> bool:
     """miniSEED begins with a six-digit sequence number and a quality letter; SAC is named so."""
-    if path.suffix.lower() == ".sac":
+    if file.path.suffix.lower() == ".sac":
         return True
-    try:
-        with path.open("rb") as file:
-            head = file.read(8)
-    except (OSError, ValueError):
-        return False
+    head = file.content[:8]
     return len(head) == 8 and head[:6].isdigit() and head[6:7] in b"DRQM" and head[7:8] in b" \0"
 
 
-def read(path: Path) -> list[Record]:
+def read(file: File) -> list[Record]:
     """One record per trace, without a unit: the deck says what the numbers are."""
+    path = file.path
     try:
         import obspy
     except ImportError:
         raise RecordError(f"{path}: miniSEED and SAC need obspy: pip install 'extrados[seismo]'") from None
-    if path.is_file() and path.stat().st_size > LARGEST:
-        raise RecordError(f"{path}: is larger than {LARGEST / 1e6:.0f} MB")
     try:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            stream = obspy.read(str(path))
+            stream = obspy.read(io.BytesIO(file.content))
     except Exception as error:  # obspy raises many kinds on broken files
         raise RecordError(f"{path}: obspy cannot read it: {type(error).__name__}: {str(error)[:200]}") from None
     damage = [str(w.message) for w in said if issubclass(w.category, UserWarning)]
