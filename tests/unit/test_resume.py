@@ -194,7 +194,7 @@ def run(deck: Path, out: Path, **context) -> None:
 @pytest.mark.parametrize("kind", DECKS)
 def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     deck, one, two = written(kind, tmp_path), tmp_path / "a", tmp_path / "b"
-    keeps = 3 if kind.startswith("sla, one") else 2  # of that wall: in its second curve
+    keeps = 4 if kind.startswith("sla, one") else 2  # of that wall: in its second curve, after the constant loads
     words = ["run", str(deck), "--no-figures", "--quiet", "--threads", "1", "--out", str(one)]
     killed = subprocess.run([sys.executable, "-c", KILLED, str(keeps), *words])
     assert killed.returncode == -signal.SIGKILL and not (one / "summary.json").exists()
@@ -231,6 +231,53 @@ def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.
     (whole,) = run_analyses(Context(deck))
     assert resumed.status == whole.status == "ok" and resumed.answer == whole.answer
     assert kept <= set(folder_of(out).glob("*/*.npz")) and again
+
+
+#: Its weight cracks the wall many times before the push begins
+HEAVY = (
+    WALL.replace("density = 2000", "density = 2500").replace(
+        'value = "0.2 MPa" }]', 'value = "0.1 MPa" }, { kind = "point", x = 0.5, y = 0.5, fx = "9 kN" }]'
+    )
+    + """
+events = 2000
+ripple = 0.012
+mesh.size = "0.05 m"
+"""
+)
+
+
+@pytest.mark.parametrize("kept", [1, 2])
+def test_constant_loads_are_not_brought_on_again(kept: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stopped on their way (after 1000 events) or after it: what was done stays done, and the end has the same bits."""
+    deck = make_deck(tomllib.loads(HEAVY))
+    runs: list[int] = []
+    real, run = Checkpoint.keep, core.Model.run
+
+    def keep(self, *args):
+        runs.append(0)
+        if len(runs) == kept:
+            calls._ask()
+        return real(self, *args)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Checkpoint, "keep", keep)
+        (stopped,) = run_analyses(Context(deck, out=tmp_path / "run"))
+    assert stopped.status == "interrupted" and stopped.results["events"] == 0
+    done = []
+
+    def counted(self, *args):
+        found = run(self, *args)
+        done.append(len(found))
+        return found
+
+    (whole,) = run_analyses(Context(deck))
+    with monkeypatch.context() as patch:
+        patch.setattr(core.Model, "run", counted)
+        (resumed,) = run_analyses(Context(deck, out=tmp_path / "run", resume=True))
+    before = whole.results["events_of_constant_loads"] + 1
+    assert sum(done) <= whole.results["events"] + 100 + (before - 1000 if kept == 1 else 0)
+    for name, array in whole.arrays.items():
+        assert np.asarray(array.data).tobytes() == np.asarray(resumed.arrays[name].data).tobytes(), name
 
 
 def test_ctrl_c_between_two_rounds_counts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -165,6 +165,20 @@ def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
     moved = wall(events=5, resume_from=str(out))
     moved["structure"]["width"] = 3.01
     assert "lie up to" in run_deck(moved).reason
+    for words, change in {
+        "other stiffness": {"young": 7e9}, "other tensile laws": {"tensile_strength": 0.25e6},
+        "other crushing laws": {"compressive_strength": 3e6, "crushing_energy": 5e3},
+    }.items():  # fmt: skip
+        other = wall(events=5, resume_from=str(out))
+        other["material"] |= change
+        found = run_deck(other)
+        assert (found.status, words in found.reason) == ("refused", True), found.reason
+    for words, change in {
+        "other tensile laws": {"ripple": 0.1}, "other ways of cracking": {"shear_retention": 0.1}
+    }.items():  # fmt: skip
+        found = run_deck(wall(events=5, resume_from=str(out)) | {"analysis": [
+            wall(events=5, resume_from=str(out))["analysis"][0] | change]})  # fmt: skip
+        assert (found.status, words in found.reason) == ("refused", True), found.reason
 
 
 def test_a_wall_that_cannot_crack(tmp_path) -> None:

@@ -21,6 +21,15 @@ class Bilinear(ResultModel):
     ductility: float = fact("ultimate over yield displacement")
 
 
+class Makeup(ResultModel):
+    """Fingerprints of what a stored damage rests on; a run goes on from another with the same ones alone."""
+
+    stiffness: str = fact("of moduli, Poisson's ratios, thicknesses and elements")
+    tension: str = fact("of the tensile laws with their teeth and crack bands")
+    compression: str = fact("of the crushing laws with their teeth and crack bands")
+    cracking: str = fact("of the options of cracking")
+
+
 class SlaCurve(ResultModel):
     """The events of one sense of the load."""
 
@@ -80,6 +89,7 @@ class Sla(SlaCurve, KindResults):
     elements: int = fact("elements of the mesh")
     equations: int = fact("equations")
     points: int = fact("integration points, those of bars too")
+    makeup: Makeup = maybe("what resume_from compares")
     minus: SlaCurve = maybe("the curve of the second sense")
     scatter: Scatter = maybe("repetitions with other seeds")
     hinges: list[str] = maybe("of stones: joints that are open but for an edge at the peak")

@@ -8,7 +8,7 @@ from extrados.analyses.sla.events import Curve, run_curves
 from extrados.analyses.sla.measures import joint_openings, numbers_of, tooth_counts
 from extrados.analyses.sla.model import SlaModel, build, strength_factors
 from extrados.analyses.sla.repetitions import repeat
-from extrados.analyses.sla.resume import carry_on, start_of
+from extrados.analyses.sla.resume import carry_on, makeup, start_of
 from extrados.analyses.sla.stored import curve_arrays, field_files, mesh_arrays, sections
 from extrados.analyses.sla.tables import Sla
 from extrados.analyses.sla.words import answer_of_stones, answer_of_wall
@@ -59,6 +59,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         "elements": model.mesh.elements(),
         "equations": first.equations,
         "points": first.points,
+        "makeup": makeup(model),
     }
     for curve in curves[1:]:
         numbers["minus"] = numbers_of(model, options, curve)

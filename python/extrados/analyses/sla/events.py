@@ -73,7 +73,8 @@ def run_curves(
 ) -> list[Curve]:
     """The curves of all senses of B, each from the state that A leaves (or from a stored damage).
 
-    chain: where the states of the curve of a sense, +1 or -1, are kept on its way; none are without it.
+    chain: where the states of the curve of a sense, +1 or -1, are kept on its way, and of 0, of the constant loads;
+    none are without it.
     """
     curves = []
     with model.open(options, threads) as core_model:
@@ -85,14 +86,12 @@ def run_curves(
                 )
             core_model.set_damage(damage)
         else:
-            settle(core_model, model)
-        if damage is None and options.constant_damage and np.any(model.constant):
-            stage_a = _constant_stage(core_model, model, options, progress)
+            stage_a = _start(core_model, model, options, progress, chain and chain(0))
         start = core_model.damage()
         ledger, events = _totals(stage_a)
         for number, sense in enumerate(options.directions):
             sign = 1 if sense == "+" else -1
-            if number:
+            if number or stage_a is not None:  # a new factor: a run that is resumed here has one too
                 core_model.set_damage(start)
             core_model.loads(
                 model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger
@@ -118,26 +117,64 @@ def _totals(stage: core.Events | None) -> tuple[tuple[float, float, float], int]
     return (float(stage.external[-1]), float(stage.dissipated[-1]), float(stage.crack[-1])), int(stage.number[-1])
 
 
-def _constant_stage(
-    core_model: core.Model, model: SlaModel, options: Sla, progress: Callable[[float, float, str], None]
-) -> core.Events:
-    """Bring the constant loads from 0 to 1, with damage where they ask for it."""
+def _start(
+    core_model: core.Model,
+    model: SlaModel,
+    options: Sla,
+    progress: Callable[[float, float, str], None],
+    chain: Chain | None,
+) -> core.Events | None:
+    """The constant loads are on: which dry joints touch, and the events until then; None where none are asked for."""
+    kept = None if chain is None or chain.state is None else chain.state[1]
+    if kept is None:
+        settle(core_model, model)
+    if not options.constant_damage or not np.any(model.constant):
+        return None
+    way = UnderWay((core_model.damage(), 0)) if kept is None else UnderWay.of(kept)
+    if kept is not None and not len(kept["standing"]):  # they were on already
+        core_model.set_damage(kept["damage"])
+        return core.Events.join(way.parts)
     core_model.loads(np.zeros_like(model.constant), model.constant)
-    parts, done = [], 0
+    if kept is not None:
+        core_model.renew(kept["damage"], kept["standing"])
+    events = _constant_stage(core_model, model, options, progress, way, chain)
+    if chain is not None and not events.interrupted:
+        chain.keep(len(events), way.arrays(core_model.damage(), NOTHING))
+    return events
+
+
+def _constant_stage(
+    core_model: core.Model,
+    model: SlaModel,
+    options: Sla,
+    progress: Callable[[float, float, str], None],
+    way: UnderWay,
+    chain: Chain | None,
+) -> core.Events:
+    """Bring the constant loads from 0 to 1, with damage where they ask for it; the state is kept on the way."""
+    begin = len(way.parts)
     stop = core.Stop(load=1.0, compliance=model.mechanism_ratio)
     while True:
-        part = core_model.run(min(500, options.events - done), [model.control], stop)
-        parts.append(part)
-        done += len(part)
-        progress(done, options.events, f"constant loads, event {done}")
-        if part.reason or part.interrupted or done >= options.events:
+        if way.done % KEPT == 0 and len(way.parts) > begin:
+            damage, standing = core_model.damage(), core_model.standing()
+            try:
+                core_model.renew(damage, standing)
+            except core.FreeNode:
+                way.parts[-1].reason = "mechanism"
+                break
+            if chain is not None:
+                chain.keep(way.done, way.arrays(damage, standing))
+        part = core_model.run(min(500, options.events - way.done), [model.control], stop)
+        way.parts.append(part)
+        progress(way.done, options.events, f"constant loads, event {way.done}")
+        if part.reason or part.interrupted or way.done >= options.events:
             break
-    events = core.Events.join(parts)
+    events = core.Events.join(way.parts)
     if events.reason == "no point limits the load":
         return events  # nothing can crack under A: it is carried
     if events.reason != "target load" and not events.interrupted:
         most = float(events.load.max()) if len(events) else 0.0
-        why = events.reason or f"{done} events were not enough"
+        why = events.reason or f"{way.done} events were not enough"
         raise Refused(
             f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})"
         )
@@ -173,7 +210,7 @@ def _reference_stage(
             damage, standing = core_model.damage(), core_model.standing()
             try:
                 core_model.renew(damage, standing)
-            except core.Mechanism:
+            except core.FreeNode:
                 way.parts[-1].reason = "mechanism"
                 break
             way.seconds = before + time.perf_counter() - begin

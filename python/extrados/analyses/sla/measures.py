@@ -82,7 +82,7 @@ def _acceleration(model: SlaModel, peak: float | None) -> dict[str, float | None
 def _residual(curve: Curve) -> float | None:
     """The greatest residual that was measured, by the guard or at the end; None where none was."""
     measured = [curve.residual] if curve.residual is not None else []
-    if curve.events.guard[0]:
+    if curve.events.guard[0] and len(curve.events):  # none where the run ended under the constant loads
         measured.append(float(curve.events.residual.max()))
     return max(measured, default=None)
 

@@ -1,4 +1,7 @@
-"""Going on from the stored events of an earlier run: the damage at one of them, and what had been counted by then."""
+"""Going on from the stored events of an earlier run: the damage at one of them, and what had been counted by then.
+
+A damage counts teeth: it says something of the laws, bands and stiffnesses alone that it was found with.
+"""
 
 from dataclasses import dataclass
 
@@ -8,6 +11,9 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.sla.events import Curve, damage_before
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
+from extrados.core import sla as core
+from extrados.results.checkpoint import fingerprint
+from extrados.results.sla import Makeup
 from extrados.results.store import StoreError, read
 from extrados.schema.files import BadFile, locate
 
@@ -26,6 +32,44 @@ class Earlier:
     totals: list[float]
 
 
+def makeup(model: SlaModel) -> Makeup:
+    """Fingerprints of what the damage of this wall rests on."""
+    stiffness: list = []
+    laws: dict[str, list] = {"tension": [], "compression": []}
+    for group in model.groups:
+        if isinstance(group, core.Springs):
+            continue
+        size = group.area if isinstance(group, core.Bars) else [group.thickness, group.nu, group.kind, group.points]
+        stiffness.append([type(group).__name__, size, group.young])
+        for sense, found in laws.items():
+            law = getattr(group, sense)
+            each = list(law) if isinstance(law, list | tuple) else [law]
+            kinds = list(dict.fromkeys(each))  # a wall of a hundred thousand elements has a few laws
+            number = {kind: k for k, kind in enumerate(kinds)}
+            found.append([kinds, np.array([number[kind] for kind in each]), group.band])
+    fixed = [[g.axis, g.joint, g.lateral, g.selective] for g in model.planes]
+    return Makeup(
+        stiffness=fingerprint(stiffness)[:16], tension=fingerprint(laws["tension"])[:16],
+        compression=fingerprint(laws["compression"])[:16], cracking=fingerprint([model.behaviour, fixed])[:16],
+    )  # fmt: skip
+
+
+def _refuse_other(there: Makeup | None, here: Makeup) -> None:
+    if there is None:
+        raise Refused("resume_from: that run does not say of which materials it was; run it again with this version")
+    words = {
+        "stiffness": "stiffness or thickness",
+        "tension": "tensile laws, teeth or crack bands",
+        "compression": "crushing laws",
+        "cracking": "ways of cracking",
+    }
+    other = [words[name] for name in words if getattr(there, name) != getattr(here, name)]
+    if other:
+        raise Refused(
+            f"resume_from: that wall has other {' and other '.join(other)}; its damage says nothing of this one"
+        )
+
+
 def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarray | None, Earlier | None]:
     """The damage stored by an earlier run before the event asked for, and what had been counted at that event."""
     if options.resume_from is None:
@@ -41,6 +85,7 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
             raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one")
+        _refuse_other(stored["sla"].get("makeup"), makeup(model))
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
             raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events")

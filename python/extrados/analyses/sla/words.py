@@ -26,6 +26,8 @@ def answer_of_wall(r: dict[str, Any], both: bool) -> str:
     """The peak, and how the run ended."""
     if r["events"] == 0 and r["stop"] == "no point limits the load":
         return "The load is not limited: nothing in the wall cracks or crushes under it, however large it grows."
+    if r["events"] == 0 and r["stop"] == "interrupted":
+        return "The run was stopped before the first event of the growing load."
     if r["peak_load_N"] is None:
         return f"No state of equilibrium was found in {r['events']} events; the run ended by: {r['stop']}."
     rises = r["stop"] == "number of events" and r["peak_event"] == r["events"]
