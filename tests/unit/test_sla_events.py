@@ -303,7 +303,7 @@ def test_displacement_with_a_part_held_back() -> None:
     for parts in ([held, {"edge": "top"}], [{"edge": "top"}, held]):
         reference = [{"kind": "displacement", "direction": "x", "parts": parts}]
         result = run_deck(wall(events=5, constant=[], reference=reference))
-        found.append(result.results["peak_load_N"])
+        found.append(result.results["greatest_load_N"])
         xy, u = result["node"], result["state_displacement"][-1]
         assert (u[(np.abs(xy[:, 1] - 1.5) < 1e-9) & (xy[:, 0] < 1e-9), 0] == 0.0).all()
     assert found[0] == pytest.approx(found[1], rel=1e-9)
@@ -400,6 +400,30 @@ def test_deck_complaints(path, value, says) -> None:
     assert says in str(error.value)
 
 
+def test_a_load_that_still_rises_has_no_peak() -> None:
+    """The same wall: stopped on its way up, and once its load has fallen."""
+    rising, whole = run_deck(wall(events=60)), run_deck(wall(events=6000, stop_fraction=0.8))
+    assert rising.results["peak_load_N"] is None and "bilinear" not in rising.results
+    assert rising.results["greatest_load_N"] > 0.0
+    assert "without having passed a peak" in rising.answer
+    assert any("had not passed a peak" in text for text in rising.warnings)
+    assert rising.verdict.capacity is None and "not known" in rising.verdict.statement
+    assert whole.results["peak_load_N"] == whole.results["greatest_load_N"] > 1.2 * rising.results["greatest_load_N"]
+    assert "peaks at" in whole.answer and whole.results["bilinear"]["ductility"] > 1.0
+    assert not any("peak" in text for text in whole.warnings)
+    assert whole.verdict.capacity == whole.results["peak_load_N"]
+
+
+def test_the_floor_of_the_stiffness_is_no_peak() -> None:
+    """What a millionth of the stiffness carries at kilometres of displacement is no capacity, however late the run is
+    told to end."""
+    early, late = (run_deck(wall(0.3, events=4000, mechanism_ratio=ratio)) for ratio in (1e4, 1e12))
+    assert late.results["events"] > early.results["events"]
+    assert late["event_load"][late["event_equilibrium"] > 0].max() > late.results["greatest_load_N"]
+    assert late.results["greatest_load_N"] == early.results["greatest_load_N"]
+    assert late["envelope_load"].max() == late.results["peak_load_N"]
+
+
 def test_envelope_and_bilinear() -> None:
     """A saw-toothed elastic-plastic curve with a snap-back: the envelope keeps its upper side."""
     d = np.array([1.0, 1.7, 1.4, 2.9, 4.1])
@@ -424,8 +448,10 @@ def test_the_envelope_begins_at_the_constant_loads() -> None:
     assert start == pytest.approx(12e3 / plain["initial_stiffness_N_m"], rel=1e-9)
     assert found[1]["envelope_displacement"][0] == pytest.approx(start, rel=1e-12)
     assert found[1]["envelope_load"][0] == 0.0
-    assert pushed["bilinear"]["stiffness_N_m"] == pytest.approx(plain["initial_stiffness_N_m"], rel=1e-6)
-    assert pushed["peak_displacement_m"] == pytest.approx(plain["peak_displacement_m"], rel=1e-6)
+    way, load = found[1]["envelope_displacement"], found[1]["envelope_load"]
+    assert load[-1] / (way[-1] - way[0]) == pytest.approx(plain["initial_stiffness_N_m"], rel=1e-6)
+    name = "greatest_load_displacement_m"
+    assert pushed[name] == pytest.approx(plain[name], rel=1e-6)
 
 
 def test_monitor_and_behaviour_defaults() -> None:

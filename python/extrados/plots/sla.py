@@ -106,7 +106,7 @@ def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
 def _peak(run: Stored, name: str, prefix: str) -> int:
     """The state at the peak, or of the greatest load where that was not kept."""
     numbers = run[name].get("minus", {}) if prefix else run[name]
-    there = np.flatnonzero(run.array(name, f"{prefix}state_event") == numbers.get("peak_event"))
+    there = np.flatnonzero(run.array(name, f"{prefix}state_event") == numbers.get("greatest_load_event"))
     return int(there[0]) if len(there) else int(run.array(name, f"{prefix}state_load").argmax())
 
 

@@ -66,6 +66,11 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     for curve in curves:
         result.warnings += curve.warnings
         events, sense = curve.events, f" (load to {curve.sense})"
+        if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
+            result.warnings.append(
+                f"the load{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; its "
+                f"greatest value, {events.load[curve.peak] * model.unit:.4g} N, is no capacity"
+            )
         if len(events) and events.load[0] < 0.0:
             result.warnings.append(
                 f"the first event{sense} has a negative load, {events.load[0] * model.unit:.4g} N: the constant loads "

@@ -13,10 +13,11 @@ import numpy as np
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.contact import settle
-from extrados.analyses.sla.curve import envelope
+from extrados.analyses.sla.curve import envelope, fallen
 from extrados.analyses.sla.kept import State, UnderWay
-from extrados.analyses.sla.model import SlaModel
+from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
 from extrados.analyses.sla.tables import Sla
+from extrados.core import lists
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
 from extrados.core.sla import EVENT
@@ -27,6 +28,8 @@ KEPT = 1000
 #: The peak's state is run again from the damage at the multiple of this number before it.
 GRID = 100
 NOTHING = np.zeros(0)
+#: How a run ends whose load fell below `stop_fraction` of its peak, further on than there
+FELL = core.STOPS[next(entry.number for entry in lists.entries("sla_stop") if entry.name == "fraction")]
 
 
 @dataclass
@@ -45,6 +48,8 @@ class Curve:
     points: int = 0
     events_before: int = 0  # of the runs that this one goes on from
     before: float = 0.0  # control displacement of the constant loads alone, in the sense of the load [m]
+    most_compliance: float = np.inf  # beyond it only the floor of the stiffness carries
+    stones: bool = False  # of joints that open without teeth
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
 
     @property
@@ -53,14 +58,24 @@ class Curve:
 
     def envelope(self, unit: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and loads [N] of the envelope; it begins at the constant loads' displacement."""
-        fine = self.events.equilibrium
+        fine = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
         return envelope(self.events.monitors[fine, 0], self.events.load[fine] * unit, self.before)
 
     @property
     def peak(self) -> int:
-        """The event of the greatest load in equilibrium; -1 where there is none."""
-        load = np.where(self.events.equilibrium, self.events.load, -np.inf)
+        """The event of the greatest load in equilibrium, passed or not; -1 where there is none."""
+        carried = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
+        load = np.where(carried, self.events.load, -np.inf)
         return int(load.argmax()) if len(load) and np.isfinite(load.max()) else -1
+
+    def passed(self, unit: float) -> bool:
+        """Was the greatest load a peak: did the load fall after it, or the wall become a mechanism under it?"""
+        if self.peak < 0:
+            return False
+        ended = ("mechanism", FELL, "no point limits the load") if self.stones else ("mechanism", FELL)
+        if self.events.reason in ended:
+            return True
+        return fallen(*self.envelope(unit))
 
 
 def run_curves(
@@ -204,6 +219,7 @@ def _reference_stage(
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
     before = way.seconds
+    floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     while (done := way.done) < options.events:
         if done % KEPT == 0 and done:
@@ -236,7 +252,8 @@ def _reference_stage(
         spent = time.perf_counter() - clock
         way.parts.append(part)
         if len(part):
-            load = np.where(part.equilibrium, part.load, -np.inf)
+            most = floor * way.parts[0].compliance[0]
+            load = np.where(part.equilibrium & (part.compliance <= most), part.load, -np.inf)
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
         done += len(part)
@@ -254,6 +271,9 @@ def _reference_stage(
         events.equilibrium[-1] = False
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
+    curve.stones = model.mesh.has_joints
+    if len(events):
+        curve.most_compliance = floor * float(events.compliance[0])
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before
         if events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
