@@ -41,7 +41,7 @@ contains
    end subroutine loads
 
    !> A batch of events
-   subroutine run(handle, room, limits, refuse_overload, monitors, entries, first, freedom, share, &
+   subroutine run(handle, room, limits, refuse_overload, proportional, monitors, entries, first, freedom, share, &
                   counts, reals, integers, monitored, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
@@ -52,6 +52,7 @@ contains
       !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first; see stop_rules
       real(c_double), intent(in) :: limits(4)
       integer(c_int), intent(in) :: refuse_overload
+      integer(c_int), intent(in) :: proportional        !! 1: without equilibrium all loads go down together
       integer(c_int), intent(in) :: monitors
       integer(c_int), intent(in) :: entries
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
@@ -59,7 +60,7 @@ contains
       real(c_double), intent(in) :: share(entries)
       !> Events, residual checks, re-solutions, new factors, reason (list sla_stop)
       integer(c_int), intent(out) :: counts(5)
-      real(c_double), intent(out) :: reals(9, room)      !! see sla_events
+      real(c_double), intent(out) :: reals(10, room)      !! see sla_events
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
@@ -94,9 +95,10 @@ contains
          fate = status_bad_index
          if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > 2)) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
-         rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0)
+         rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0, &
+            proportional /= 0)
          fate = status_out_of_memory
-         allocate (equation(entries), weight(entries), log%reals(9, room), log%integers(4, room), &
+         allocate (equation(entries), weight(entries), log%reals(10, room), log%integers(4, room), &
             log%monitors(monitors, room), stat=info)
          if (info /= 0) return
          do k = 1, entries
@@ -262,7 +264,7 @@ contains
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model, model_standing
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(out) :: values(27)
+      real(c_double), intent(out) :: values(30)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       values = 0.0_c_double
@@ -279,7 +281,7 @@ contains
       use sla_handle, only : model_take, stage_factored, stage_loaded
       use sla_model, only : element_model, model_resume
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(in) :: values(27)
+      real(c_double), intent(in) :: values(30)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       !f2py threadsafe

@@ -9,7 +9,8 @@ module sla_events
    use common_lists, only : stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
       stop_unbounded => sla_stop_unbounded, stop_all_empty => sla_stop_all_empty, &
       stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction
-   use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
+   use common_status, only : status_ok, status_cancelled, status_out_of_memory, status_not_positive_definite, &
+      status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change, extrados_sparse_solve
    use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
@@ -20,7 +21,7 @@ module sla_events
    private
    public :: run_events, residual, scan_model, stop_rules, event_log, log_reals, log_integers
 
-   integer, parameter :: log_reals = 9, log_integers = 4
+   integer, parameter :: log_reals = 10, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    integer, parameter :: few = 100                    !! regions that are looked at sooner by one thread
    integer, parameter :: guard_every = 500
@@ -32,12 +33,16 @@ module sla_events
       real(wp) :: fraction = -1.0_wp               !! of the peak multiplier, after it; negative: never
       real(wp) :: compliance = 1.0e6_wp            !! fb.ub over its first value: a mechanism
       logical :: refuse_overload = .false.         !! the first state must carry the constant loads
+      !> Where no multiplier suits all points: all loads of the last state in equilibrium are scaled down together
+      !> (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides
+      logical :: proportional = .false.
    end type stop_rules
 
    !> What is recorded; monitors are weighted sums of equations
    type :: event_log
       integer :: count = 0
-      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub, residual
+      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub, residual,
+      !> scale of all loads
       real(wp), allocatable :: reals(:, :)         !! (log_reals, room)
       !> point (1-based), code, tooth reached by it before, 1 in equilibrium
       integer(c_int), allocatable :: integers(:, :)  !! (log_integers, room)
@@ -57,6 +62,7 @@ contains
       integer(c_int), intent(out) :: reason       !! of the list sla_stop
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
+      type(bound) :: scaled
       real(wp) :: ratio(size(first) - 1)
       logical :: equilibrium
 
@@ -83,9 +89,17 @@ contains
             return
          end if
          if (.not. found%bounded) reason = stop_unbounded
+         model%scale = 1.0_wp
+         scaled = bound()
+         if (rules%proportional .and. .not. equilibrium .and. found%bounded) call scan_scaled(model, scaled, status)
+         if (status /= status_ok) return
          if (equilibrium .and. rules%lambda < unbounded .and. found%hi%value >= rules%lambda .and. &
              found%lo%value <= rules%lambda) then
             reason = stop_load
+         else if (scaled%point /= 0) then
+            model%scale = scaled%value
+            scaled%value = model%lambda_held
+            call choose(model, scaled)
          else if (found%empty%point /= 0) then
             found%empty%value = model%lambda
             if (found%hi%point == 0 .and. found%lo%point == 0) reason = stop_all_empty
@@ -108,6 +122,7 @@ contains
          call record(model, found, equilibrium, first, equation, share, ratio, log)
          if (reason /= stop_none) return
          if (equilibrium) then
+            model%lambda_held = model%lambda
             if (model%lambda > model%peak) then
                model%peak = model%lambda
                model%peak_displacement = log%monitors(1, log%count)
@@ -142,7 +157,7 @@ contains
             end do
             call bring_wanted(model, near, status)
             if (status /= status_ok) return
-            call scan_list(model, 1, near, found)
+            call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), 1, near, found)
             if (found%hi%value < tree%lambda(levels) .and. found%lo%value > tree%lambda(1) .and. &
                 found%hi%value > tree%lambda(1) .and. found%lo%value < tree%lambda(levels)) then
                count = near
@@ -159,7 +174,7 @@ contains
                   end if
                   k = k - 1
                end do
-               call scan_list(model, near + 1, count, found)
+               call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), near + 1, count, found)
                call regions_margins(tree, model%holders, model%ua, model%ub)
                return
             end if
@@ -171,7 +186,7 @@ contains
          do k = 1, count
             model%list(k) = k
          end do
-         call scan_list(model, 1, count, found)
+         call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), 1, count, found)
          tree%settled = tree%measured .and. found%hi%value < unbounded .and. found%lo%value > -unbounded
          if (.not. tree%settled) return
          call regions_window(tree, found%hi%value, found%lo%value)
@@ -243,19 +258,51 @@ contains
       model%tree%part(:)%failed = 0
    end subroutine bring_all
 
-   !> Limits over the listed regions, joined to those found before
-   subroutine scan_list(model, first, last, found)
+   !> The point that limits the loads of the last state in equilibrium if all of them grow together from nothing
+   subroutine scan_scaled(model, limit, status)
       type(element_model), intent(inout) :: model
+      type(bound), intent(out) :: limit              !! share of the loads; point 0 where nothing limits them
+      integer(c_int), intent(out) :: status
+      type(scan_result) :: found
+      real(wp), allocatable :: zero(:), u(:)
+      integer :: k, info
+
+      call bring_all(model, status)
+      if (status /= status_ok) return
+      model%tree%settled = .false.                   ! the margins were those of before
+      allocate (zero(0:model%equations), u(0:model%equations), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      zero(:) = 0.0_wp
+      u(:) = model%ua + model%lambda_held * model%ub
+      do k = 1, size(model%list)
+         model%list(k) = k
+      end do
+      found = scan_result()
+      call scan_list(model, zero, u, model%noise * max(abs(model%lambda_held), 1.0_wp), scan_result(), &
+         1, size(model%list), found)
+      if (found%hi%point /= 0) limit = found%hi
+   end subroutine scan_scaled
+
+   !> Limits over the listed regions, joined to those found before
+   subroutine scan_list(model, ua, ub, noise, near, first, last, found)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(in) :: near          !! limits of some points, loosened: they spare most others the roots
       integer, intent(in) :: first
       integer, intent(in) :: last
       type(scan_result), intent(inout) :: found
       type(scan_result) :: guess
       integer :: i, k
 
-      ! The limits of the point damaged last are near the new ones: loosened, they spare most points the roots.
-      call guess_limits(model, guess)
+      guess = near
       call loosen(found, guess)
-      !$omp parallel do schedule(static) default(none) shared(model, guess, first, last) private(i, k) &
+      !$omp parallel do schedule(static) default(none) &
+      !$omp shared(model, ua, ub, noise, guess, first, last) private(i, k) &
       !$omp num_threads(model%threads) if(model%threads > 1 .and. last - first > few)
       do i = first, last
          model%part(i) = guess
@@ -263,8 +310,7 @@ contains
             do k = part%run + 1, part%run + part%runs
                select type (group => model%holders(model%tree%run(1, k))%group)
                class is (point_group)
-                  call scan_run(group, model%tree%run(:, k), model%ua, model%ub, model%lambda, model%noise, &
-                     model%part(i))
+                  call scan_run(group, model%tree%run(:, k), ua, ub, model%lambda, noise, model%part(i))
                end select
             end do
          end associate
@@ -321,10 +367,10 @@ contains
       first = a%group < b%group .or. (a%group == b%group .and. a%point < b%point)
    end function earlier
 
-   !> Loosened limits of the points that set the last ones
-   subroutine guess_limits(model, guess)
+   !> Loosened limits of the points that set the last ones: those of the point damaged last are near the new ones
+   function guess_limits(model) result(guess)
       type(element_model), intent(in) :: model
-      type(scan_result), intent(out) :: guess
+      type(scan_result) :: guess
       type(scan_result) :: found
       integer :: k, g, e
 
@@ -340,7 +386,7 @@ contains
             call loosen(found, guess)
          end select
       end do
-   end subroutine guess_limits
+   end function guess_limits
 
    !> Limits that leave room for equals of those found
    pure subroutine loosen(found, guess)
@@ -412,7 +458,7 @@ contains
          do i = 1, event%rank
             before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
                dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
-            model%before(i) = before(1, i) + model%lambda * before(2, i)
+            model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i))
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -526,33 +572,39 @@ contains
    subroutine account(model, lambda)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: lambda
-      real(wp) :: new(3), after, was
+      real(wp) :: now(3), after, was, s, t
       integer :: i
 
+      now = model%work_now
       was = model%lambda_recorded
-      new = model%work_now
+      s = model%scale
+      t = model%scale_recorded
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
-         if (.not. model%carried) model%external = model%external + 0.5_wp * new(1)
-         model%external = model%external + lambda * new(2) + 0.5_wp * lambda**2 * new(3)
+         if (.not. model%carried) model%external = model%external + 0.5_wp * now(1)
+         model%work = now
+         was = 0.0_wp
+         t = 1.0_wp
          model%recorded = .true.
       else
          associate (event => model%event)
             do i = 1, event%rank
-               after = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
+               after = s * dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
                   lambda * model%ub(event%index(1:event%entries)))
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i) * after
             end do
          end associate
-         ! (f_old + f_new) . (u_new - u_old) / 2 with f = A + lambda B, u = ua + lambda ub
-         model%external = model%external + 0.5_wp * ( &
-            2.0_wp * new(1) + (was + 3.0_wp * lambda) * new(2) + (was * lambda + lambda**2) * new(3) &
-            - 2.0_wp * model%work(1) - (lambda + 3.0_wp * was) * model%work(2) &
-            - (was * lambda + was**2) * model%work(3))
       end if
+      ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub)
+      model%external = model%external + 0.5_wp * ( &
+         s * (s + t) * now(1) + s * (2.0_wp * s * lambda + t * (lambda + was)) * now(2) &
+         + s * lambda * (s * lambda + t * was) * now(3) &
+         - t * (s + t) * model%work(1) - t * (2.0_wp * t * was + s * (lambda + was)) * model%work(2) &
+         - t * was * (t * was + s * lambda) * model%work(3))
       model%event%rank = 0
-      model%work = new
+      model%work = now
       model%lambda_recorded = lambda
+      model%scale_recorded = s
       model%lambda = lambda
    end subroutine account
 
@@ -570,9 +622,9 @@ contains
       integer :: k, i, offset
 
       log%count = log%count + 1
-      stored = 0.5_wp * (model%work(1) + model%lambda * (2.0_wp * model%work(2) + model%lambda * model%work(3)))
+      stored = 0.5_wp * model%scale**2 * (model%work(1) + model%lambda * (2.0_wp * model%work(2) + model%lambda * model%work(3)))
       log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored, model%external, &
-         model%dissipated, model%cracked, model%work(3), model%residual]
+         model%dissipated, model%cracked, model%work(3), model%residual, model%scale]
       offset = 0
       if (model%pending(1) /= 0) then
          select type (group => model%holders(model%pending(1))%group)
@@ -595,6 +647,7 @@ contains
                slope = slope + share(i) * model%ub(equation(i))
             end do
          end if
+         log%monitors(k, log%count) = model%scale * log%monitors(k, log%count)
          if (k == 1) model%slope = slope
       end do
    end subroutine record

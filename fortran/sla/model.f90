@@ -23,7 +23,7 @@ module sla_model
    real(wp), parameter :: least_ratio = 1.0e-13_wp
    !> No tooth or change of a stored damage has a greater number
    real(wp), parameter :: most_damage = 1.0e8_wp
-   integer, parameter :: standing_values = 27   !! numbers that tell where the event loop stands
+   integer, parameter :: standing_values = 30   !! numbers that tell where the event loop stands
 
    type :: element_model
       integer :: stage = 0                               !! how far it is built, see sla_handle
@@ -73,6 +73,9 @@ module sla_model
       logical :: recorded = .false.                      !! the stage has a state to count energy from
       logical :: carried = .false.                       !! the work of the constant loads is counted already
       real(wp) :: lambda_recorded = 0.0_wp               !! of the last state
+      real(wp) :: scale = 1.0_wp                         !! of all loads, A too, in the state chosen; see stop_rules
+      real(wp) :: scale_recorded = 1.0_wp                !! of the last state
+      real(wp) :: lambda_held = 0.0_wp                   !! of the last state in equilibrium
       integer :: hot(2, 2) = 0                           !! group and point of the last upper and lower limit
    end type element_model
 
@@ -300,6 +303,9 @@ contains
       if (status /= status_ok) return
       model%pending = 0
       model%lambda = 0.0_wp
+      model%lambda_held = 0.0_wp
+      model%scale = 1.0_wp
+      model%scale_recorded = 1.0_wp
       model%peak = 0.0_wp
       model%event%rank = 0
       model%hot = 0
@@ -332,7 +338,8 @@ contains
       values = [real(model%pending, wp), model%lambda, model%noise, model%work, model%external, model%dissipated, &
          model%cracked, model%first_compliance, model%peak, model%peak_displacement, model%slope, model%residual, &
          real(model%guard, wp), real(model%events, wp), merge(1.0_wp, 0.0_wp, model%recorded), &
-         merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4])]
+         merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4]), &
+         model%scale, model%scale_recorded, model%lambda_held]
    end function model_standing
 
    !> Go on from where an event loop stood, after its loads and its damage were set and the factor made: the
@@ -364,6 +371,9 @@ contains
       model%carried = values(22) > 0.5_wp
       model%lambda_recorded = values(23)
       model%hot = reshape(nint(values(24:27)), [2, 2])
+      model%scale = values(28)
+      model%scale_recorded = values(29)
+      model%lambda_held = values(30)
       model%event%rank = 0
       call model_solve(model, status)
    end subroutine model_resume

@@ -82,6 +82,39 @@ def test_lost_equilibrium_under_tensile_prestress() -> None:
     assert 218 in lost
 
 
+def test_all_loads_go_down_together_where_equilibrium_is_lost() -> None:
+    """Intermittent proportional loading: the same events until equilibrium is lost; from then on no state exceeds a
+    strength, because the prestress too is taken back, and the energies still balance."""
+    found = []
+    for variant in ("load-unload", "proportional"):
+        data = beam(1, "isotropic")
+        data["analysis"][0] |= {"without_equilibrium": variant, "states": [163]}
+        found.append(run_deck(data))
+    kept, scaled = found
+    np.testing.assert_allclose(scaled["event_load"][:161], kept["event_load"][:161], rtol=1e-9)
+    assert (kept["event_scale"] == 1.0).all()
+    lost = scaled["event_equilibrium"] == 0
+    assert np.flatnonzero(lost)[0] == 161  # as in the thesis' variant
+    assert ((scaled["event_scale"] < 1.0) == lost).all() and scaled["event_scale"].min() > 0.0
+    assert scaled["event_load"][161] == scaled["event_load"][160]  # lambda waits
+    assert scaled.results["energy_residual_ratio"] < 1e-9
+    # Event 163, without equilibrium: virgin points of the cracking column stay below their first tooth, 1.0953 ft
+    k = int(np.flatnonzero(scaled["state_event"] == 163)[0])
+    virgin = (scaled["state_ratio_n"][k] == 1.0) & (np.abs(scaled["point_xy"][:, 0] - 0.25) < 0.01)
+    assert scaled["state_stress_1"][k][virgin].max() == pytest.approx(1.095313 * 3e6, rel=1e-5)
+
+
+def test_variants_agree_with_a_new_factor_at_each_event() -> None:
+    data = beam(1, "orthotropic")
+    found = []
+    for algorithm in ("update", "refactor"):
+        data["analysis"][0] |= {"without_equilibrium": "proportional", "algorithm": algorithm}
+        found.append(run_deck(data))
+    assert (found[0]["event_point"] == found[1]["event_point"]).all()
+    np.testing.assert_allclose(found[0]["event_load"], found[1]["event_load"], rtol=1e-7)
+    np.testing.assert_allclose(found[0]["event_scale"], found[1]["event_scale"], rtol=1e-7)
+
+
 def test_residual_of_the_prestressed_beam_is_the_couple_of_the_prestress() -> None:
     """All but the top points gone under -1 N/mm2: 5 kN x 48.3 mm = F/2 x 160 mm, F = 3.02 kN."""
     r = run_deck(beam(-1, "isotropic"))

@@ -28,6 +28,7 @@ KEPT = 1000
 #: The peak's state is run again from the damage at the multiple of this number before it.
 GRID = 100
 NOTHING = np.zeros(0)
+STRAINS_AND_STRESSES = core.REPORT[:6]
 #: How a run ends whose load fell below `stop_fraction` of its peak, further on than there
 FELL = core.STOPS[next(entry.number for entry in lists.entries("sla_stop") if entry.name == "fraction")]
 
@@ -219,6 +220,7 @@ def _reference_stage(
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
     before = way.seconds
+    proportional = options.without_equilibrium == "proportional"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     while (done := way.done) < options.events:
@@ -241,7 +243,7 @@ def _reference_stage(
             room = min(room, ahead[0] + 1 - done)
         clock = time.perf_counter()
         try:
-            part = core_model.run(room, [model.control], stop)
+            part = core_model.run(room, [model.control], stop, proportional=proportional)
         except CoreError as error:
             if error.status != status_code("beyond_strength"):
                 raise
@@ -258,7 +260,7 @@ def _reference_stage(
                 way.best, way.before_best = float(load.max()), start
         done += len(part)
         if done and done - 1 in wanted:
-            way.states.append(_state(core_model, done - 1, float(part.load[-1])))
+            way.states.append(_state(core_model, done - 1, part))
         progress(done, options.events, f"event {done}, load {part.load[-1] * model.unit:.4g} N" if len(part) else "")
         if part.reason or part.interrupted or not len(part):
             break
@@ -279,10 +281,10 @@ def _reference_stage(
         if events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
             curve.residual = core_model.residual()
         if not (done - 1 in wanted and states):
-            states.append(_state(core_model, len(events) - 1, float(events.load[-1])))
+            states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
         if peak >= 0 and peak not in {s.event for s in states} and not events.interrupted:
-            state = _replay(core_model, model, sign, events, peak, way.before_best)
+            state = _replay(core_model, model, sign, events, peak, way.before_best, proportional)
             if state is None:
                 curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
             else:
@@ -292,25 +294,36 @@ def _reference_stage(
     return curve
 
 
-def _state(core_model: core.Model, event: int, load: float) -> State:
-    return State(event, load, core_model.displacement(load), core_model.report(load))
+def _state(core_model: core.Model, event: int, events: core.Events) -> State:
+    """The state of the last of some events, which has this number; with the part of the loads that is on."""
+    load, scale = float(events.load[-1]), float(events.scale[-1])
+    report = core_model.report(load)
+    if scale < 1.0:
+        report |= {name: scale * report[name] for name in STRAINS_AND_STRESSES}
+    return State(event, load, scale * core_model.displacement(load), report)
 
 
 def _replay(
-    core_model: core.Model, model: SlaModel, sign: int, events: core.Events, event: int, before: tuple[np.ndarray, int]
+    core_model: core.Model,
+    model: SlaModel,
+    sign: int,
+    events: core.Events,
+    event: int,
+    before: tuple[np.ndarray, int],
+    proportional: bool,
 ) -> State | None:
     """The state of an event that has passed, run again from the damage kept before it."""
     damage, first = before
     core_model.set_damage(damage)
     core_model.loads(model.constant, sign * model.reference)
-    again = core_model.run(event - first + 1, [model.control], core.Stop())
+    again = core_model.run(event - first + 1, [model.control], core.Stop(), proportional=proportional)
     # Near a mechanism of stiff stones the last digits of the load depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
     if len(again) != event - first + 1 or abs(again.load[-1] - events.load[event]) > tolerance * abs(
         events.load[event]
     ):
         return None
-    return _state(core_model, event, float(again.load[-1]))
+    return _state(core_model, event, again)
 
 
 def damage_before(start: np.ndarray, end: np.ndarray, point: np.ndarray, code: np.ndarray) -> np.ndarray:

@@ -52,6 +52,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         "external": (e.external, "J", "work of all loads"),
         "dissipated": (e.dissipated, "J", "dissipated along the straight way between events"),
         "crack": (e.crack, "J", "area of the teeth passed"),
+        "scale": (e.scale, "", "part of all loads that is on, below 1 where they went down together"),
     }
     for name, (data, u, about) in columns.items():
         result.arrays[f"{prefix}event_{name}"] = Array(data, dim, u, about)

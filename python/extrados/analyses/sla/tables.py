@@ -124,6 +124,12 @@ class Sla(BuildingAnalysis):
     crack_closure: bool | None = key(
         None, "cracks that close regain their stiffness; default true for stones, whose joints must, false for walls"
     )
+    without_equilibrium: Literal["load-unload", "proportional"] = key(
+        "load-unload",
+        "where no multiplier of B suits all points: A stays and the greatest lower limit decides, or all loads of the "
+        "last state in equilibrium go down together (intermittent proportional loading)",
+        source="thesis 4.3.1; Pari, Hendriks and Rots 2020",
+    )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
