@@ -292,7 +292,7 @@ contains
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: noise
-      type(scan_result), intent(in) :: near          !! limits of some points, loosened: they spare most others the roots
+      type(scan_result), intent(in) :: near          !! limits of some points, loosened: they spare others the roots
       integer, intent(in) :: first
       integer, intent(in) :: last
       type(scan_result), intent(inout) :: found
@@ -622,7 +622,8 @@ contains
       integer :: k, i, offset
 
       log%count = log%count + 1
-      stored = 0.5_wp * model%scale**2 * (model%work(1) + model%lambda * (2.0_wp * model%work(2) + model%lambda * model%work(3)))
+      stored = 0.5_wp * model%scale**2 * &
+         (model%work(1) + model%lambda * (2.0_wp * model%work(2) + model%lambda * model%work(3)))
       log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored, model%external, &
          model%dissipated, model%cracked, model%work(3), model%residual, model%scale]
       offset = 0
