@@ -27,17 +27,17 @@ contains
       integer(c_int), intent(in) :: outer(nvert)              !! 1: the edge that starts here is on the outline
       integer(c_int64_t), intent(out) :: handle
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       integer :: failed
       handle = 0
       status = status_out_of_memory
-      allocate (made, stat=failed)
+      allocate (built, stat=failed)
       if (failed /= 0) return
-      call body_set_new(centroid, mass, inertia, owner, first, vertex, outer, made%set, status)
+      call body_set_new(centroid, mass, inertia, owner, first, vertex, outer, built%set, status)
       if (status == status_ok) then
-         call built_model_register(made, handle, status)
+         call built_model_register(built, handle, status)
       else
-         deallocate (made)
+         deallocate (built)
       end if
    end subroutine create
 
@@ -51,10 +51,10 @@ contains
       integer(c_int), intent(in) :: nlaw
       real(c_double), intent(in) :: law(6, nlaw)              !! see joint_law
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       type(joint_law), allocatable :: given(:)
       integer :: k, failed
-      call built_model_take(handle, made, status)
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       allocate (given(nlaw), stat=failed)
       status = status_out_of_memory
@@ -62,7 +62,7 @@ contains
          do k = 1, nlaw
             given(k) = joint_law(law(1, k), law(2, k), law(3, k), law(4, k), law(5, k), law(6, k))
          end do
-         call set_laws(made, given, status)
+         call set_laws(built, given, status)
       end if
       call handle_leave(handle)
    end subroutine laws
@@ -77,10 +77,10 @@ contains
       integer(c_int), intent(in) :: pair(2, njoint)           !! bodies
       integer(c_int), intent(in) :: law(njoint)               !! type, 1-based
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
-      call built_model_take(handle, made, status)
+      type(built_model), pointer :: built
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
-      call set_joints(made, pair, law, status)
+      call set_joints(built, pair, law, status)
       call handle_leave(handle)
    end subroutine joints
 
@@ -94,11 +94,11 @@ contains
       real(c_double), intent(in) :: shift(3, nb)              !! x, y [m], rotation [rad]
       real(c_double), intent(in) :: rate(3, nb)               !! [m/s, rad/s]
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
-      call built_model_take(handle, made, status)
+      type(built_model), pointer :: built
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
-      if (nb /= size(made%set%item)) status = status_invalid_argument
-      if (status == status_ok) call set_start(made, shift, rate)
+      if (nb /= size(built%set%item)) status = status_invalid_argument
+      if (status == status_ok) call set_start(built, shift, rate)
       call handle_leave(handle)
    end subroutine start
 
@@ -113,10 +113,10 @@ contains
       integer(c_int), intent(in) :: body(nmove)               !! support that moves
       real(c_double), intent(in) :: move(5, nmove)            !! dx, dy [m], turn [rad], start, duration [s]
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       type(support_move), allocatable :: given(:)
       integer :: k, failed
-      call built_model_take(handle, made, status)
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       allocate (given(nmove), stat=failed)
       status = status_out_of_memory
@@ -124,7 +124,7 @@ contains
          do k = 1, nmove
             given(k) = support_move(int(body(k)), move(1:3, k), move(4, k), move(5, k))
          end do
-         call set_moves(made, given, status)
+         call set_moves(built, given, status)
       end if
       call handle_leave(handle)
    end subroutine moves
@@ -148,19 +148,19 @@ contains
       integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet
       integer(c_int), intent(in) :: threads
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
-      call built_model_take(handle, made, status)
+      type(built_model), pointer :: built
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       if (.not. (limits(1) > 0.0_c_double .and. limits(3) > 0.0_c_double .and. limits(3) <= 1.0_c_double &
                  .and. all(limits >= 0.0_c_double) .and. mass_damping >= 0.0_c_double .and. threads >= 1)) then
          status = status_invalid_argument
       else
-         made%load%gravity = gravity
-         made%load%moving_base = moving_base /= 0
-         made%mass_damping = mass_damping
-         made%options = run_options(limits(1), limits(2), limits(3), limits(4), int(settle_steps), limits(5), domain, &
+         built%load%gravity = gravity
+         built%load%moving_base = moving_base /= 0
+         built%mass_damping = mass_damping
+         built%options = run_options(limits(1), limits(2), limits(3), limits(4), int(settle_steps), limits(5), domain, &
             limits(6), stop_at_rest /= 0, int(threads))
-         made%settled = .true.
+         built%settled = .true.
       end if
       call handle_leave(handle)
    end subroutine settings
@@ -179,16 +179,16 @@ contains
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: wanted(nt)                !! output times [s]
       integer(c_int), intent(out) :: status                   !! cancelled leaves what was recorded
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       type(motion_set), pointer :: set
       type(signal) :: ground
       !f2py threadsafe
-      call built_model_take(handle, made, status)
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       call motion_set_take(motions, .false., set, status)
       if (status == status_ok) then
          call motion_signal(set, motion, scale, ground, status)
-         if (status == status_ok) call run_built(made, ground, wanted, status)
+         if (status == status_ok) call run_built(built, ground, wanted, status)
          call handle_leave(motions)
       end if
       call handle_leave(handle)
@@ -205,22 +205,22 @@ contains
       integer(c_int), intent(out) :: counts(9)
       real(c_double), intent(out) :: measures(4)              !! least step, critical step, stop time [s], residual
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       integer(c_int) :: nobody(2, 0)
       real(c_double) :: nothing(6, 0)
       integer :: closed
       counts = 0
       measures = 0.0_c_double
-      call built_model_take(handle, made, status)
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       status = status_not_ready
-      if (allocated(made%record)) then
+      if (allocated(built%record)) then
          status = status_ok
-         associate (it => made%it, record => made%record)
-            call closed_contacts(it, nobody, nothing, closed)
+         associate (model => built%model, record => built%record)
+            call closed_contacts(model, nobody, nothing, closed)
             counts = [int(record%points, c_int), record%reason, int(record%blamed, c_int), &
                int(record%settling, c_int), int(record%searches, c_int), &
-               int(max(record%most_pairs, it%contacts%pairs), c_int), int(it%steps, c_int), int(closed, c_int)]
+               int(max(record%most_pairs, model%contacts%pairs), c_int), int(model%steps, c_int), int(closed, c_int)]
             measures = [record%least_step, record%critical, record%stop_time, record%residual]
          end associate
       end if
@@ -241,22 +241,22 @@ contains
       real(c_double), intent(out) :: rate(3, nb, nt)          !! [m/s, rad/s]
       real(c_double), intent(out) :: energy(9, nt)            !! [J], rows of the list dem_energy
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       time = 0.0_c_double
       place = 0.0_c_double
       rate = 0.0_c_double
       energy = 0.0_c_double
-      call built_model_take(handle, made, status)
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       status = status_not_ready
-      if (allocated(made%record)) then
+      if (allocated(built%record)) then
          status = status_invalid_argument
-         if (nb == size(made%set%item) .and. nt <= made%record%points .and. dem_energy_count == size(energy, 1)) then
+         if (nb == size(built%set%item) .and. nt <= built%record%points .and. dem_energy_count == size(energy, 1)) then
             status = status_ok
-            time = made%record%time(1:nt)
-            place = made%record%place(:, :, 1:nt)
-            rate = made%record%rate(:, :, 1:nt)
-            energy = made%record%energy(:, 1:nt)
+            time = built%record%time(1:nt)
+            place = built%record%place(:, :, 1:nt)
+            rate = built%record%rate(:, :, 1:nt)
+            energy = built%record%energy(:, 1:nt)
          end if
       end if
       call handle_leave(handle)
@@ -273,18 +273,18 @@ contains
       integer(c_int), intent(out) :: bounces(nb)              !! times contact was lost
       real(c_double), intent(out) :: airborne(nb)             !! [s]
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       settled = 0.0_c_double
       bounces = 0
       airborne = 0.0_c_double
-      call built_model_take(handle, made, status)
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       status = status_not_ready
-      if (allocated(made%record)) then
+      if (allocated(built%record)) then
          status = status_invalid_argument
-         if (nb == size(made%it%set%item)) then
+         if (nb == size(built%model%set%item)) then
             status = status_ok
-            associate (item => made%it%set%item)
+            associate (item => built%model%set%item)
                settled(1, :) = item%rest_x
                settled(2, :) = item%rest_y
                settled(3, :) = item%rest_angle
@@ -307,16 +307,16 @@ contains
       !> x, y [m], force on the second body x, y [N], normal, shear [N]
       real(c_double), intent(out) :: value(6, room)
       integer(c_int), intent(out) :: status
-      type(built_model), pointer :: made
+      type(built_model), pointer :: built
       integer :: closed
       body = 0
       value = 0.0_c_double
-      call built_model_take(handle, made, status)
+      call built_model_take(handle, built, status)
       if (status /= status_ok) return
       status = status_not_ready
-      if (allocated(made%record)) then
+      if (allocated(built%record)) then
          status = status_ok
-         call closed_contacts(made%it, body, value, closed)
+         call closed_contacts(built%model, body, value, closed)
       end if
       call handle_leave(handle)
    end subroutine contacts

@@ -82,17 +82,17 @@ contains
          return
       end if
       do b = 1, size(mass)
-         associate (it => set%item(b))
-            it%number = b
-            it%x = centroid(1, b)
-            it%y = centroid(2, b)
-            it%mass = mass(b)
-            it%inertia = inertia(b)
-            it%fixed = .not. mass(b) > 0.0_wp
-            if (.not. it%fixed) then
+         associate (item => set%item(b))
+            item%number = b
+            item%x = centroid(1, b)
+            item%y = centroid(2, b)
+            item%mass = mass(b)
+            item%inertia = inertia(b)
+            item%fixed = .not. mass(b) > 0.0_wp
+            if (.not. item%fixed) then
                if (.not. inertia(b) > 0.0_wp) return
-               it%inverse_mass = 1.0_wp / mass(b)
-               it%inverse_inertia = 1.0_wp / inertia(b)
+               item%inverse_mass = 1.0_wp / mass(b)
+               item%inverse_inertia = 1.0_wp / inertia(b)
             end if
          end associate
       end do
@@ -101,27 +101,27 @@ contains
       do p = 1, size(owner)
          set%parts(p) = part(int(owner(p)), int(first(p)), int(first(p + 1)) - 1)
          if (first(p + 1) - first(p) < 3 .or. first(p + 1) - first(p) > most_vertices) return
-         associate (it => set%item(owner(p)))
+         associate (item => set%item(owner(p)))
             area = 0.0_wp
             do k = first(p), first(p + 1) - 1
                next = merge(int(first(p)), k + 1, k == first(p + 1) - 1)
                dx = vertex(1, next) - vertex(1, k)
                dy = vertex(2, next) - vertex(2, k)
                associate (e => set%edges(k))
-                  e%x = vertex(1, k) - it%x
-                  e%y = vertex(2, k) - it%y
+                  e%x = vertex(1, k) - item%x
+                  e%y = vertex(2, k) - item%y
                   e%length = hypot(dx, dy)
                   if (.not. e%length > 0.0_wp) return
                   e%tx = dx / e%length
                   e%ty = dy / e%length
                   e%next = next
                   e%outer = outer(k) /= 0
-                  it%radius = max(it%radius, hypot(e%x, e%y))
+                  item%radius = max(item%radius, hypot(e%x, e%y))
                   area = area + 0.5_wp * (e%x * dy - e%y * dx)
                end associate
             end do
             if (.not. area > 0.0_wp) return
-            if (.not. it%fixed) set%size = min(set%size, sqrt(area))
+            if (.not. item%fixed) set%size = min(set%size, sqrt(area))
          end associate
       end do
       if (set%size > 0.5_wp * huge(1.0_wp)) return
@@ -129,10 +129,10 @@ contains
    end subroutine body_set_new
 
    !> Cosine and sine from the angle itself: shapes never drift
-   elemental subroutine body_turn(it)
-      type(body), intent(inout) :: it
-      it%c = cos(it%angle)
-      it%s = sin(it%angle)
+   elemental subroutine body_turn(b)
+      type(body), intent(inout) :: b
+      b%c = cos(b%angle)
+      b%s = sin(b%angle)
    end subroutine body_turn
 
 end module dem_bodies

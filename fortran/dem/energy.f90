@@ -6,7 +6,7 @@
 module dem_energy
    use common_kinds, only : wp
    use dem_law, only : elastic_energy
-   use dem_model, only : model
+   use dem_model, only : block_model
    implicit none
    private
    public :: energy_terms, energy_now
@@ -27,49 +27,49 @@ module dem_energy
 contains
 
    !> Energy that came from nowhere since the start [J]
-   pure function residual(self, start) result(r)
-      class(energy_terms), intent(in) :: self
+   pure function residual(energy, start) result(r)
+      class(energy_terms), intent(in) :: energy
       type(energy_terms), intent(in) :: start
       real(wp) :: r
-      r = (self%leapfrog - start%leapfrog) + (self%potential - start%potential) + (self%elastic - start%elastic) &
-         + (self%friction - start%friction) + (self%damping - start%damping) &
-         + (self%mass_damping - start%mass_damping) - (self%work - start%work)
+      r = (energy%leapfrog - start%leapfrog) + (energy%potential - start%potential) + (energy%elastic - start%elastic) &
+         + (energy%friction - start%friction) + (energy%damping - start%damping) &
+         + (energy%mass_damping - start%mass_damping) - (energy%work - start%work)
    end function residual
 
    !> Ledger at the time of the last forces
-   pure function energy_now(it) result(now)
-      type(model), intent(in) :: it
+   pure function energy_now(model) result(now)
+      type(block_model), intent(in) :: model
       type(energy_terms) :: now
       integer :: k
       real(wp) :: vx, vy, spin, ax, ay, turn, cut, span
 
       ! The first step takes half a kick from the initial velocity; steps never grow after it.
-      span = max(it%kick, it%step)
-      cut = 0.5_wp * it%mass_damping * span
-      do k = 1, size(it%set%item)
-         associate (b => it%set%item(k))
+      span = max(model%kick, model%step)
+      cut = 0.5_wp * model%mass_damping * span
+      do k = 1, size(model%set%item)
+         associate (b => model%set%item(k))
             if (b%fixed) cycle
-            ax = b%fx * b%inverse_mass + it%pull(1)
-            ay = b%fy * b%inverse_mass + it%pull(2)
+            ax = b%fx * b%inverse_mass + model%pull(1)
+            ay = b%fy * b%inverse_mass + model%pull(2)
             turn = b%moment * b%inverse_inertia
             vx = (b%vx * (1.0_wp + cut) - span * ax) / (1.0_wp - cut)
             vy = (b%vy * (1.0_wp + cut) - span * ay) / (1.0_wp - cut)
             spin = (b%spin * (1.0_wp + cut) - span * turn) / (1.0_wp - cut)
             now%leapfrog = now%leapfrog + 0.5_wp * (b%mass * (b%vx * vx + b%vy * vy) + b%inertia * b%spin * spin)
-            now%kinetic = now%kinetic + 0.125_wp * (b%mass * ((b%vx + vx - 2.0_wp * it%base(1))**2 &
-               + (b%vy + vy - 2.0_wp * it%base(2))**2) + b%inertia * (b%spin + spin)**2)
-            now%potential = now%potential - b%mass * (it%load%gravity(1) * (b%x - it%drift * b%vx - b%rest_x) &
-               + it%load%gravity(2) * (b%y - it%drift * b%vy - b%rest_y))
+            now%kinetic = now%kinetic + 0.125_wp * (b%mass * ((b%vx + vx - 2.0_wp * model%base(1))**2 &
+               + (b%vy + vy - 2.0_wp * model%base(2))**2) + b%inertia * (b%spin + spin)**2)
+            now%potential = now%potential - b%mass * (model%load%gravity(1) * (b%x - model%drift * b%vx - b%rest_x) &
+               + model%load%gravity(2) * (b%y - model%drift * b%vy - b%rest_y))
             now%mass_damping = now%mass_damping + b%mass_loss
             now%work = now%work + b%work
          end associate
       end do
-      now%friction = it%contacts%friction_loss
-      now%damping = it%contacts%damping_loss
-      now%work = now%work + it%contacts%support_work
-      do k = 1, it%contacts%pairs
-         associate (pair => it%contacts%pair(k))
-            now%elastic = now%elastic + elastic_energy(it%law(pair%law), pair)
+      now%friction = model%contacts%friction_loss
+      now%damping = model%contacts%damping_loss
+      now%work = now%work + model%contacts%support_work
+      do k = 1, model%contacts%pairs
+         associate (pair => model%contacts%pair(k))
+            now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
             now%friction = now%friction + pair%loss_before(1) + sum(pair%point%friction_loss)
             now%damping = now%damping + pair%loss_before(2) + sum(pair%point%damping_loss)
             now%work = now%work + pair%support_work

@@ -12,7 +12,7 @@ module dem_handle
    use dem_contacts, only : overlap, measure
    use dem_law, only : joint_law
    use dem_loading, only : loading, support_move
-   use dem_model, only : model
+   use dem_model, only : block_model
    use dem_run, only : run_options, run_record, run_record_new, run_model
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
@@ -30,44 +30,44 @@ module dem_handle
       real(wp) :: mass_damping = 0.0_wp             !! alpha [1/s]
       type(run_options) :: options
       logical :: settled = .false.                  !! the settings were given
-      type(model), allocatable :: it                !! as the last run left it
+      type(block_model), allocatable :: model                !! as the last run left it
       type(run_record), allocatable :: record       !! of the last run
    end type built_model
 
 contains
 
    !> Hand a model over to the registry
-   subroutine built_model_register(made, handle, status)
-      type(built_model), pointer, intent(inout) :: made   !! null after a failure
+   subroutine built_model_register(built, handle, status)
+      type(built_model), pointer, intent(inout) :: built   !! null after a failure
       integer(c_int64_t), intent(out) :: handle
       integer(c_int), intent(out) :: status
-      call handle_new(handle_dem, c_loc(made), c_funloc(built_model_destroy), handle, status)
-      if (status /= status_ok) deallocate (made)
+      call handle_new(handle_dem, c_loc(built), c_funloc(built_model_destroy), handle, status)
+      if (status /= status_ok) deallocate (built)
    end subroutine built_model_register
 
    !> Called by the registry
    subroutine built_model_destroy(object) bind(c, name='extrados_dem_destroy')
       type(c_ptr), value, intent(in) :: object
-      type(built_model), pointer :: made
-      call c_f_pointer(object, made)
-      deallocate (made)
+      type(built_model), pointer :: built
+      call c_f_pointer(object, built)
+      deallocate (built)
    end subroutine built_model_destroy
 
    !> The model of a handle, for this call alone, until handle_leave; null where the status is not ok
-   subroutine built_model_take(handle, made, status)
+   subroutine built_model_take(handle, built, status)
       integer(c_int64_t), intent(in) :: handle
-      type(built_model), pointer, intent(out) :: made
+      type(built_model), pointer, intent(out) :: built
       integer(c_int), intent(out) :: status
       type(c_ptr) :: object
-      made => null()
+      built => null()
       object = c_null_ptr
       call handle_take(handle, handle_dem, .true., object, status)
-      if (status == status_ok) call c_f_pointer(object, made)
+      if (status == status_ok) call c_f_pointer(object, built)
    end subroutine built_model_take
 
    !> Types of joints
-   subroutine set_laws(made, law, status)
-      type(built_model), intent(inout) :: made
+   subroutine set_laws(built, law, status)
+      type(built_model), intent(inout) :: built
       type(joint_law), intent(in) :: law(:)
       integer(c_int), intent(out) :: status
       type(joint_law), allocatable :: copy(:)
@@ -76,32 +76,32 @@ contains
       if (size(law) < 1) return
       if (.not. all(law%normal_stiffness > 0.0_wp .and. law%shear_stiffness > 0.0_wp)) return
       if (.not. all(min(law%friction, law%cohesion, law%tension, law%damping) >= 0.0_wp)) return
-      if (allocated(made%law_number)) then
-         if (any(made%law_number > size(law))) return
+      if (allocated(built%law_number)) then
+         if (any(built%law_number > size(law))) return
       end if
       status = status_out_of_memory
       allocate (copy(size(law)), stat=failed)
       if (failed /= 0) return
       copy(:) = law
-      call move_alloc(copy, made%law)
+      call move_alloc(copy, built%law)
       status = status_ok
    end subroutine set_laws
 
    !> Pairs of bodies whose joint has a type of its own; of two entries for one pair the later counts
-   subroutine set_joints(made, bodies, law, status)
-      type(built_model), intent(inout) :: made
+   subroutine set_joints(built, bodies, law, status)
+      type(built_model), intent(inout) :: built
       integer(c_int), intent(in) :: bodies(:, :)    !! (2, joints), 1-based
       integer(c_int), intent(in) :: law(:)          !! (joints), 1-based
       integer(c_int), intent(out) :: status
       integer(c_int), allocatable :: first(:), higher(:), number(:)
       integer :: k, b, failed
       status = status_not_ready
-      if (.not. allocated(made%law)) return
+      if (.not. allocated(built%law)) return
       status = status_bad_index
-      if (any(bodies < 1) .or. any(bodies > size(made%set%item)) .or. any(bodies(1, :) == bodies(2, :))) return
-      if (any(law < 1) .or. any(law > size(made%law))) return
+      if (any(bodies < 1) .or. any(bodies > size(built%set%item)) .or. any(bodies(1, :) == bodies(2, :))) return
+      if (any(law < 1) .or. any(law > size(built%law))) return
       status = status_out_of_memory
-      allocate (first(size(made%set%item) + 1), higher(size(law)), number(size(law)), stat=failed)
+      allocate (first(size(built%set%item) + 1), higher(size(law)), number(size(law)), stat=failed)
       if (failed /= 0) return
       first = 0
       do k = 1, size(law)
@@ -122,37 +122,37 @@ contains
          first(b) = first(b - 1)
       end do
       first(1) = 1
-      call move_alloc(first, made%law_first)
-      call move_alloc(higher, made%law_body)
-      call move_alloc(number, made%law_number)
+      call move_alloc(first, built%law_first)
+      call move_alloc(higher, built%law_body)
+      call move_alloc(number, built%law_number)
       status = status_ok
    end subroutine set_joints
 
    !> Initial displacement and velocity about the centroids
-   subroutine set_start(made, shift, rate)
-      type(built_model), intent(inout) :: made
+   subroutine set_start(built, shift, rate)
+      type(built_model), intent(inout) :: built
       real(wp), intent(in) :: shift(:, :)           !! (3, bodies) x, y [m], rotation [rad]
       real(wp), intent(in) :: rate(:, :)            !! (3, bodies) [m/s, rad/s]
-      made%set%item%x = made%set%item%x + shift(1, :)
-      made%set%item%y = made%set%item%y + shift(2, :)
-      made%set%item%angle = shift(3, :)
-      call body_turn(made%set%item)
-      made%set%item%vx = rate(1, :)
-      made%set%item%vy = rate(2, :)
-      made%set%item%spin = rate(3, :)
+      built%set%item%x = built%set%item%x + shift(1, :)
+      built%set%item%y = built%set%item%y + shift(2, :)
+      built%set%item%angle = shift(3, :)
+      call body_turn(built%set%item)
+      built%set%item%vx = rate(1, :)
+      built%set%item%vy = rate(2, :)
+      built%set%item%spin = rate(3, :)
    end subroutine set_start
 
    !> Supports that give way
-   subroutine set_moves(made, move, status)
-      type(built_model), intent(inout) :: made
+   subroutine set_moves(built, move, status)
+      type(built_model), intent(inout) :: built
       type(support_move), intent(in) :: move(:)
       integer(c_int), intent(out) :: status
       type(support_move), allocatable :: copy(:)
       integer :: k, failed
       do k = 1, size(move)
          status = status_bad_index
-         if (move(k)%body < 1 .or. move(k)%body > size(made%set%item)) return
-         if (.not. made%set%item(move(k)%body)%fixed) return
+         if (move(k)%body < 1 .or. move(k)%body > size(built%set%item)) return
+         if (.not. built%set%item(move(k)%body)%fixed) return
          status = status_invalid_argument
          if (.not. move(k)%duration > 0.0_wp) return
       end do
@@ -160,72 +160,73 @@ contains
       allocate (copy(size(move)), stat=failed)
       if (failed /= 0) return
       copy(:) = move
-      call move_alloc(copy, made%load%move)
+      call move_alloc(copy, built%load%move)
       status = status_ok
    end subroutine set_moves
 
    !> Run from the state that was built; a cancelled run leaves what it has
-   subroutine run_built(made, ground, wanted, status)
-      type(built_model), intent(inout) :: made
+   subroutine run_built(built, ground, wanted, status)
+      type(built_model), intent(inout) :: built
       type(signal), intent(in) :: ground
       real(wp), intent(in) :: wanted(:)             !! output times [s]
       integer(c_int), intent(out) :: status
       type(signal) :: silence
       integer :: failed
       status = status_not_ready
-      if (.not. (allocated(made%law) .and. made%settled)) return
-      if (allocated(made%it)) deallocate (made%it)
-      if (allocated(made%record)) deallocate (made%record)
+      if (.not. (allocated(built%law) .and. built%settled)) return
+      if (allocated(built%model)) deallocate (built%model)
+      if (allocated(built%record)) deallocate (built%record)
       status = status_out_of_memory
-      allocate (made%it, made%record, stat=failed)
+      allocate (built%model, built%record, stat=failed)
       if (failed /= 0) return
-      call start_model(made, made%it, status)
-      if (status == status_ok) call run_record_new(size(made%set%item), wanted, made%record, status)
+      call start_model(built, built%model, status)
+      if (status == status_ok) call run_record_new(size(built%set%item), wanted, built%record, status)
       if (status /= status_ok) then
-         deallocate (made%it, made%record)
+         deallocate (built%model, built%record)
          return
       end if
-      made%it%load%ground = ground
-      call run_model(made%it, made%options, made%record, status)
-      made%it%load%ground = silence   ! it pointed into the caller's set
+      built%model%load%ground = ground
+      call run_model(built%model, built%options, built%record, status)
+      built%model%load%ground = silence   ! it pointed into the caller's set
    end subroutine run_built
 
    !> A copy of what was built, at rest before its first step
-   subroutine start_model(made, it, status)
-      type(built_model), intent(in) :: made
-      type(model), intent(inout) :: it
+   subroutine start_model(built, model, status)
+      type(built_model), intent(in) :: built
+      type(block_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer :: bodies, joints, moves, failed
-      bodies = size(made%set%item)
+      bodies = size(built%set%item)
       joints = 0
-      if (allocated(made%law_number)) joints = size(made%law_number)
+      if (allocated(built%law_number)) joints = size(built%law_number)
       moves = 0
-      if (allocated(made%load%move)) moves = size(made%load%move)
-      allocate (it%set%item(bodies), it%set%parts(size(made%set%parts)), it%set%edges(size(made%set%edges)), &
-         it%law(size(made%law)), it%load%move(moves), it%contacts%law_first(bodies + 1), &
-         it%contacts%law_body(joints), it%contacts%law_number(joints), stat=failed)
+      if (allocated(built%load%move)) moves = size(built%load%move)
+      allocate (model%set%item(bodies), model%set%parts(size(built%set%parts)), &
+         model%set%edges(size(built%set%edges)), model%law(size(built%law)), model%load%move(moves), &
+         model%contacts%law_first(bodies + 1), model%contacts%law_body(joints), &
+         model%contacts%law_number(joints), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
-      it%set%item(:) = made%set%item
-      it%set%parts(:) = made%set%parts
-      it%set%edges(:) = made%set%edges
-      it%set%size = made%set%size
-      it%law(:) = made%law
-      it%contacts%law_first(:) = 1
+      model%set%item(:) = built%set%item
+      model%set%parts(:) = built%set%parts
+      model%set%edges(:) = built%set%edges
+      model%set%size = built%set%size
+      model%law(:) = built%law
+      model%contacts%law_first(:) = 1
       if (joints > 0) then
-         it%contacts%law_first(:) = made%law_first
-         it%contacts%law_body(:) = made%law_body
-         it%contacts%law_number(:) = made%law_number
+         model%contacts%law_first(:) = built%law_first
+         model%contacts%law_body(:) = built%law_body
+         model%contacts%law_number(:) = built%law_number
       end if
-      if (moves > 0) it%load%move(:) = made%load%move
-      it%load%gravity = made%load%gravity
-      it%load%moving_base = made%load%moving_base
-      it%mass_damping = made%mass_damping
+      if (moves > 0) model%load%move(:) = built%load%move
+      model%load%gravity = built%load%gravity
+      model%load%moving_base = built%load%moving_base
+      model%mass_damping = built%mass_damping
    end subroutine start_model
 
    !> Contact points that are closed at the end of the last run; counts them, writes as many as there is room for
-   subroutine closed_contacts(it, bodies, values, found)
-      type(model), intent(in) :: it
+   subroutine closed_contacts(model, bodies, values, found)
+      type(block_model), intent(in) :: model
       integer(c_int), intent(out) :: bodies(:, :)   !! (2, room)
       !> (6, room) x, y [m], force on the second body x, y, normal, shear [N]
       real(wp), intent(out) :: values(:, :)
@@ -236,9 +237,9 @@ contains
       bodies = 0
       values = 0.0_wp
       found = 0
-      do k = 1, it%contacts%pairs
-         associate (pair => it%contacts%pair(k))
-            call measure(pair, it%set%item(pair%bodies(1)), it%set%item(pair%bodies(2)), now)
+      do k = 1, model%contacts%pairs
+         associate (pair => model%contacts%pair(k))
+            call measure(pair, model%set%item(pair%bodies(1)), model%set%item(pair%bodies(2)), now)
             do i = 1, 2
                if (.not. pair%point(i)%closed) cycle
                found = found + 1

@@ -55,28 +55,28 @@ contains
    end subroutine mean_acceleration
 
    !> Velocity of a support that moves, along a raised cosine
-   pure function move_rate(it, t) result(rate)
-      type(support_move), intent(in) :: it
+   pure function move_rate(move, t) result(rate)
+      type(support_move), intent(in) :: move
       real(wp), intent(in) :: t               !! [s]
       real(wp) :: rate(3)
       real(wp) :: phase
       rate = 0.0_wp
-      phase = (t - it%start) / it%duration
+      phase = (t - move%start) / move%duration
       if (phase > 0.0_wp .and. phase < 1.0_wp) then
-        rate = it%shift / it%duration * (1.0_wp - cos(2.0_wp * pi * phase))
+        rate = move%shift / move%duration * (1.0_wp - cos(2.0_wp * pi * phase))
       end if
    end function move_rate
 
    !> When ground and supports have come to rest [s]
-   pure function movement_end(it) result(t)
-      type(loading), intent(in) :: it
+   pure function movement_end(load) result(t)
+      type(loading), intent(in) :: load
       real(wp) :: t
       integer :: k
       t = 0.0_wp
-      if (it%ground%segments > 0) t = it%ground%break_time(it%ground%segments + 1)
-      if (.not. allocated(it%move)) return
-      do k = 1, size(it%move)
-         t = max(t, it%move(k)%start + it%move(k)%duration)
+      if (load%ground%segments > 0) t = load%ground%break_time(load%ground%segments + 1)
+      if (.not. allocated(load%move)) return
+      do k = 1, size(load%move)
+         t = max(t, load%move(k)%start + load%move(k)%duration)
       end do
    end function movement_end
 

@@ -9,9 +9,9 @@ module dem_model
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: model, advance, critical_step
+   public :: block_model, advance, critical_step
 
-   type :: model
+   type :: block_model
       type(body_set) :: set
       type(contact_set) :: contacts
       type(joint_law), allocatable :: law(:)
@@ -29,125 +29,126 @@ module dem_model
       integer :: steps = 0
       logical :: shaking = .false.             !! false while settling: the ground rests
       logical :: stale = .false.               !! somebody moved far enough to look for contacts again
-   end type model
+   end type block_model
 
 contains
 
    !> Up to `count` steps; returns early where the contacts must be searched again
-   subroutine advance(it, count, threads)
-      type(model), intent(inout) :: it
+   subroutine advance(model, count, threads)
+      type(block_model), intent(inout) :: model
       integer, intent(in) :: count
       integer, intent(in) :: threads
       if (threads > 1) then
-         call advance_threads(it, count, threads)
+         call advance_threads(model, count, threads)
       else
-         call advance_alone(it, count)
+         call advance_alone(model, count)
       end if
    end subroutine advance
 
-   subroutine advance_alone(it, count)
-      type(model), intent(inout) :: it
+   subroutine advance_alone(model, count)
+      type(block_model), intent(inout) :: model
       integer, intent(in) :: count
       integer :: n, k
       do n = 1, count
-         call prepare(it)
-         do k = 1, size(it%set%item)
-            call predict(it, it%set%item(k))
+         call prepare(model)
+         do k = 1, size(model%set%item)
+            call predict(model, model%set%item(k))
          end do
-         do k = 1, it%contacts%pairs
-            call touch(it, it%contacts%pair(k))
+         do k = 1, model%contacts%pairs
+            call touch(model, model%contacts%pair(k))
          end do
-         do k = 1, size(it%set%item)
-            call move(it, it%set%item(k), it%stale)
+         do k = 1, size(model%set%item)
+            call move(model, model%set%item(k), model%stale)
          end do
-         call finish(it)
-         if (it%stale) return
+         call finish(model)
+         if (model%stale) return
       end do
    end subroutine advance_alone
 
    !> The same steps shared among threads: pairs of one colour touch no common body
-   subroutine advance_threads(it, count, threads)
-      type(model), intent(inout) :: it
+   subroutine advance_threads(model, count, threads)
+      type(block_model), intent(inout) :: model
       integer, intent(in) :: count
       integer, intent(in) :: threads
       integer :: n, k, c
       logical :: stale
 
       stale = .false.
-      !$omp parallel default(none) num_threads(threads) shared(it, count, stale) private(n, k, c)
+      !$omp parallel default(none) num_threads(threads) shared(model, count, stale) private(n, k, c)
       do n = 1, count
          !$omp single
-         call prepare(it)
+         call prepare(model)
          stale = .false.
          !$omp end single
          !$omp do schedule(static)
-         do k = 1, size(it%set%item)
-            call predict(it, it%set%item(k))
+         do k = 1, size(model%set%item)
+            call predict(model, model%set%item(k))
          end do
          !$omp end do
-         do c = 1, it%contacts%colours - it%contacts%alone
+         do c = 1, model%contacts%colours - model%contacts%alone
             !$omp do schedule(static)
-            do k = it%contacts%colour_first(c), it%contacts%colour_first(c + 1) - 1
-               call touch(it, it%contacts%pair(k))
+            do k = model%contacts%colour_first(c), model%contacts%colour_first(c + 1) - 1
+               call touch(model, model%contacts%pair(k))
             end do
             !$omp end do
          end do
          !$omp single
-         do c = it%contacts%colours - it%contacts%alone + 1, it%contacts%colours
-            do k = it%contacts%colour_first(c), it%contacts%colour_first(c + 1) - 1
-               call touch(it, it%contacts%pair(k))
+         do c = model%contacts%colours - model%contacts%alone + 1, model%contacts%colours
+            do k = model%contacts%colour_first(c), model%contacts%colour_first(c + 1) - 1
+               call touch(model, model%contacts%pair(k))
             end do
          end do
          !$omp end single
          !$omp do schedule(static) reduction(.or. : stale)
-         do k = 1, size(it%set%item)
-            call move(it, it%set%item(k), stale)
+         do k = 1, size(model%set%item)
+            call move(model, model%set%item(k), stale)
          end do
          !$omp end do
          !$omp single
-         it%stale = stale
-         call finish(it)
+         model%stale = stale
+         call finish(model)
          !$omp end single
-         if (it%stale) exit
+         if (model%stale) exit
       end do
       !$omp end parallel
    end subroutine advance_threads
 
    !> Body force and base velocity of this step
-   subroutine prepare(it)
-      type(model), intent(inout) :: it
+   subroutine prepare(model)
+      type(block_model), intent(inout) :: model
       real(wp) :: ground(2), half
 
       ! At the very start half a velocity step leads from the initial velocity to the half step.
-      half = 0.5_wp * it%step
-      it%kick = 0.5_wp * it%drift + half
-      it%pull_before = it%pull
-      it%pull = it%load%gravity
-      if (it%shaking) then
-         call mean_acceleration(it%load%ground, it%segment, it%t - 0.5_wp * it%drift, it%t + half, ground)
-         if (it%load%moving_base) then
-            it%base = it%base + it%kick * ground
+      half = 0.5_wp * model%step
+      model%kick = 0.5_wp * model%drift + half
+      model%pull_before = model%pull
+      model%pull = model%load%gravity
+      if (model%shaking) then
+         call mean_acceleration(model%load%ground, model%segment, model%t - 0.5_wp * model%drift, &
+            model%t + half, ground)
+         if (model%load%moving_base) then
+            model%base = model%base + model%kick * ground
          else
-            it%pull = it%pull - ground
+            model%pull = model%pull - ground
          end if
       end if
    end subroutine prepare
 
    !> Velocity that follows from the forces of the last step; clears the forces
-   pure subroutine predict(it, b)
-      type(model), intent(in) :: it
+   pure subroutine predict(model, b)
+      type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
 
       if (b%fixed) then
-         call prescribe(it, b)
+         call prescribe(model, b)
       else
-         b%px = b%vx + it%kick * (b%fx * b%inverse_mass + it%pull(1))
-         b%py = b%vy + it%kick * (b%fy * b%inverse_mass + it%pull(2))
-         b%pspin = b%spin + it%kick * b%moment * b%inverse_inertia
+         b%px = b%vx + model%kick * (b%fx * b%inverse_mass + model%pull(1))
+         b%py = b%vy + model%kick * (b%fy * b%inverse_mass + model%pull(2))
+         b%pspin = b%spin + model%kick * b%moment * b%inverse_inertia
          ! Work of the ground's part of the body force; gravity has a potential.
-         b%work = b%work + 0.5_wp * it%drift * b%mass * &
-            ((it%pull(1) + it%pull_before(1) - 2.0_wp * it%load%gravity(1)) * b%vx &
-            + (it%pull(2) + it%pull_before(2) - 2.0_wp * it%load%gravity(2)) * b%vy)
+         b%work = b%work + 0.5_wp * model%drift * b%mass * &
+            ((model%pull(1) + model%pull_before(1) - 2.0_wp * model%load%gravity(1)) * b%vx &
+            + (model%pull(2) + model%pull_before(2) - 2.0_wp * model%load%gravity(2)) * b%vy)
       end if
       b%fx = 0.0_wp
       b%fy = 0.0_wp
@@ -156,15 +157,16 @@ contains
    end subroutine predict
 
    !> Velocity of a support in the coming half step
-   pure subroutine prescribe(it, b)
-      type(model), intent(in) :: it
+   pure subroutine prescribe(model, b)
+      type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
       integer :: k
       real(wp) :: rate(3)
-      rate = [it%base(1), it%base(2), 0.0_wp]
-      if (it%shaking) then
-         do k = 1, size(it%load%move)
-            if (b%number == it%load%move(k)%body) rate = rate + move_rate(it%load%move(k), it%t + 0.5_wp * it%step)
+      rate = [model%base(1), model%base(2), 0.0_wp]
+      if (model%shaking) then
+         do k = 1, size(model%load%move)
+            if (b%number == model%load%move(k)%body) rate = rate &
+               + move_rate(model%load%move(k), model%t + 0.5_wp * model%step)
          end do
       end if
       b%px = rate(1)
@@ -173,21 +175,21 @@ contains
    end subroutine prescribe
 
    !> Geometry and law of one pair
-   pure subroutine touch(it, pair)
-      type(model), intent(inout) :: it
+   pure subroutine touch(model, pair)
+      type(block_model), intent(inout) :: model
       type(contact_pair), intent(inout) :: pair
       type(overlap) :: now
       real(wp) :: distance
-      if (pair%careful) call choose_edges(it%set, it%contacts%skin, pair, distance)
-      associate (a => it%set%item(pair%bodies(1)), b => it%set%item(pair%bodies(2)))
+      if (pair%careful) call choose_edges(model%set, model%contacts%skin, pair, distance)
+      associate (a => model%set%item(pair%bodies(1)), b => model%set%item(pair%bodies(2)))
          call measure(pair, a, b, now)
-         call act(it%law(pair%law), it%kick, it%drift, now, a, b, pair)
+         call act(model%law(pair%law), model%kick, model%drift, now, a, b, pair)
       end associate
    end subroutine touch
 
    !> Velocity and position after the step
-   pure subroutine move(it, b, stale)
-      type(model), intent(in) :: it
+   pure subroutine move(model, b, stale)
+      type(block_model), intent(in) :: model
       type(body), intent(inout) :: b
       logical, intent(inout) :: stale
       real(wp) :: keep, gain
@@ -198,44 +200,45 @@ contains
          b%spin = b%pspin
       else
          keep = 1.0_wp
-         gain = it%kick
-         if (it%mass_damping > 0.0_wp) then
-            b%mass_loss = b%mass_loss + it%drift * it%mass_damping * &
+         gain = model%kick
+         if (model%mass_damping > 0.0_wp) then
+            b%mass_loss = b%mass_loss + model%drift * model%mass_damping * &
                (b%mass * (b%vx**2 + b%vy**2) + b%inertia * b%spin**2)
-            gain = it%kick / (1.0_wp + 0.5_wp * it%mass_damping * it%kick)
-            keep = (1.0_wp - 0.5_wp * it%mass_damping * it%kick) / (1.0_wp + 0.5_wp * it%mass_damping * it%kick)
+            gain = model%kick / (1.0_wp + 0.5_wp * model%mass_damping * model%kick)
+            keep = (1.0_wp - 0.5_wp * model%mass_damping * model%kick) &
+               / (1.0_wp + 0.5_wp * model%mass_damping * model%kick)
          end if
-         b%vx = keep * b%vx + gain * (b%fx * b%inverse_mass + it%pull(1))
-         b%vy = keep * b%vy + gain * (b%fy * b%inverse_mass + it%pull(2))
+         b%vx = keep * b%vx + gain * (b%fx * b%inverse_mass + model%pull(1))
+         b%vy = keep * b%vy + gain * (b%fy * b%inverse_mass + model%pull(2))
          b%spin = keep * b%spin + gain * b%moment * b%inverse_inertia
          if (.not. b%touched) then
-            b%airborne = b%airborne + it%step
+            b%airborne = b%airborne + model%step
             if (b%touching) b%bounces = b%bounces + 1
          end if
          b%touching = b%touched
       end if
-      b%x = b%x + it%step * b%vx
-      b%y = b%y + it%step * b%vy
+      b%x = b%x + model%step * b%vx
+      b%y = b%y + model%step * b%vy
       if (abs(b%spin) > 0.0_wp) then
-         b%angle = b%angle + it%step * b%spin
+         b%angle = b%angle + model%step * b%spin
          call body_turn(b)
       end if
       if (abs(b%x - b%seen_x) + abs(b%y - b%seen_y) + b%radius * abs(b%angle - b%seen_angle) &
-         > 0.5_wp * it%contacts%skin) stale = .true.
+         > 0.5_wp * model%contacts%skin) stale = .true.
    end subroutine move
 
-   subroutine finish(it)
-      type(model), intent(inout) :: it
-      it%base_place = it%base_place + it%step * it%base
-      it%drift = it%step
-      it%t = it%t + it%step
-      it%steps = it%steps + 1
+   subroutine finish(model)
+      type(block_model), intent(inout) :: model
+      model%base_place = model%base_place + model%step * model%base
+      model%drift = model%step
+      model%t = model%t + model%step
+      model%steps = model%steps + 1
    end subroutine finish
 
    !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 below the greatest
    !> eigenvalue of any body on its springs, twice as stiff where the neighbour moves too [s]
-   subroutine critical_step(it, step, status)
-      type(model), intent(in) :: it
+   subroutine critical_step(model, step, status)
+      type(block_model), intent(in) :: model
       real(wp), intent(out) :: step          !! [s]
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: k(:, :)
@@ -244,22 +247,22 @@ contains
       real(wp) :: stiff_n, stiff_s, length, share, greatest
 
       step = 0.0_wp
-      allocate (k(6, size(it%set%item)), stat=failed)
+      allocate (k(6, size(model%set%item)), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       k = 0.0_wp
-      do n = 1, it%contacts%pairs
-         associate (pair => it%contacts%pair(n), a => it%set%item(it%contacts%pair(n)%bodies(1)), &
-                    b => it%set%item(it%contacts%pair(n)%bodies(2)))
+      do n = 1, model%contacts%pairs
+         associate (pair => model%contacts%pair(n), a => model%set%item(model%contacts%pair(n)%bodies(1)), &
+                    b => model%set%item(model%contacts%pair(n)%bodies(2)))
             call measure(pair, a, b, now)
             share = merge(1.0_wp, 2.0_wp, a%fixed .or. b%fixed)
             do i = 1, 2
                length = 0.5_wp * max(now%width, 0.25_wp * min(pair%reference_length, pair%incident_length))
                if (pair%point(i)%closed) length = max(length, pair%point(i)%length)
-               stiff_n = share * it%law(pair%law)%normal_stiffness * length
-               stiff_s = share * it%law(pair%law)%shear_stiffness * length
+               stiff_n = share * model%law(pair%law)%normal_stiffness * length
+               stiff_s = share * model%law(pair%law)%shear_stiffness * length
                do side = 1, 2
-                  associate (c => it%set%item(pair%bodies(side)))
+                  associate (c => model%set%item(pair%bodies(side)))
                      if (c%fixed) cycle
                      call add(k(:, pair%bodies(side)), c, now%ty(i), -now%tx(i), now%x(i), now%y(i), stiff_n)
                      call add(k(:, pair%bodies(side)), c, now%tx(i), now%ty(i), now%x(i), now%y(i), stiff_s)
@@ -269,18 +272,18 @@ contains
          end associate
       end do
       ! A body that touches nothing yet will land, on its longest edge at the worst.
-      do n = 1, size(it%set%parts)
-         associate (c => it%set%item(it%set%parts(n)%owner))
-            if (c%fixed .or. any(k(1:3, it%set%parts(n)%owner) > 0.0_wp)) cycle
-            length = maxval(it%set%edges(it%set%parts(n)%first:it%set%parts(n)%last)%length)
-            call add(k(:, it%set%parts(n)%owner), c, 0.0_wp, 1.0_wp, c%x + 0.5_wp * length, c%y, &
-               2.0_wp * it%law(1)%normal_stiffness * length)
-            call add(k(:, it%set%parts(n)%owner), c, 1.0_wp, 0.0_wp, c%x, c%y - c%radius, &
-               2.0_wp * it%law(1)%shear_stiffness * length)
+      do n = 1, size(model%set%parts)
+         associate (c => model%set%item(model%set%parts(n)%owner))
+            if (c%fixed .or. any(k(1:3, model%set%parts(n)%owner) > 0.0_wp)) cycle
+            length = maxval(model%set%edges(model%set%parts(n)%first:model%set%parts(n)%last)%length)
+            call add(k(:, model%set%parts(n)%owner), c, 0.0_wp, 1.0_wp, c%x + 0.5_wp * length, c%y, &
+               2.0_wp * model%law(1)%normal_stiffness * length)
+            call add(k(:, model%set%parts(n)%owner), c, 1.0_wp, 0.0_wp, c%x, c%y - c%radius, &
+               2.0_wp * model%law(1)%shear_stiffness * length)
          end associate
       end do
       greatest = 0.0_wp
-      do n = 1, size(it%set%item)
+      do n = 1, size(model%set%item)
          greatest = max(greatest, greatest_eigenvalue(k(:, n)))
       end do
       step = 2.0_wp / sqrt(max(greatest, tiny(1.0_wp)))

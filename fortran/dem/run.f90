@@ -8,10 +8,11 @@ module dem_run
       stop_left => dem_stop_left, stop_blow_up => dem_stop_blow_up, stop_step => dem_stop_step, &
       stop_unsettled => dem_stop_unsettled, stop_overlap => dem_stop_overlap
    use common_status, only : status_ok, status_cancelled, status_not_finite, status_out_of_memory
-   use dem_contacts, only : contact_pair, overlap, search, measure
+   use dem_contacts, only : contact_pair, overlap, measure
    use dem_energy, only : energy_now, energy_terms
    use dem_loading, only : movement_end
-   use dem_model, only : model, advance, critical_step
+   use dem_model, only : block_model, advance, critical_step
+   use dem_search, only : search
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -67,42 +68,42 @@ contains
    end subroutine run_record_new
 
    !> Run a model; what was recorded up to a stop is valid
-   subroutine run_model(it, options, record, status)
-      type(model), intent(inout) :: it
+   subroutine run_model(model, options, record, status)
+      type(block_model), intent(inout) :: model
       type(run_options), intent(in) :: options
       type(run_record), intent(inout) :: record
       integer(c_int), intent(out) :: status
 
-      it%contacts%skin = 0.02_wp * it%set%size
-      call search(it%set, it%contacts, .true., status)
+      model%contacts%skin = 0.02_wp * model%set%size
+      call search(model%set, model%contacts, .true., status)
       if (status /= status_ok) return
-      call critical_step(it, record%critical, status)
+      call critical_step(model, record%critical, status)
       if (status /= status_ok) return
-      it%step = options%step
-      if (.not. it%step > 0.0_wp) it%step = options%fraction * record%critical
-      record%least_step = it%step
-      if (it%step > record%critical) record%reason = stop_step
-      if (record%reason == stop_end) call overlapping(it, record)
+      model%step = options%step
+      if (.not. model%step > 0.0_wp) model%step = options%fraction * record%critical
+      record%least_step = model%step
+      if (model%step > record%critical) record%reason = stop_step
+      if (record%reason == stop_end) call overlapping(model, record)
       if (record%reason /= stop_end) return
-      call mark_rest(it)
+      call mark_rest(model)
       if (options%settle_steps > 0) then
-         call settle(it, options, record, status)
+         call settle(model, options, record, status)
          if (status /= status_ok .or. record%reason /= stop_end) return
       end if
-      call mark_rest(it)
-      call shake(it, options, record, status)
+      call mark_rest(model)
+      call shake(model, options, record, status)
    end subroutine run_model
 
    !> Bodies that overlap deeper than half the skin were drawn so
-   subroutine overlapping(it, record)
-      type(model), intent(in) :: it
+   subroutine overlapping(model, record)
+      type(block_model), intent(in) :: model
       type(run_record), intent(inout) :: record
       integer :: k
       type(overlap) :: now
-      do k = 1, it%contacts%pairs
-         associate (pair => it%contacts%pair(k))
-            call measure(pair, it%set%item(pair%bodies(1)), it%set%item(pair%bodies(2)), now)
-            if (now%width <= 0.5_wp * it%contacts%skin .or. maxval(now%gap) > -0.5_wp * it%contacts%skin) cycle
+      do k = 1, model%contacts%pairs
+         associate (pair => model%contacts%pair(k))
+            call measure(pair, model%set%item(pair%bodies(1)), model%set%item(pair%bodies(2)), now)
+            if (now%width <= 0.5_wp * model%contacts%skin .or. maxval(now%gap) > -0.5_wp * model%contacts%skin) cycle
             record%reason = stop_overlap
             record%blamed = pair%bodies
             return
@@ -110,16 +111,16 @@ contains
       end do
    end subroutine overlapping
 
-   subroutine mark_rest(it)
-      type(model), intent(inout) :: it
-      it%set%item%rest_x = it%set%item%x
-      it%set%item%rest_y = it%set%item%y
-      it%set%item%rest_angle = it%set%item%angle
+   subroutine mark_rest(model)
+      type(block_model), intent(inout) :: model
+      model%set%item%rest_x = model%set%item%x
+      model%set%item%rest_y = model%set%item%y
+      model%set%item%rest_angle = model%set%item%angle
    end subroutine mark_rest
 
    !> Rest under gravity by kinetic damping: whenever the kinetic energy has passed a peak, all stops
-   subroutine settle(it, options, record, status)
-      type(model), intent(inout) :: it
+   subroutine settle(model, options, record, status)
+      type(block_model), intent(inout) :: model
       type(run_options), intent(in) :: options
       type(run_record), intent(inout) :: record
       integer(c_int), intent(out) :: status
@@ -132,97 +133,97 @@ contains
       status = status_ok
       ! A tiny step or collapse limit of the run must not keep from rest what stands.
       quiet = options
-      if (options%collapse > 0.0_wp) quiet%collapse = max(options%collapse, fallen * it%set%size)
-      step = it%step
-      it%step = max(step, options%fraction * record%critical)
-      it%shaking = .false.
+      if (options%collapse > 0.0_wp) quiet%collapse = max(options%collapse, fallen * model%set%size)
+      step = model%step
+      model%step = max(step, options%fraction * record%critical)
+      model%shaking = .false.
       before = 0.0_wp
       n = 0
       do while (n < options%settle_steps)
-         call several(it, batch, options%threads, record, status)
+         call several(model, batch, options%threads, record, status)
          if (status /= status_ok) return
          n = n + batch
-         kinetic = sum(it%set%item%mass * (it%set%item%vx**2 + it%set%item%vy**2) &
-                       + it%set%item%inertia * it%set%item%spin**2)
+         kinetic = sum(model%set%item%mass * (model%set%item%vx**2 + model%set%item%vy**2) &
+                       + model%set%item%inertia * model%set%item%spin**2)
          if (.not. kinetic <= huge(kinetic)) then
             status = status_not_finite
             return
          end if
          if (kinetic < before) then
-            it%set%item%vx = 0.0_wp
-            it%set%item%vy = 0.0_wp
-            it%set%item%spin = 0.0_wp
+            model%set%item%vx = 0.0_wp
+            model%set%item%vy = 0.0_wp
+            model%set%item%spin = 0.0_wp
             before = 0.0_wp
-            if (unbalanced(it) < options%settle_tolerance) exit
+            if (unbalanced(model) < options%settle_tolerance) exit
          else
             before = kinetic
          end if
-         call limits(it, quiet, record)
+         call limits(model, quiet, record)
          if (record%reason /= stop_end) exit
          if (cancel_requested()) then
             status = status_cancelled
             return
          end if
       end do
-      it%step = min(it%step, step)   ! the step may have been cut as contacts formed
+      model%step = min(model%step, step)   ! the step may have been cut as contacts formed
       record%settling = n
       if (n >= options%settle_steps .or. record%reason /= stop_end) then
          record%reason = stop_unsettled
-         if (record%blamed(1) == 0) record%blamed(1) = maxloc(abs(it%set%item%fx * it%set%item%inverse_mass) &
-            + abs(it%set%item%fy * it%set%item%inverse_mass + it%load%gravity(2)), &
-            mask=.not. it%set%item%fixed, dim=1)
+         if (record%blamed(1) == 0) record%blamed(1) = maxloc(abs(model%set%item%fx * model%set%item%inverse_mass) &
+            + abs(model%set%item%fy * model%set%item%inverse_mass + model%load%gravity(2)), &
+            mask=.not. model%set%item%fixed, dim=1)
       end if
-      call calm(it)
-      it%set%item%bounces = 0
-      it%set%item%airborne = 0.0_wp
-      it%t = 0.0_wp
-      it%drift = 0.0_wp
-      it%steps = 0
+      call calm(model)
+      model%set%item%bounces = 0
+      model%set%item%airborne = 0.0_wp
+      model%t = 0.0_wp
+      model%drift = 0.0_wp
+      model%steps = 0
    end subroutine settle
 
    !> No dashpot force and no loss is left from settling
-   subroutine calm(it)
-      type(model), intent(inout) :: it
+   subroutine calm(model)
+      type(block_model), intent(inout) :: model
       integer :: k, i
-      do k = 1, it%contacts%pairs
+      do k = 1, model%contacts%pairs
          do i = 1, 2
-            associate (point => it%contacts%pair(k)%point(i))
+            associate (point => model%contacts%pair(k)%point(i))
                point%dash_n = 0.0_wp
                point%dash_s = 0.0_wp
                point%friction_loss = 0.0_wp
                point%damping_loss = 0.0_wp
             end associate
          end do
-         it%contacts%pair(k)%loss_before = 0.0_wp
-         it%contacts%pair(k)%support_work = 0.0_wp
+         model%contacts%pair(k)%loss_before = 0.0_wp
+         model%contacts%pair(k)%support_work = 0.0_wp
       end do
-      it%contacts%friction_loss = 0.0_wp
-      it%contacts%damping_loss = 0.0_wp
-      it%contacts%support_work = 0.0_wp
-      it%set%item%work = 0.0_wp
-      it%set%item%mass_loss = 0.0_wp
+      model%contacts%friction_loss = 0.0_wp
+      model%contacts%damping_loss = 0.0_wp
+      model%contacts%support_work = 0.0_wp
+      model%set%item%work = 0.0_wp
+      model%set%item%mass_loss = 0.0_wp
    end subroutine calm
 
    !> Greatest unbalanced force over weight, and moment over weight times radius
-   pure function unbalanced(it) result(ratio)
-      type(model), intent(in) :: it
+   pure function unbalanced(model) result(ratio)
+      type(block_model), intent(in) :: model
       real(wp) :: ratio
       real(wp) :: g
       integer :: k
-      g = max(hypot(it%load%gravity(1), it%load%gravity(2)), 1.0e-3_wp)
+      g = max(hypot(model%load%gravity(1), model%load%gravity(2)), 1.0e-3_wp)
       ratio = 0.0_wp
-      do k = 1, size(it%set%item)
-         associate (b => it%set%item(k))
+      do k = 1, size(model%set%item)
+         associate (b => model%set%item(k))
             if (b%fixed) cycle
-            ratio = max(ratio, abs(b%fx / b%mass + it%load%gravity(1)) / g, &
-               abs(b%fy / b%mass + it%load%gravity(2)) / g, abs(b%moment) / (b%mass * g * b%radius))
+            ratio = max(ratio, abs(b%fx / b%mass + model%load%gravity(1)) / g, &
+               abs(b%fy / b%mass + model%load%gravity(2)) / g, abs(b%moment) / (b%mass * g * b%radius))
          end associate
       end do
    end function unbalanced
 
    !> Exactly `count` steps, with searches in between
-   subroutine several(it, count, threads, record, status)
-      type(model), intent(inout) :: it
+   subroutine several(model, count, threads, record, status)
+      type(block_model), intent(inout) :: model
       integer, intent(in) :: count
       integer, intent(in) :: threads
       type(run_record), intent(inout) :: record
@@ -231,29 +232,29 @@ contains
       real(wp) :: critical
 
       status = status_ok
-      target_steps = it%steps + count
-      do while (it%steps < target_steps)
-         call advance(it, target_steps - it%steps, threads)
-         if (.not. it%stale) cycle
-         it%stale = .false.
-         if (.not. all(abs(it%set%item%x) + abs(it%set%item%y) <= huge(1.0_wp))) then
+      target_steps = model%steps + count
+      do while (model%steps < target_steps)
+         call advance(model, target_steps - model%steps, threads)
+         if (.not. model%stale) cycle
+         model%stale = .false.
+         if (.not. all(abs(model%set%item%x) + abs(model%set%item%y) <= huge(1.0_wp))) then
             status = status_not_finite
             return
          end if
-         call search(it%set, it%contacts, .false., status)
+         call search(model%set, model%contacts, .false., status)
          if (status /= status_ok) return
          record%searches = record%searches + 1
-         record%most_pairs = max(record%most_pairs, it%contacts%pairs)
+         record%most_pairs = max(record%most_pairs, model%contacts%pairs)
          ! New contacts may be stiffer than those of the start.
-         call critical_step(it, critical, status)
+         call critical_step(model, critical, status)
          if (status /= status_ok) return
-         if (it%step > 0.9_wp * critical) it%step = 0.5_wp * critical
-         record%least_step = min(record%least_step, it%step)
+         if (model%step > 0.9_wp * critical) model%step = 0.5_wp * critical
+         record%least_step = min(record%least_step, model%step)
       end do
    end subroutine several
 
-   subroutine shake(it, options, record, status)
-      type(model), intent(inout) :: it
+   subroutine shake(model, options, record, status)
+      type(block_model), intent(inout) :: model
       type(run_options), intent(in) :: options
       type(run_record), intent(inout) :: record
       integer(c_int), intent(out) :: status
@@ -262,46 +263,48 @@ contains
       integer :: n, calm_looks
       logical :: due
 
-      it%shaking = .true.
+      model%shaking = .true.
       record%points = 0
       round = 0.0_wp
-      quiet = movement_end(it%load)
+      quiet = movement_end(model%load)
       calm_looks = 0
-      call several(it, 1, options%threads, record, status)
+      call several(model, 1, options%threads, record, status)
       if (status /= status_ok) return
-      start = energy_now(it)
+      start = energy_now(model)
       call write_down(start)
       do
          due = .false.
          n = watch
          if (record%points < size(record%wanted)) then
-            n = max(1, nint((record%wanted(record%points + 1) - (it%t - it%drift)) / it%step))
+            n = max(1, nint((record%wanted(record%points + 1) - (model%t - model%drift)) / model%step))
             due = n <= watch
             n = min(n, watch)
          end if
-         call several(it, n, options%threads, record, status)
+         call several(model, n, options%threads, record, status)
          if (status /= status_ok) exit
-         energy = energy_now(it)
+         energy = energy_now(model)
          round = max(round, energy%kinetic + abs(energy%potential - start%potential) + energy%friction &
             + energy%damping + energy%mass_damping)
          record%residual = max(record%residual, abs(energy%residual(start)) / max(round, start%elastic, tiny(1.0_wp)))
          if (due) call write_down(energy)
          if (.not. record%residual <= options%residual_limit) then
             record%reason = stop_blow_up
-            record%blamed(1) = maxloc(it%set%item%vx**2 + it%set%item%vy**2, mask=.not. it%set%item%fixed, dim=1)
+            record%blamed(1) = maxloc(model%set%item%vx**2 + model%set%item%vy**2, &
+               mask=.not. model%set%item%fixed, dim=1)
          end if
-         if (record%reason == stop_end) call limits(it, options, record)
-         if (options%stop_at_rest .and. it%t > quiet) then
-            calm_looks = merge(calm_looks + 1, 0, unbalanced(it) < 1.0e-3_wp .and. energy%kinetic < 1.0e-6_wp * round)
+         if (record%reason == stop_end) call limits(model, options, record)
+         if (options%stop_at_rest .and. model%t > quiet) then
+            calm_looks = merge(calm_looks + 1, 0, unbalanced(model) < 1.0e-3_wp &
+               .and. energy%kinetic < 1.0e-6_wp * round)
             if (calm_looks >= 50 .and. record%reason == stop_end) record%reason = stop_rest
          end if
-         if (record%reason /= stop_end .or. it%t - it%drift >= options%end_time - 0.5_wp * it%step) exit
+         if (record%reason /= stop_end .or. model%t - model%drift >= options%end_time - 0.5_wp * model%step) exit
          if (cancel_requested()) then
             status = status_cancelled
             exit
          end if
       end do
-      record%stop_time = it%t - it%drift
+      record%stop_time = model%t - model%drift
 
    contains
 
@@ -312,19 +315,19 @@ contains
          real(wp) :: half
          if (record%points >= size(record%wanted)) return
          record%points = record%points + 1
-         record%time(record%points) = it%t - it%drift
-         half = 0.5_wp * it%drift
-         do k = 1, size(it%set%item)
-            associate (b => it%set%item(k))
-               record%place(:, k, record%points) = [b%x - it%drift * b%vx, b%y - it%drift * b%vy, &
-                                                    b%angle - it%drift * b%spin]
+         record%time(record%points) = model%t - model%drift
+         half = 0.5_wp * model%drift
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               record%place(:, k, record%points) = [b%x - model%drift * b%vx, b%y - model%drift * b%vy, &
+                                                    b%angle - model%drift * b%spin]
                record%rate(:, k, record%points) = [b%vx, b%vy, b%spin]
                if (.not. b%fixed) record%rate(:, k, record%points) = record%rate(:, k, record%points) &
-                  - half * [b%fx / b%mass + it%pull(1), b%fy / b%mass + it%pull(2), b%moment / b%inertia]
+                  - half * [b%fx / b%mass + model%pull(1), b%fy / b%mass + model%pull(2), b%moment / b%inertia]
             end associate
             record%place(1:2, k, record%points) = record%place(1:2, k, record%points) &
-               - (it%base_place - it%drift * it%base)
-            record%rate(1:2, k, record%points) = record%rate(1:2, k, record%points) - it%base
+               - (model%base_place - model%drift * model%base)
+            record%rate(1:2, k, record%points) = record%rate(1:2, k, record%points) - model%base
          end do
          record%energy(dem_energy_kinetic, record%points) = now%kinetic
          record%energy(dem_energy_potential, record%points) = now%potential
@@ -340,17 +343,17 @@ contains
    end subroutine shake
 
    !> Has a body collapsed or left the domain?
-   subroutine limits(it, options, record)
-      type(model), intent(in) :: it
+   subroutine limits(model, options, record)
+      type(block_model), intent(in) :: model
       type(run_options), intent(in) :: options
       type(run_record), intent(inout) :: record
       integer :: k
       real(wp) :: x, y
-      do k = 1, size(it%set%item)
-         associate (b => it%set%item(k))
+      do k = 1, size(model%set%item)
+         associate (b => model%set%item(k))
             if (b%fixed) cycle
-            x = b%x - it%base_place(1)
-            y = b%y - it%base_place(2)
+            x = b%x - model%base_place(1)
+            y = b%y - model%base_place(2)
             if (options%collapse > 0.0_wp) then
                if (hypot(x - b%rest_x, y - b%rest_y) > options%collapse) record%reason = stop_collapse
             end if

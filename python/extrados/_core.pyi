@@ -9,4 +9,6 @@ api_motion: Any
 api_rocking: Any
 api_signal: Any
 api_sla: Any
+api_sla_laws: Any
+api_sla_model: Any
 api_support: Any

@@ -3,8 +3,9 @@ program test_dem
    use common_kinds, only : wp
    use common_status, only : status_ok, status_bad_geometry, status_invalid_argument
    use dem_bodies, only : body, body_set, body_set_new, body_turn
-   use dem_contacts, only : contact_pair, contact_set, overlap, search, measure
+   use dem_contacts, only : contact_pair, contact_set, overlap, measure
    use dem_law, only : joint_law, act, elastic_energy
+   use dem_search, only : search
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none (type, external)
    real(wp), parameter :: box(2, 4) = reshape([0.0_wp, 0.0_wp, 2.0_wp, 0.0_wp, 2.0_wp, 1.0_wp, 0.0_wp, 1.0_wp], [2, 4])

@@ -156,6 +156,27 @@ def test_a_refusal_is_an_answer_and_gives_way_to_the_next(calls) -> None:
     assert live.result("tilt").status == "ok"
 
 
+def test_what_there_is_not_is_named() -> None:
+    live = extrados.live(deck("tilt"))
+    with pytest.raises(KeyError, match=r"tilt has no array 'gama'; there are .*outline"):
+        live.array("tilt", "gama")
+
+
+def test_a_refusal_tells_what_it_assumed_and_a_fault_in_a_verdict_is_no_traceback(monkeypatch) -> None:
+    live = extrados.live(deck("tilt"))
+    live.set("structure.thickness", 0.02)
+    assert live.result("tilt").assumptions["joints.friction"].value == 0.7
+    live.set("structure.thickness", 0.2)
+
+    def fault(self, asked) -> None:
+        raise ZeroDivisionError("of ours")
+
+    monkeypatch.setattr(type(live["tilt"]), "judged", fault)
+    found = live.result("tilt")
+    assert found.status == "failed" and "ZeroDivisionError: of ours" in found.reason
+    assert b"in fault" in found.files["internal-error-tilt.txt"]
+
+
 def test_what_is_kept_is_bounded(monkeypatch) -> None:
     live = extrados.live(deck("tilt"))
     monkeypatch.setattr("extrados.running.live.MOST_VIEWS", 3)

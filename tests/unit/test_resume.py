@@ -113,6 +113,48 @@ start = 1.2
 stop = 2.0
 count = 30
 """,
+    "sweep, its changes and optimum": ARCH
+    + """
+[[analysis]]
+kind = "sweep"
+vary = "embrace"
+start = 100
+stop = 180
+count = 4
+""",
+    "assessment": ARCH
+    + """
+[motion]
+kind = "sine-pulse"
+amplitude = "0.5 g"
+period = 0.8
+[[analysis]]
+kind = "assessment"
+impulses = 1
+""",
+    "failure-domain at amplitudes": ARCH
+    + """
+[[analysis]]
+kind = "failure-domain"
+durations = [0.6, 1.2]
+amplitudes = 4
+at_amplitudes = ["0.6 g", "0.8 g", "1.0 g"]
+accuracy = 0.01
+""",
+    "compatible motions": """
+[motion]
+kind = "compatible"
+code = "EN1998-1"
+ground = "A"
+acceleration = "0.2 g"
+duration = 10.0
+shortest = 0.1
+longest = 0.5
+tolerance = 0.2
+[[analysis]]
+kind = "motion"
+count = 3
+""",
     "survey": ARCH
     + """
 [[analysis]]
@@ -143,6 +185,9 @@ from extrados.cli import main
 sys.argv = ["extrados", *sys.argv[2:]]
 main()
 """
+#: Batches after which a run is killed, where two are too few to come to what is tried: the second curve, the last
+#: searches of a sweep, the shortest durations after the rounds of the map
+KEEPS = {"sla, one curve of each sense": 4, "sweep, its changes and optimum": 3, "failure-domain at amplitudes": 5}
 MEASURED = ("seconds_per_event", "sections_per_second")
 
 
@@ -194,7 +239,7 @@ def run(deck: Path, out: Path, **context) -> None:
 @pytest.mark.parametrize("kind", DECKS)
 def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     deck, one, two = written(kind, tmp_path), tmp_path / "a", tmp_path / "b"
-    keeps = 4 if kind.startswith("sla, one") else 2  # of that wall: in its second curve, after the constant loads
+    keeps = KEEPS.get(kind, 2)
     words = ["run", str(deck), "--no-figures", "--quiet", "--threads", "1", "--out", str(one)]
     killed = subprocess.run([sys.executable, "-c", KILLED, str(keeps), *words])
     assert killed.returncode == -signal.SIGKILL and not (one / "summary.json").exists()

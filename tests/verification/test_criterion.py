@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import least_squares
 
 from extrados.analyses.rocking import criterion
 from extrados.building.rockers.arch import ArchModel
@@ -59,6 +60,26 @@ def test_fits_of_the_test_arches(embrace, n, printed, allowed) -> None:
     periods = np.array([0.08, 0.09, 0.1, 0.12, 0.15, 0.2, 0.3, 0.4])
     ours = criterion.mode_i_curve(model.body, model.collapse[0].gamma, model.arch.radius, periods, cap=5.0, threads=2)
     assert np.abs(ours / criterion.Fit(*printed).amplitude(periods) - 1).max() < allowed
+
+
+@pytest.mark.parametrize("exponent", [-0.9, -0.03])
+def test_fit_against_scipy(exponent: float) -> None:
+    """Within the bounds, and at one: an exponent as flat as none may be."""
+    rng = np.random.default_rng(5)
+    t = np.geomspace(0.2, 1.6, 40)
+    a = (0.05 * (t - 0.1) ** exponent + 0.2) * (1.0 + 0.01 * rng.normal(size=len(t)))
+    ours = criterion.fit(t, a, 0.2)
+    good = (a > criterion.FLOOR * 0.2) & (a < criterion.CAP * 0.2)
+
+    def misfit(x: np.ndarray) -> np.ndarray:
+        return (np.exp(x[0]) * (t[good] - x[2]) ** x[1] + 0.2) / a[good] - 1.0
+
+    bounds = ([-np.inf, -5.0, 0.0], [np.inf, -0.05, t[good][0] * (1.0 - 1e-6)])
+    start = [np.log(0.03), -0.8, 0.5 * t[good][0]]
+    peer = least_squares(misfit, start, bounds=bounds, ftol=1e-14, xtol=1e-14, gtol=1e-14)
+    assert ours.rms == pytest.approx(np.sqrt(2.0 * peer.cost / good.sum()), rel=1e-6)
+    np.testing.assert_allclose(ours.amplitude(t[good]), (misfit(peer.x) + 1.0) * a[good], rtol=1e-5)
+    assert ours.c2 <= -0.05 and 0.0 <= ours.t_min < t[good][0]
 
 
 def test_primary_impulse_of_a_known_one() -> None:

@@ -19,7 +19,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.core.calls import cancel_requested, interruptible
-from extrados.core.errors import Cancelled
+from extrados.core.errors import Cancelled, status_code
 from extrados.results.checkpoint import fingerprint
 
 #: A batch should take about this long [s]; the first one has few members, to learn their speed.
@@ -61,6 +61,19 @@ class Swept:
         if not self.complete:
             raise Unfinished(self.stopped, self.interrupted)
         return self
+
+
+def computed(context: Context | None, name: str, job: Job, count: int, text: str, threads: int = 1, **how: Any) -> Any:
+    """All rows of a job: by `sweep` where there is a context, Unfinished where some are missing; else at once."""
+    if context is None:
+        return job.run(0, count, threads)
+    return sweep(context, name, job, count, text, **how).whole()
+
+
+def stop_if_asked() -> None:
+    """Cancelled where the user has asked for the end: for members that take long outside the core."""
+    if cancel_requested():
+        raise Cancelled(status_code("cancelled"), "interrupted")
 
 
 def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int) -> dict[str, np.ndarray]:

@@ -3,6 +3,7 @@
 Apart from the drivers, so that a changed motion or default recomputes no analysis that does not look at it.
 """
 
+import traceback
 from dataclasses import replace
 from functools import cached_property
 
@@ -45,16 +46,30 @@ class MotionDemand:
 
 
 def concluded(result: Result, options: Analysis, context: Context, building: Building) -> Result:
-    """The result with its verdict, its assumptions, and an answer that tells them; as it is where it has no results.
+    """The result with its verdict, its assumptions, and an answer that tells them; one that was refused with the
+    assumptions alone, any other without results as it is.
 
     building: the building as the analysis saw it.
     """
-    verdict = result.results.judged(MotionDemand(context))
+    try:
+        verdict = result.results.judged(MotionDemand(context))
+        if verdict is None and result.status != "refused":
+            return result
+        assumptions = assumptions_of(options, context.deck.building, building)
+    except Exception as error:  # a fault of ours: the other analyses of the deck still count
+        return replace(faulty(result.kind, error), seconds=result.seconds)
     if verdict is None:
-        return result
-    assumptions = assumptions_of(options, context.deck.building, building)
+        return replace(result, assumptions=assumptions)
     answer = f"{result.answer} {spoken(assumptions)}".strip()
     return replace(result, verdict=verdict, assumptions=assumptions, answer=answer)
+
+
+def faulty(kind: str, error: Exception) -> Result:
+    """What an analysis gives instead of a result where the program is at fault: the reason, and a file to report."""
+    name = f"internal-error-{kind}.txt"
+    found = Result(kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}")
+    found.files[name] = "".join(traceback.format_exception(error)).encode()
+    return found
 
 
 def assumptions_of(options: Analysis, deck: Building, building: Building) -> dict[str, Assumption]:

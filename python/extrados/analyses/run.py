@@ -1,11 +1,10 @@
 """Run the analyses of a deck in order, on one building and one motion."""
 
 import time
-import traceback
 
 from extrados import kinds
 from extrados.analyses.batches import Unfinished
-from extrados.analyses.conclude import concluded
+from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
@@ -55,10 +54,6 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     except (CoreError, NoAnswer) as error:
         result = Result(options.kind, "failed", str(error))
     except Exception as error:  # a fault of ours: the other analyses of the deck still count
-        name = f"internal-error-{options.kind}.txt"
-        result = Result(
-            options.kind, "failed", f"internal error, please report it with {name}: {type(error).__name__}: {error}"
-        )
-        result.files[name] = traceback.format_exc().encode()
+        result = faulty(options.kind, error)
     result.seconds = time.perf_counter() - begin
     return result

@@ -45,7 +45,7 @@ def make_motion(model: Model, folder: Path) -> Motion:
         case models.Generated():
             return _numbered("generated", generated_set(model, folder).ground(model.member - 1), model.member)
         case models.Compatible():
-            return _compatible(compatible_set(model, folder), model.member - 1)
+            return compatible_motion(model, folder, model.member - 1)
     raise TypeError(f"no motion for {type(model).__name__}")
 
 
@@ -73,7 +73,7 @@ def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion | Re
                     yield _numbered("generated", Ground(samples=row[None, :], step=made.step), k + 1)
         case models.Compatible():
             for k in range(count):
-                yield _compatible(compatible_set(model, folder), k)
+                yield compatible_motion(model, folder, k)
         case _:
             yield make_motion(model, folder)
 
@@ -146,9 +146,12 @@ def _numbered(name: str, ground: Ground, number: int) -> Motion:
     return Motion(f"{name} motion {number}", ground)
 
 
-def _compatible(made: CompatibleSet, k: int) -> Motion:
+def compatible_motion(model: models.Compatible, folder: Path, k: int, acceleration: np.ndarray | None = None) -> Motion:
+    """Motion k of a compatible set; `acceleration` [m/s^2] where it was matched before. RecordError where it cannot be."""
     try:
-        return _numbered("compatible", made.ground(k), k + 1)
+        if acceleration is not None:
+            return _numbered("compatible", Ground(samples=acceleration[None, :], step=model.time_step), k + 1)
+        return _numbered("compatible", compatible_set(model, folder).ground(k), k + 1)
     except (NotMatched, ValueError) as error:
         raise RecordError(f"[motion] compatible: {error}") from None
 

@@ -79,20 +79,23 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         columns = min(3, count)
         rows = -(-count // columns)
         wide, high = np.ptp(np.concatenate(blocks), axis=0)
-        tall = 4.0 if high > 2.0 * wide else 2.5
-        with style.figure(3.2 * columns, tall * rows, rows=rows, columns=columns) as (fig, axes):
+        tall = float(np.clip(3.0 * high / wide + 0.8, 2.0, 4.0))
+        with style.figure(3.2 * columns, tall * rows, rows=rows, columns=columns, sharex=True, sharey=True) as (
+            fig,
+            axes,
+        ):
             for ax in axes[count:]:
                 ax.set_axis_off()
             for k, (ax, when, pose) in enumerate(zip(axes, times.data, poses, strict=False)):
                 style.draw_blocks(ax, [moved(o, c, p) for o, c, p in zip(blocks, centroid, pose, strict=True)])
-                low, high = ax.get_xlim(), ax.get_ylim()
                 if lines is not None:
-                    ax.plot(*lines.data[k].T, color=style.THRUST, marker=".", markersize=3)
-                span = high[1] - high[0]
-                ax.set_xlim(low[0] - 0.05 * span, low[1] + 0.05 * span)
-                ax.set_ylim(high[0] - 0.05 * span, high[1] + 0.15 * span)
+                    ax.plot(*lines.data[k].T, color=style.THRUST, marker=".", markersize=3, scalex=False, scaley=False)
                 ax.set_title(f"{when:.3f} s")
                 style.section_axes(ax)
+                ax.label_outer()
+                if count <= k + columns < len(axes):  # nothing stands below it
+                    ax.tick_params(labelbottom=True)
+                    ax.set_xlabel("x [m]")
             found.append(
                 (
                     style.save(fig, folder, f"{name}-shapes"),

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
 from matplotlib.ticker import MaxNLocator
 
 STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
@@ -43,7 +43,8 @@ def save(fig: Figure, folder: Path, name: str) -> str:
     # would lay out and draw unseen anew for each format.
     fig.get_layout_engine().execute(fig)
     fig.set_layout_engine("none")
-    FigureCanvasAgg(fig).print_png(target / f"{name}.png")
+    # A tenth more bytes for half the time of compressing
+    FigureCanvasAgg(fig).print_png(target / f"{name}.png", pil_kwargs={"compress_level": 2})
     FigureCanvasSVG(fig).print_svg(target / f"{name}.svg", metadata={"Date": None})
     return name
 
@@ -70,11 +71,9 @@ def section_axes(ax: Axes) -> None:
     ax.set_ylabel("y [m]")
 
 
-def draw_blocks(ax: Axes, outlines: list[np.ndarray], **style) -> None:
-    """Block outlines as hatched stone."""
-    options = {"facecolor": STONE, "edgecolor": EDGE, "linewidth": 0.7, **style}
-    for outline in outlines:
-        ax.add_patch(Polygon(outline, closed=True, **options))
+def draw_blocks(ax: Axes, outlines: list[np.ndarray]) -> None:
+    """Block outlines as stone."""
+    ax.add_collection(PolyCollection(outlines, facecolors=STONE, edgecolors=EDGE, linewidths=0.7, zorder=1))
     ax.autoscale_view()
 
 

@@ -129,7 +129,11 @@ class Live:
         return self._computed(name).results
 
     def array(self, analysis: str, name: str) -> np.ndarray:
-        return np.asarray(self._computed(analysis).arrays[name].data)
+        """The data of an array of an analysis; KeyError names those that there are."""
+        there = self._computed(analysis).arrays
+        if name not in there:
+            raise KeyError(f"{analysis} has no array '{name}'; there are {', '.join(there) or 'none'}")
+        return np.asarray(there[name].data)
 
 
 @dataclass(frozen=True)

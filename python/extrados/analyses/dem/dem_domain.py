@@ -172,7 +172,7 @@ def _beside(
     try:
         tried = np.linspace(0.1 * durations[0], 1.5 * durations[-1], 120)
         found = shortest_durations(
-            arch.body, options.pulse, amplitudes, tried, settling_time(arch), 1e-4, context.threads
+            arch.body, options.pulse, amplitudes, tried, settling_time(arch), 1e-4, context.threads, context
         )
     except (BadGeometry, Refused, CoreError) as error:
         result.warnings.append(f"no four-hinge curves beside these: {error}")

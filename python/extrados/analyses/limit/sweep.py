@@ -1,11 +1,13 @@
 """sweep: the capacity as one key of the structure varies; changes of mechanism, optimum, stable range."""
 
+import itertools
+import json
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import packed
 from extrados.analyses.limit.tables import Sweep
@@ -104,7 +106,7 @@ def run(context: Context, options: Sweep) -> Result:
     outcomes = outcomes_of(swept.whole())
     if all(o.gamma is None for o in outcomes):
         raise Refused(f"no value of {options.vary} gives a structure that stands: {outcomes[-1].reason}")
-    changes = _changes(ask, values, outcomes) if options.locate and not whole else []
+    changes = _changes(context, ask, values, outcomes) if options.locate and not whole else []
     numbers: dict[Signature, int] = {}
     for _, signature in sorted(
         [(v, o.signature) for v, o in zip(values, outcomes, strict=True)] + [(c["value"], c["after"]) for c in changes],
@@ -112,7 +114,7 @@ def run(context: Context, options: Sweep) -> Result:
     ):
         if signature and signature != LOCKED:
             numbers.setdefault(signature, len(numbers) + 1)
-    best, best_gamma = _optimum(ask, values, outcomes, options.locate and not whole)
+    best, best_gamma = _optimum(context, ask, values, outcomes, options.locate and not whole)
     result = Result("sweep")
     stable = [c for c in changes if not c["before"] or not c["after"]]
     locks = [c["value"] for c in changes if LOCKED in (c["before"], c["after"])]
@@ -177,52 +179,105 @@ def run(context: Context, options: Sweep) -> Result:
     return result
 
 
-def _changes(ask: Range, values: np.ndarray, outcomes: list[Outcome]) -> list[dict[str, Any]]:
-    """Every value at which the mechanism becomes another, by bisection between neighbours that differ."""
-    close = CLOSE * float(values[-1] - values[0])
-    found: list[dict[str, Any]] = []
-    for i in range(len(values) - 1):
-        low, before = float(values[i]), outcomes[i]
-        while before.signature != outcomes[i + 1].signature and len(found) < MOST_CHANGES:
-            left, right = low, float(values[i + 1])
-            after = outcomes[i + 1]
-            while right - left > close:
-                middle = 0.5 * (left + right)
-                here = ask.at(middle)
-                if here.signature == before.signature:
-                    left, before = middle, here
+@dataclass(frozen=True)
+class End:
+    """What a neighbour of a change gave: value, mechanism and capacity [g]."""
+
+    value: float
+    signature: Signature
+    gamma: float | None
+
+
+@dataclass(frozen=True)
+class Between:
+    """Member k: every value between gaps[k] at which the mechanism becomes another, found by bisection."""
+
+    ask: Range
+    gaps: list[tuple[End, End]]
+    close: float
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(lambda k: {"changes": np.array(json.dumps(self._changes(*self.gaps[k])))}, first, count)
+
+    def _changes(self, low: End, high: End) -> list[dict[str, Any]]:
+        found: list[dict[str, Any]] = []
+        while low.signature != high.signature and len(found) < MOST_CHANGES:
+            before, after = low, high
+            while after.value - before.value > self.close:
+                middle = self._at(0.5 * (before.value + after.value))
+                if middle.signature == before.signature:
+                    before = middle
                 else:
-                    right, after = middle, here
+                    after = middle
             gamma = after.gamma if before.gamma is None else before.gamma
-            found.append({"value": right, "before": before.signature, "after": after.signature, "gamma": gamma})
-            low, before = right, after
-    return found
+            found.append({"value": after.value, "before": before.signature, "after": after.signature, "gamma": gamma})
+            low = after
+        return found
+
+    def _at(self, value: float) -> End:
+        stop_if_asked()
+        found = self.ask.at(value)
+        return End(value, found.signature, found.gamma)
 
 
-def _optimum(ask: Range, values: np.ndarray, outcomes: list[Outcome], closely: bool) -> tuple[float, float]:
-    """The value of greatest capacity, by golden section between the neighbours of the best one."""
+def _changes(context: Context, ask: Range, values: np.ndarray, outcomes: list[Outcome]) -> list[dict[str, Any]]:
+    """The first MOST_CHANGES values at which the mechanism becomes another."""
+    ends = [End(float(v), o.signature, o.gamma) for v, o in zip(values, outcomes, strict=True)]
+    gaps = [(one, two) for one, two in itertools.pairwise(ends) if one.signature != two.signature][:MOST_CHANGES]
+    if not gaps:
+        return []
+    job = Between(ask, gaps, CLOSE * float(values[-1] - values[0]))
+    swept = sweep(context, "sweep-changes", job, len(gaps), "changes of mechanism", slow=True).whole()
+    found = [change for text in swept["changes"] for change in json.loads(str(text))]
+    for change in found:
+        for key in ("before", "after"):
+            change[key] = tuple((name, marks) for name, marks in change[key])
+    return found[:MOST_CHANGES]
+
+
+@dataclass(frozen=True)
+class Best:
+    """Its one member: the value of greatest capacity between low and high by golden section, and the capacity [g]."""
+
+    ask: Range
+    low: float
+    high: float
+    close: float
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        low, high = self.low, self.high
+        one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
+        at_one, at_two = self._capacity(one), self._capacity(two)
+        while high - low > self.close:
+            if at_one >= at_two:
+                high, two, at_two = two, one, at_one
+                one = high - GOLDEN * (high - low)
+                at_one = self._capacity(one)
+            else:
+                low, one, at_one = one, two, at_two
+                two = low + GOLDEN * (high - low)
+                at_two = self._capacity(two)
+        gamma, value = max((at_one, one), (at_two, two))
+        return {"value": np.array([value]), "gamma": np.array([gamma])}
+
+    def _capacity(self, value: float) -> float:
+        stop_if_asked()
+        found = self.ask.at(value).gamma
+        return -np.inf if found is None else found
+
+
+def _optimum(
+    context: Context, ask: Range, values: np.ndarray, outcomes: list[Outcome], closely: bool
+) -> tuple[float, float]:
+    """The value of greatest capacity, searched between the neighbours of the best one, and the capacity [g]."""
     gamma = np.array([-np.inf if o.gamma is None else o.gamma for o in outcomes])
     k = int(gamma.argmax())
     if not closely:
         return float(values[k]), float(gamma[k])
     low, high = float(values[max(k - 1, 0)]), float(values[min(k + 1, len(values) - 1)])
-
-    def capacity(value: float) -> float:
-        found = ask.at(value).gamma
-        return -np.inf if found is None else found
-
-    one, two = high - GOLDEN * (high - low), low + GOLDEN * (high - low)
-    at_one, at_two = capacity(one), capacity(two)
-    while high - low > CLOSE * float(values[-1] - values[0]):
-        if at_one >= at_two:
-            high, two, at_two = two, one, at_one
-            one = high - GOLDEN * (high - low)
-            at_one = capacity(one)
-        else:
-            low, one, at_one = one, two, at_two
-            two = low + GOLDEN * (high - low)
-            at_two = capacity(two)
-    best = max([(float(gamma[k]), float(values[k])), (at_one, one), (at_two, two)])
+    job = Best(ask, low, high, CLOSE * float(values[-1] - values[0]))
+    found = sweep(context, "sweep-optimum", job, 1, "optimum", slow=True).whole()
+    best = max((float(gamma[k]), float(values[k])), (float(found["gamma"][0]), float(found["value"][0])))
     return best[1], best[0]
 
 

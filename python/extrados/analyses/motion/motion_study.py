@@ -1,17 +1,20 @@
 """motion: what a ground motion is, alone or as a set: peaks, measures, spectra, pulses, export."""
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from extrados.analyses.batches import stacked, stop_if_asked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion.tables import MotionStudy
 from extrados.core import motion as core
 from extrados.motions import directions, export
 from extrados.motions import tables as models
 from extrados.motions.formats.record import RecordError
-from extrados.motions.from_deck import compatible_set, generated_set, is_set, make_members
+from extrados.motions.from_deck import compatible_motion, compatible_set, generated_set, is_set, make_members
 from extrados.motions.impulse import Impulse, primary_impulses
 from extrados.motions.measures import fourier_spectrum, spectral_measures
 from extrados.motions.motion import Motion
@@ -221,6 +224,30 @@ def _readable(members: Iterator[Motion | RecordError], warnings: list[str]) -> I
         raise Refused(f"none of the {len(wrong)} records can be read; the first: {wrong[0]}")
 
 
+@dataclass(frozen=True)
+class Matched:
+    """Member k is motion k of a compatible set: its matching takes seconds."""
+
+    model: models.Compatible
+    folder: Path
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        def member(k: int) -> dict[str, np.ndarray]:
+            stop_if_asked()
+            return {"acceleration": compatible_motion(self.model, self.folder, k).ground.samples[0]}
+
+        return stacked(member, first, count)
+
+
+def _members(context: Context, count: int) -> Iterator[Motion | RecordError]:
+    """The motions of the set; those of a compatible one, which take long to make, by the batch layer."""
+    model, folder = context.deck.motion, context.deck.folder
+    if not isinstance(model, models.Compatible):
+        return make_members(model, folder, count)
+    swept = sweep(context, "compatible", Matched(model, folder), count, "compatible motions", slow=True).whole()
+    return (compatible_motion(model, folder, k, a) for k, a in enumerate(swept["acceleration"]))
+
+
 def _run_set(context: Context, options: MotionStudy) -> Result:
     model, folder = context.deck.motion, context.deck.folder
     suite = isinstance(model, models.Suite)
@@ -234,7 +261,7 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
     psa, shown, impulses, squares, warnings = [], [], [], None, []
     periods = None
     try:
-        for k, motion in enumerate(_readable(make_members(model, folder, options.count), warnings)):
+        for k, motion in enumerate(_readable(_members(context, options.count), warnings)):
             a, step = _series(motion)
             m = core.measures(a, step)
             for name, value in (("name", motion.name), ("pga_g", m.pga[0] / GRAVITY), ("pgv_m_s", m.pgv[0]), ("pgd_m", m.pgd[0]),

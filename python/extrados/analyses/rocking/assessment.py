@@ -24,7 +24,7 @@ def run(context: Context, options: Assessment) -> Result:
     time, acceleration = context.motion.series()
     impulses = primary_impulses(time, acceleration, options.impulses, options.min_period, options.max_period)
     try:
-        own, own_periods, own_curve = fit_own(rocker.body, gamma, scale, context.threads)
+        own, own_periods, own_curve = fit_own(rocker.body, gamma, scale, context.threads, context=context)
     except ValueError as error:
         raise Refused(f"no failure curve of single sines could be fitted: {error}") from None
     result = Result("assessment")

@@ -12,7 +12,9 @@ from importlib.resources import files
 
 import numpy as np
 
-from extrados.analyses.rocking.failure_domain import Mapper, failure_curves
+from extrados.analyses.batches import computed
+from extrados.analyses.context import Context
+from extrados.analyses.rocking.failure_domain import LowestAmplitudes
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import make_arch
 from extrados.core.rocking import Body
@@ -44,15 +46,24 @@ class Fit:
 
 
 def mode_i_curve(
-    body: Body, gamma: float, scale: float, periods: np.ndarray, cap: float = CAP, threads: int = 1
+    body: Body,
+    gamma: float,
+    scale: float,
+    periods: np.ndarray,
+    cap: float = CAP,
+    threads: int = 1,
+    context: Context | None = None,
 ) -> np.ndarray:
     """Lowest amplitude [g] of a single sine of each period [s] that brings a structure down; NaN above cap gamma.
 
-    gamma: acceleration at which it starts to rock [g]; scale [m]: see Rocker.
+    gamma: acceleration at which it starts to rock [g]; scale [m]: see Rocker. With a context through the batch layer:
+    Unfinished where some are missing.
     """
-    mapper = Mapper(body, "sine", periods, 40.0 * float(np.sqrt(scale / GRAVITY)), threads)
     amplitudes = gamma * GRAVITY * np.linspace(1.0, cap, 81)[1:]
-    return failure_curves(mapper, periods, amplitudes, 1e-4 * GRAVITY).mode_i / GRAVITY
+    settle = 40.0 * float(np.sqrt(scale / GRAVITY))
+    job = LowestAmplitudes(body, "sine", np.asarray(periods), amplitudes, settle, 1e-4 * GRAVITY)
+    found = computed(context, "failure-curve", job, len(periods), "failure curve of single sines", threads)
+    return found["amplitude"] / GRAVITY
 
 
 def fit(periods: np.ndarray, amplitudes: np.ndarray, gamma: float) -> Fit:
@@ -62,35 +73,59 @@ def fit(periods: np.ndarray, amplitudes: np.ndarray, gamma: float) -> Fit:
     if len(t) < 4:
         raise ValueError(f"only {len(t)} points of the failure curve lie below the cap, too few for a fit")
 
-    def misfit(x: np.ndarray) -> np.ndarray:
-        return (np.exp(x[0]) * np.maximum(t - x[2], 1e-9) ** x[1] + gamma) / a - 1.0
+    def misfit(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        left = t - x[2]
+        with np.errstate(over="ignore", invalid="ignore"):  # a step too far, which is not taken
+            power = np.exp(x[0]) * left ** x[1] / a
+            return power + gamma / a - 1.0, np.stack([power, power * np.log(left), -power * x[1] / left], axis=1)
 
-    best = None
-    for share in (0.5, 0.8, 0.95):
-        start = np.array([np.log(0.03), -0.8, share * t[0]])
-        from scipy.optimize import least_squares
+    low, high = np.array([-np.inf, -5.0, 0.0]), np.array([np.inf, -0.05, t[0] * (1 - 1e-6)])
+    starts = [np.array([np.log(0.03), -0.8, share * t[0]]) for share in (0.5, 0.8, 0.95)]
+    x, squares = min((_least_squares(misfit, start, low, high) for start in starts), key=lambda found: found[1])
+    return Fit(float(np.exp(x[0])), float(x[1]), float(x[2]), gamma, float(np.sqrt(squares / len(t))))
 
-        answer = least_squares(misfit, start, bounds=([-np.inf, -5.0, 0.0], [np.inf, -0.05, t[0] * (1 - 1e-6)]))
-        if best is None or answer.cost < best.cost:
-            best = answer
-    return Fit(
-        float(np.exp(best.x[0])),
-        float(best.x[1]),
-        float(best.x[2]),
-        gamma,
-        float(np.sqrt(2 * best.cost / len(t))),
-    )
+
+def _least_squares(
+    misfit: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]], x: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Least sum of squares of a misfit between bounds, from x: damped Gauss-Newton steps (Marquardt 1963).
+
+    `misfit` gives residuals and their derivatives (residuals, unknowns). Returns x and the sum. Written out here
+    because loading scipy.optimize takes longer than the fit.
+    """
+    r, slopes = misfit(x)
+    squares, damping = float(r @ r), 1e-3
+    for _ in range(500):
+        down = -slopes.T @ r
+        free = ~(((x <= low) & (down < 0.0)) | ((x >= high) & (down > 0.0)))
+        if not free.any():
+            break
+        normal = slopes[:, free].T @ slopes[:, free]
+        step = np.zeros(len(x))
+        step[free] = np.linalg.solve(normal + damping * np.diag(np.diag(normal)), down[free])
+        trial = np.clip(x + step, low, high)
+        moved = np.abs(trial - x).max()
+        r_there, slopes_there = misfit(trial)
+        there = float(r_there @ r_there)
+        if there < squares:
+            x, r, slopes, squares = trial, r_there, slopes_there, there
+            damping = max(0.1 * damping, 1e-12)
+        else:
+            damping *= 10.0
+        if moved <= 1e-12 * (1.0 + np.abs(x).max()):
+            break
+    return x, squares
 
 
 def fit_own(
-    body: Body, gamma: float, scale: float, threads: int = 1, count: int = 80
+    body: Body, gamma: float, scale: float, threads: int = 1, count: int = 80, context: Context | None = None
 ) -> tuple[Fit, np.ndarray, np.ndarray]:
     """Fit to the structure's own curve, and the periods (scaled to 1 m) and amplitudes [g] it was made from.
 
-    ValueError where too little of the curve lies below the cap.
+    ValueError where too little of the curve lies below the cap; `context`: see mode_i_curve.
     """
     periods = np.geomspace(0.1, 1.6, count)
-    curve = mode_i_curve(body, gamma, scale, periods * np.sqrt(scale), threads=threads)
+    curve = mode_i_curve(body, gamma, scale, periods * np.sqrt(scale), threads=threads, context=context)
     return fit(periods, curve, gamma), periods, curve
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import sweep
+from extrados.analyses.batches import computed, sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.rocking.tables import FailureDomain
@@ -29,6 +29,8 @@ from extrados.schema.constants import GRAVITY
 #: Codes of the map: those of the outcomes, with collapse told apart by its mode
 MODE_I, MODE_II = COLLAPSE, COLLAPSE + 1
 BATCH = 4096
+#: Amplitudes that are tried at a time where only the lowest failing one is asked for
+SCAN = 16
 
 
 #: What the deck calls the duration of each pulse, and how many of it span the natural range of the curve
@@ -121,6 +123,62 @@ def failure_curves(mapper: Mapper, durations: np.ndarray, amplitudes: np.ndarray
     return Curves(durations, amplitudes, codes, *refined, _refine(safe, risen, grid, MODE_I, accuracy))
 
 
+@dataclass(frozen=True)
+class LowestAmplitudes:
+    """Member k: the lowest amplitude [m/s^2] of a pulse of durations[k] [s] that brings a structure down; NaN: none.
+
+    It lies in the first failing cell of `amplitudes` (ascending), and is known to `accuracy`.
+    """
+
+    body: Body
+    pulse: str
+    durations: np.ndarray
+    amplitudes: np.ndarray
+    settle: float
+    accuracy: float
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        lengths = self.durations[first : first + count]
+        codes = Mapper(self.body, self.pulse, lengths.tolist(), self.settle, threads).codes
+        scanned = np.zeros((count, len(self.amplitudes)), dtype=int)
+        rows = np.arange(count)
+        for begin in range(0, len(self.amplitudes), SCAN):
+            some = self.amplitudes[begin : begin + SCAN]
+            found = codes(np.repeat(rows, len(some)), np.tile(some, len(rows))).reshape(len(rows), len(some))
+            scanned[rows, begin : begin + SCAN] = found
+            rows = rows[(found < MODE_I).all(axis=1)]
+            if not len(rows):
+                break
+        grid = np.broadcast_to(self.amplitudes, scanned.shape)
+        return {"amplitude": _refine(codes, scanned, grid, MODE_I, self.accuracy)}
+
+
+@dataclass(frozen=True)
+class ShortestDurations:
+    """Member k: the shortest pulse [s] of amplitudes[k] [m/s^2] that fails in Mode I (or II), and in Mode II; NaN: none.
+
+    It lies in the first failing cell of `durations` (ascending), and is known to `accuracy` [s].
+    """
+
+    body: Body
+    pulse: str
+    amplitudes: np.ndarray
+    durations: np.ndarray
+    settle: float
+    accuracy: float
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        def codes(index: np.ndarray, length: np.ndarray) -> np.ndarray:
+            mapper = Mapper(self.body, self.pulse, length.tolist(), self.settle, threads)
+            return mapper.codes(np.arange(len(length)), self.amplitudes[first + index])
+
+        tried = len(self.durations)
+        grid = np.broadcast_to(self.durations, (count, tried))
+        scanned = codes(np.repeat(np.arange(count), tried), grid.ravel()).reshape(count, tried)
+        modes = {"mode_I": MODE_I, "mode_II": MODE_II}
+        return {name: _refine(codes, scanned, grid, wanted, self.accuracy) for name, wanted in modes.items()}
+
+
 def shortest_durations(
     body: Body,
     pulse: str,
@@ -129,17 +187,15 @@ def shortest_durations(
     settle: float,
     accuracy: float,
     threads: int,
+    context: Context | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Shortest failing duration [s] at each amplitude [m/s^2] in Mode I (or II) and in Mode II; NaN: none."""
+    """Shortest failing duration [s] at each amplitude [m/s^2] in Mode I (or II) and in Mode II; NaN: none.
 
-    def codes(index: np.ndarray, length: np.ndarray) -> np.ndarray:
-        mapper = Mapper(body, pulse, length.tolist(), settle, threads)
-        return mapper.codes(np.arange(len(length)), amplitudes[index])
-
-    na, nd = len(amplitudes), len(durations)
-    grid = np.broadcast_to(durations, (na, nd))
-    scanned = codes(np.repeat(np.arange(na), nd), grid.ravel()).reshape(na, nd)
-    return tuple(_refine(codes, scanned, grid, wanted, accuracy) for wanted in (MODE_I, MODE_II))
+    With a context through the batch layer: Unfinished where some are missing.
+    """
+    job = ShortestDurations(body, pulse, amplitudes, durations, settle, accuracy)
+    found = computed(context, "shortest-durations", job, len(amplitudes), "shortest failing pulses", threads, slow=True)
+    return found["mode_I"], found["mode_II"]
 
 
 def _refine(
@@ -150,7 +206,8 @@ def _refine(
     accuracy: float,
 ) -> np.ndarray:
     """Lowest failing value of each row of a scan (codes, values ascending): its first failing cell is scanned
-    again in 8 parts until it is smaller than `accuracy`. `codes_at(rows, values)` runs more pulses."""
+    again in 8 parts until it is smaller than `accuracy`, whatever the other rows need. `codes_at(rows, values)` runs
+    more pulses."""
 
     def fails(c: np.ndarray) -> np.ndarray:
         return c >= MODE_I if wanted == MODE_I else c == MODE_II
@@ -161,16 +218,16 @@ def _refine(
     high = values[index, first[index]]
     low = np.where(first[index] > 0, values[index, np.maximum(first[index] - 1, 0)], 0.0)
     parts = 8
-    while len(index) and float((high - low).max()) > accuracy:
+    while len(wide := np.flatnonzero(high - low > accuracy)):
         steps = np.arange(1, parts) / parts
-        trial = low[:, None] + (high - low)[:, None] * steps
-        again = fails(codes_at(np.repeat(index, parts - 1), trial.ravel()).reshape(trial.shape))
+        trial = low[wide, None] + (high - low)[wide, None] * steps
+        again = fails(codes_at(np.repeat(index[wide], parts - 1), trial.ravel()).reshape(trial.shape))
         hit = again.any(axis=1)
         k = again.argmax(axis=1)
-        rows = np.arange(len(index))
-        high = np.where(hit, trial[rows, k], high)
-        before = np.where(k > 0, trial[rows, np.maximum(k - 1, 0)], low)
-        low = np.where(hit, before, trial[:, -1])
+        rows = np.arange(len(wide))
+        before = np.where(k > 0, trial[rows, np.maximum(k - 1, 0)], low[wide])
+        high[wide] = np.where(hit, trial[rows, k], high[wide])
+        low[wide] = np.where(hit, before, trial[:, -1])
     out = np.full(len(codes), np.nan)
     out[index] = high
     return out
@@ -262,7 +319,7 @@ def _at_amplitudes(
         return {}
     at = np.array(options.at_amplitudes)
     tried = np.linspace(durations.min(), durations.max(), 200)
-    found = shortest_durations(model.body, options.pulse, at, tried, settle, options.accuracy, context.threads)
+    found = shortest_durations(model.body, options.pulse, at, tried, settle, options.accuracy, context.threads, context)
     rows = out.AtAmplitudes(amplitudes_g=at / GRAVITY, mode_I_durations_s=found[0], mode_II_durations_s=found[1])
     return {"at_amplitudes": rows}
 
