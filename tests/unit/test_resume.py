@@ -310,8 +310,8 @@ def test_constant_loads_are_not_brought_on_again(kept: int, tmp_path: Path, monk
     assert stopped.status == "interrupted" and stopped.results["events"] == 0
     done = []
 
-    def counted(self, *args):
-        found = run(self, *args)
+    def counted(self, *args, **keywords):
+        found = run(self, *args, **keywords)
         done.append(len(found))
         return found
 
