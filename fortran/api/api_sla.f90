@@ -5,7 +5,7 @@ module api_sla
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: loads, run, displacement, measure, report, damage, set_damage, standing, resume
+   public :: loads, run, relax, displacement, measure, report, damage, set_damage, standing, resume
 
 contains
 
@@ -114,6 +114,31 @@ contains
       end subroutine events
 
    end subroutine run
+
+   !> One iteration of an incremental analysis at a multiplier, see damage_overloaded
+   subroutine relax(handle, lambda, damaged, cracked, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_events, only : damage_overloaded
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      real(c_double), intent(in) :: lambda
+      integer(c_int), intent(out) :: damaged             !! points that lost a tooth
+      real(c_double), intent(out) :: cracked             !! crack energy so far [J]
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      integer :: count
+      !f2py threadsafe
+      damaged = 0
+      cracked = 0.0_c_double
+      call model_take(handle, stage_loaded, stage_loaded, model, status)
+      if (status /= status_ok) return
+      call damage_overloaded(model, lambda, count, status)
+      damaged = int(count, c_int)
+      cracked = model%cracked
+      call handle_leave(handle)
+   end subroutine relax
 
    !> Displacements of the nodes under A and under B
    subroutine displacement(handle, nodes, ua, ub, status)

@@ -13,13 +13,13 @@ module sla_events
       status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change, extrados_sparse_solve
-   use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
+   use sla_group, only : below, bound, event_vectors, point_group, scan_result, unbounded, most_entries, most_rank
    use sla_model, only : element_model, model_factor, model_settled, model_solve
    use sla_regions, only : levels, regions_bring, regions_calm, regions_home, regions_margins, regions_window
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: run_events, residual, scan_model, stop_rules, event_log, log_reals, log_integers
+   public :: run_events, damage_overloaded, residual, scan_model, stop_rules, event_log, log_reals, log_integers
 
    integer, parameter :: log_reals = 10, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
@@ -257,6 +257,52 @@ contains
       model%tree%part(:)%patience = 0
       model%tree%part(:)%failed = 0
    end subroutine bring_all
+
+   !> One iteration of an incremental analysis: in each element the most overloaded point at a multiplier loses a tooth,
+   !> all at once; then the factor and the displacements are made anew
+   subroutine damage_overloaded(model, lambda, count, status)
+      type(element_model), intent(inout) :: model    !! all its displacements are those of a solution
+      real(wp), intent(in) :: lambda
+      integer, intent(out) :: count                  !! points damaged
+      integer(c_int), intent(out) :: status          !! not_positive_definite: a mechanism
+      real(wp), parameter :: tolerance = 1.0e-9_wp
+      type(scan_result) :: found
+      type(event_vectors) :: event
+      type(bound) :: worst
+      real(wp) :: ratio
+      integer(c_int) :: node, direction
+      integer :: g, e, i, tooth
+
+      count = 0
+      status = status_ok
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
+         class is (point_group)
+            do e = 1, group%elements
+               found = scan_result()
+               call group%scan(e, e, model%ua, model%ub, lambda, model%noise, found)
+               worst = bound()
+               if (found%empty%point /= 0) then
+                  worst = found%empty
+               else if (found%hi%point /= 0 .and. found%hi%value < lambda - tolerance * abs(lambda)) then
+                  worst = found%hi
+               else if (found%lo%point /= 0 .and. found%lo%value > lambda + tolerance * abs(lambda)) then
+                  worst = found%lo
+               end if
+               if (worst%point == 0) cycle
+               call group%damage(worst%point, worst%code, lambda, model%ua, model%ub, event, tooth)
+               count = count + 1
+               do i = 1, event%rank
+                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * dot_product(event%w(1:event%entries, i), &
+                     model%ua(event%index(1:event%entries)) + lambda * model%ub(event%index(1:event%entries)))**2
+               end do
+            end do
+         end select
+      end do
+      if (count == 0) return
+      call model_factor(model, node, direction, ratio, status)
+      if (status == status_ok) call model_solve(model, status)
+   end subroutine damage_overloaded
 
    !> The point that limits the loads of the last state in equilibrium if all of them grow together from nothing
    subroutine scan_scaled(model, limit, status)

@@ -104,6 +104,27 @@ def test_all_loads_go_down_together_where_equilibrium_is_lost() -> None:
     assert scaled["state_stress_1"][k][virgin].max() == pytest.approx(1.095313 * 3e6, rel=1e-5)
 
 
+def test_an_incremental_solution_agrees_where_it_converges_and_stalls_where_it_does_not() -> None:
+    """The beam of the thesis. Without prestress the secant iteration follows the events to the end; under tensile
+    prestress it stalls where the load has to come back, with most of the beam's teeth still there."""
+    found = {}
+    for prestress in (0, 1):
+        for solution in ("events", "incremental"):
+            data = beam(prestress, "isotropic")
+            data["analysis"][0] |= {"solution": solution}
+            found[prestress, solution] = run_deck(data)
+    events, steps = found[0, "events"], found[0, "incremental"]
+    assert steps.results["peak_load_N"] == pytest.approx(events.results["peak_load_N"], rel=0.03)
+    way, load = steps["event_displacement"], steps["event_load"]
+    for at in (0.04e-3, 0.12e-3, 0.2e-3):  # on the way up and down the tail
+        there = np.interp(at, events["envelope_displacement"], events["envelope_load"])
+        assert np.interp(at, way, load) == pytest.approx(there, rel=0.12)
+    events, steps = found[1, "events"], found[1, "incremental"]
+    assert steps.results["stop"] == "no convergence" and events.results["stop"] == "mechanism"
+    assert steps.results["crack_energy_J"] < 0.5 * events.results["crack_energy_J"]
+    assert steps.results["greatest_load_N"] == pytest.approx(events.results["greatest_load_N"], rel=0.01)
+
+
 def test_variants_agree_with_a_new_factor_at_each_event() -> None:
     data = beam(1, "orthotropic")
     found = []

@@ -322,6 +322,16 @@ class Model(Owner):
             interrupted=interrupted, crack_total=float(cracked),
         )  # fmt: skip
 
+    def relax(self, load: float) -> tuple[int, float]:
+        """One iteration of an incremental analysis: in each element the most overloaded point loses a tooth, all at
+        once, and all is solved anew; how many did, and the crack energy so far [J]. FreeNode of a mechanism.
+        """
+        damaged, cracked, status = long_call(_core.api_sla.relax, self.handle, float(load))
+        if status == status_code("not_positive_definite"):
+            raise FreeNode(-1, "x", 0.0)
+        check(status, "overloaded points")
+        return int(damaged), float(cracked)
+
     def displacement(self, load: float) -> np.ndarray:
         """Displacements (nodes, 2) [m] under constant + load * reference."""
         ua, ub, status = _core.api_sla.displacement(self.handle, self.nodes)

@@ -85,5 +85,5 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         numbers["hinges"] = joint_openings(result, model, first)
         result.answer = answer_of_stones(numbers, len(curves) > 1)
     else:
-        result.answer = answer_of_wall(numbers, len(curves) > 1)
+        result.answer = answer_of_wall(numbers, len(curves) > 1, "event" if options.solution == "events" else "step")
     return numbers

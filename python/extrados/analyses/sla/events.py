@@ -14,6 +14,7 @@ from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.contact import settle
 from extrados.analyses.sla.curve import envelope, fallen
+from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
 from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
 from extrados.analyses.sla.tables import Sla
@@ -114,10 +115,13 @@ def run_curves(
             )
             watch = model.control
             before = sign * float(watch.share @ core_model.displacement(0.0)[watch.node, watch.direction])
-            curve = _reference_stage(
-                core_model, model, options, sign, progress, bool(stage_a is None and damage is None),
-                chain and chain(sign),
-            )  # fmt: skip
+            if options.solution == "incremental":
+                curve = _incremental_stage(core_model, model, options, sign, progress)
+            else:
+                curve = _reference_stage(
+                    core_model, model, options, sign, progress, bool(stage_a is None and damage is None),
+                    chain and chain(sign),
+                )  # fmt: skip
             curve.stage_a, curve.before = stage_a, before
             curve.damage_start = start
             curve.warnings += warnings if not number else []
@@ -291,6 +295,28 @@ def _reference_stage(
                 states.append(state)
         states.sort(key=lambda s: s.event)
     curve.seconds = before + time.perf_counter() - begin
+    return curve
+
+
+def _incremental_stage(
+    core_model: core.Model,
+    model: SlaModel,
+    options: Sla,
+    sign: int,
+    progress: Callable[[float, float, str], None],
+) -> Curve:
+    """The same loads by the incremental peer; its last state is kept."""
+    begin = time.perf_counter()
+    events = run_incremental(core_model, model, options, sign, progress)
+    events.monitors *= sign
+    states = [_state(core_model, len(events) - 1, events)] if len(events) else []
+    curve = Curve(
+        events, None, states, NOTHING, core_model.damage(), time.perf_counter() - begin, sign, [],
+        core_model.equations, core_model.points, stones=model.mesh.has_joints,
+    )  # fmt: skip
+    if len(events):
+        curve.residual = core_model.residual()
+        curve.most_compliance = (MECHANISM_OF_STONES if curve.stones else MECHANISM) * float(events.compliance[0])
     return curve
 
 

@@ -73,7 +73,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         {
             "event": np.arange(1, len(e) + 1), "load": e.load * unit, "displacement": e.monitors[:, 0],
             "equilibrium": e.equilibrium.astype(int), "point": e.point + 1,
-            "kind": [EVENTS.get(int(c), "end") for c in e.code],
+            "kind": [EVENTS.get(int(c), "end" if p >= 0 else "step") for c, p in zip(e.code, e.point, strict=True)],
             "external": e.external, "stored": e.stored, "dissipated": e.dissipated,
         },
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},

@@ -22,8 +22,8 @@ def answer_of_stones(r: dict[str, Any], both: bool) -> str:
     return text
 
 
-def answer_of_wall(r: dict[str, Any], both: bool) -> str:
-    """The peak, and how the run ended."""
+def answer_of_wall(r: dict[str, Any], both: bool, row: str = "event") -> str:
+    """The peak, and how the run ended; `row`: what the curve consists of."""
     if r["events"] == 0 and r["stop"] == "no point limits the load":
         return "The load is not limited: nothing in the wall cracks or crushes under it, however large it grows."
     if r["events"] == 0 and r["stop"] == "interrupted":
@@ -34,7 +34,7 @@ def answer_of_wall(r: dict[str, Any], both: bool) -> str:
     text = (
         f"The load {'peaks at' if peaks else 'has reached'} {r['greatest_load_N'] / 1e3:.4g} kN with a displacement of "
         f"{r['greatest_load_displacement_m'] * 1e3:.4g} mm{'' if peaks else ' without having passed a peak'} "
-        f"(event {r['greatest_load_event']} of {r['events']}; the run ended by: {r['stop']})."
+        f"({row} {r['greatest_load_event']} of {r['events']}; the run ended by: {r['stop']})."
     )
     if both and (minus := r.get("minus", {})).get("greatest_load_N") is not None:
         verb = "peaks at" if minus["peak_load_N"] is not None else "has reached"
