@@ -25,6 +25,7 @@
   ENTRY(16, not_ready, "it is not built far enough for this call") \
   ENTRY(17, bad_index, "an index points to nothing") \
   ENTRY(20, energy_lost, "the tables of a mechanism do not keep the energy of its motion") \
+  ENTRY(22, no_pattern, "no set of pressing joints fits the impact") \
   ENTRY(130, cancelled, "cancelled")
 
 #define EXTRADOS_ENUM_ENTRY(code, name, text) EXTRADOS_##name = code,

@@ -1,12 +1,14 @@
 !> Discrete elements: a model behind a handle, built in steps, run, and read.
 !>
 !> create, laws, joints, start, moves, settings; then run as often as wanted; then summary, history, bodies and
-!> contacts tell the last run. Body numbers are 1-based; mass 0 marks a support.
+!> contacts tell the last run. A run that pauses goes on with go_on; its state can be kept, and taken back by resume.
+!> Body numbers are 1-based; mass 0 marks a support.
 module api_dem
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, laws, joints, start, moves, settings, run, summary, history, bodies, contacts
+   public :: create, laws, joints, start, moves, settings, run, go_on, state_size, state, resume
+   public :: summary, history, bodies, contacts
 
 contains
 
@@ -165,8 +167,8 @@ contains
       call handle_leave(handle)
    end subroutine settings
 
-   !> Settle, shake, record
-   subroutine run(handle, motions, motion, scale, nt, wanted, status)
+   !> Settle, shake, record; pauses after some steps where asked
+   subroutine run(handle, motions, motion, scale, nt, wanted, steps, paused, time, status)
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take, motion_signal
       use common_signal, only : signal
@@ -178,21 +180,128 @@ contains
       real(c_double), intent(in) :: scale                     !! factor on the motion
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: wanted(nt)                !! output times [s]
+      integer(c_int), intent(in) :: steps                     !! after which it pauses; 0: it does not
+      integer(c_int), intent(out) :: paused                   !! 1: it can go on
+      real(c_double), intent(out) :: time                     !! that it has come to [s]
       integer(c_int), intent(out) :: status                   !! cancelled leaves what was recorded
       type(built_model), pointer :: built
       type(motion_set), pointer :: set
       type(signal) :: ground
       !f2py threadsafe
+      paused = 0
+      time = 0.0_c_double
       call built_model_take(handle, built, status)
       if (status /= status_ok) return
       call motion_set_take(motions, .false., set, status)
       if (status == status_ok) then
          call motion_signal(set, motion, scale, ground, status)
-         if (status == status_ok) call run_built(built, ground, wanted, status)
+         if (status == status_ok) call run_built(built, ground, wanted, int(steps), status)
+         if (allocated(built%record)) then
+            paused = merge(1_c_int, 0_c_int, built%record%paused)
+            time = built%record%stop_time
+         end if
          call handle_leave(motions)
       end if
       call handle_leave(handle)
    end subroutine run
+
+   !> Go on with a run that has paused, under the same motion
+   subroutine go_on(handle, motions, motion, scale, steps, paused, time, status)
+      use common_handles, only : handle_leave
+      use common_motion_set, only : motion_set, motion_set_take, motion_signal
+      use common_signal, only : signal
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, built_model_take, go_on_built
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int64_t), intent(in) :: motions               !! handle of a set of motions
+      integer(c_int), intent(in) :: motion                    !! its number in the set, 1-based
+      real(c_double), intent(in) :: scale                     !! factor on the motion
+      integer(c_int), intent(in) :: steps                     !! after which it pauses; 0: it does not
+      integer(c_int), intent(out) :: paused                   !! 1: it can go on
+      real(c_double), intent(out) :: time                     !! that it has come to [s]
+      integer(c_int), intent(out) :: status                   !! cancelled leaves what was recorded
+      type(built_model), pointer :: built
+      type(motion_set), pointer :: set
+      type(signal) :: ground
+      !f2py threadsafe
+      paused = 0
+      time = 0.0_c_double
+      call built_model_take(handle, built, status)
+      if (status /= status_ok) return
+      call motion_set_take(motions, .false., set, status)
+      if (status == status_ok) then
+         call motion_signal(set, motion, scale, ground, status)
+         if (status == status_ok) call go_on_built(built, ground, int(steps), status)
+         if (allocated(built%record)) then
+            paused = merge(1_c_int, 0_c_int, built%record%paused)
+            time = built%record%stop_time
+         end if
+         call handle_leave(motions)
+      end if
+      call handle_leave(handle)
+   end subroutine go_on
+
+   !> Words that the state of a run takes that has paused
+   subroutine state_size(handle, words, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_not_ready
+      use dem_handle, only : built_model, built_model_take
+      use dem_state, only : state_words
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int64_t), intent(out) :: words
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: built
+      words = 0
+      call built_model_take(handle, built, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(built%record)) then
+         if (built%record%paused) then
+            status = status_ok
+            words = state_words(built%model, built%record)
+         end if
+      end if
+      call handle_leave(handle)
+   end subroutine state_size
+
+   !> That state, for this build alone
+   subroutine state(handle, words, word, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_not_ready
+      use dem_handle, only : built_model, built_model_take
+      use dem_state, only : state_save
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: words                     !! see state_size
+      integer(c_int64_t), intent(out) :: word(words)
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: built
+      word = 0
+      call built_model_take(handle, built, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(built%record)) then
+         if (built%record%paused) call state_save(built%model, built%record, word, status)
+      end if
+      call handle_leave(handle)
+   end subroutine state
+
+   !> Take a state back; then go_on. It must be undamaged: invalid where its head is of another model, run or build
+   subroutine resume(handle, nt, wanted, words, word, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, built_model_take, resume_built
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nt
+      real(c_double), intent(in) :: wanted(nt)                !! output times [s]
+      integer(c_int), intent(in) :: words
+      integer(c_int64_t), intent(in) :: word(words)
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: built
+      call built_model_take(handle, built, status)
+      if (status /= status_ok) return
+      call resume_built(built, wanted, word, status)
+      call handle_leave(handle)
+   end subroutine resume
 
    !> How the last run ended
    subroutine summary(handle, counts, measures, status)

@@ -3,7 +3,7 @@ module api_mechanism
    use, intrinsic :: iso_c_binding, only : c_double, c_int
    implicit none
    private
-   public :: table_length, tabulate, evaluate, follow, restitution
+   public :: table_length, tabulate, evaluate, follow, restitution, blow
 
 contains
 
@@ -39,16 +39,16 @@ contains
       integer(c_int), intent(out) :: status
       type(linkage) :: mechanism
       type(linkage_state) :: rest
-      type(side_table) :: made
+      type(side_table) :: one_side
       type(table_facts) :: found
       !f2py threadsafe
       table = 0.0_c_double
       facts = 0.0_c_double
       call linkage_new(mass, centroid, inertia, joined, point, row, driver, real(sense, c_double), mechanism, rest, &
          status)
-      if (status == status_ok) call table_new(mechanism, rest, int(side), made, found, status)
-      facts = [made%critical, made%limit, found%lock, found%m, found%dv, found%dh, found%misfit, found%energy]
-      if (status == status_ok) call table_pack(made, table)
+      if (status == status_ok) call table_new(mechanism, rest, int(side), one_side, found, status)
+      facts = [one_side%critical, one_side%limit, found%lock, found%m, found%dv, found%dh, found%misfit, found%energy]
+      if (status == status_ok) call table_pack(one_side, table)
    end subroutine tabulate
 
    !> M, M'/2, V', H and V of a table at nq rotations; `inside` is 0 past its end, and the numbers are zero there
@@ -125,5 +125,24 @@ contains
       !f2py threadsafe
       c_v = projected_restitution(mass, inertia, before, after)
    end subroutine restitution
+
+   !> Velocities after an inelastic impact at all joints, see mechanism_blow
+   subroutine blow(n, joints, mass, inertia, centroid, side, ends, normal, tangent, before, after, status)
+      use mechanism_blow, only : inelastic_blow
+      integer(c_int), intent(in) :: n
+      integer(c_int), intent(in) :: joints
+      real(c_double), intent(in) :: mass(n)             !! of the blocks [kg]
+      real(c_double), intent(in) :: inertia(n)          !! about the centroids [kg m^2]
+      real(c_double), intent(in) :: centroid(2, n)      !! [m]
+      integer(c_int), intent(in) :: side(2, joints)     !! blocks on both sides, 1 to n, 0 for the ground
+      real(c_double), intent(in) :: ends(2, 2, joints)  !! [m]
+      real(c_double), intent(in) :: normal(2, joints)
+      real(c_double), intent(in) :: tangent(2, joints)
+      real(c_double), intent(in) :: before(3, n)        !! velocity x, y, spin
+      real(c_double), intent(out) :: after(3, n)
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      call inelastic_blow(mass, inertia, centroid, side, ends, normal, tangent, before, after, status)
+   end subroutine blow
 
 end module api_mechanism

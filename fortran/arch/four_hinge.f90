@@ -126,45 +126,45 @@ contains
    end function bisect
 
    !> Link positions at q, with first and second derivatives
-   pure subroutine solve(self, q, state)
-      class(four_hinge), intent(in) :: self
+   pure subroutine solve(arch, q, state)
+      class(four_hinge), intent(in) :: arch
       real(wp), intent(in) :: q
       type(four_hinge_state), intent(out) :: state
       real(wp) :: ab(2), b(2), db(2), ddb(2), bd(2), distance2, along, height2, c(2), r(2), p(2)
       real(wp) :: r0(2), p0(2), turn_r, turn_p, rp
 
-      associate (a0 => self%hinge(:, 1), b0 => self%hinge(:, 2), c0 => self%hinge(:, 3), d0 => self%hinge(:, 4))
+      associate (a0 => arch%hinge(:, 1), b0 => arch%hinge(:, 2), c0 => arch%hinge(:, 3), d0 => arch%hinge(:, 4))
          state%cosine(1) = cos(q)
-         state%sine(1) = self%sense * sin(q)
+         state%sine(1) = arch%sense * sin(q)
          ab = rotate(b0 - a0, state%cosine(1), state%sine(1))
          b = a0 + ab
-         db = self%sense * normal(ab)
+         db = arch%sense * normal(ab)
          ddb = -ab
          bd = d0 - b
          distance2 = dot_product(bd, bd)
-         along = 0.5_wp * (self%bc**2 - self%cd**2 + distance2) / distance2
-         height2 = self%bc**2 / distance2 - along**2
+         along = 0.5_wp * (arch%bc**2 - arch%cd**2 + distance2) / distance2
+         height2 = arch%bc**2 / distance2 - along**2
          state%closed = height2 > 0.0_wp
          if (.not. state%closed) return
-         c = b + along * bd + self%branch * sqrt(height2) * normal(bd)
+         c = b + along * bd + arch%branch * sqrt(height2) * normal(bd)
 
          r = c - b
          p = c - d0
          turn_r = dot_product(normal(r), p)
          turn_p = dot_product(normal(p), r)
          rp = dot_product(r, p)
-         state%turn(1) = self%sense
+         state%turn(1) = arch%sense
          state%turn(3) = dot_product(db, r) / turn_p
          state%turn(2) = -dot_product(db, p) / turn_r
-         state%turn2(3) = (dot_product(ddb, r) - state%turn(2)**2 * self%bc**2 + state%turn(3)**2 * rp) / turn_p
-         state%turn2(2) = (state%turn(2)**2 * rp - state%turn(3)**2 * self%cd**2 - dot_product(ddb, p)) / turn_r
+         state%turn2(3) = (dot_product(ddb, r) - state%turn(2)**2 * arch%bc**2 + state%turn(3)**2 * rp) / turn_p
+         state%turn2(2) = (state%turn(2)**2 * rp - state%turn(3)**2 * arch%cd**2 - dot_product(ddb, p)) / turn_r
 
          r0 = c0 - b0
          p0 = c0 - d0
-         state%cosine(2) = dot_product(r0, r) / self%bc**2
-         state%sine(2) = cross(r0, r) / self%bc**2
-         state%cosine(3) = dot_product(p0, p) / self%cd**2
-         state%sine(3) = cross(p0, p) / self%cd**2
+         state%cosine(2) = dot_product(r0, r) / arch%bc**2
+         state%sine(2) = cross(r0, r) / arch%bc**2
+         state%cosine(3) = dot_product(p0, p) / arch%cd**2
+         state%sine(3) = cross(p0, p) / arch%cd**2
          state%pivot(:, 1) = a0
          state%pivot(:, 2) = b
          state%pivot(:, 3) = d0
@@ -174,8 +174,8 @@ contains
    end subroutine solve
 
    !> Coefficients of M q'' + (1/2) M' q'^2 + V' (1 + a_v/g) + side a_h H = 0 (thesis Eqs 5.1, 5.2, B.2)
-   pure subroutine coefficients(self, q, m, half_dm, dv, dh, closed)
-      class(four_hinge), intent(in) :: self
+   pure subroutine coefficients(arch, q, m, half_dm, dv, dh, closed)
+      class(four_hinge), intent(in) :: arch
       real(wp), intent(in) :: q         !! rotation of AB [rad]
       real(wp), intent(out) :: m        !! generalised mass M [kg m^2]
       real(wp), intent(out) :: half_dm  !! (1/2) dM/dq [kg m^2]
@@ -190,42 +190,42 @@ contains
       half_dm = 0.0_wp
       dv = 0.0_wp
       dh = 0.0_wp
-      call self%solve(q, state)
+      call arch%solve(q, state)
       closed = state%closed
       if (.not. closed) return
       do i = 1, 3
-         arm = rotate(self%centroid(:, i) - self%undeformed_pivot(i), state%cosine(i), state%sine(i))
+         arm = rotate(arch%centroid(:, i) - arch%undeformed_pivot(i), state%cosine(i), state%sine(i))
          dx = state%pivot1(:, i) + state%turn(i) * normal(arm)
          ddx = state%pivot2(:, i) + state%turn2(i) * normal(arm) - state%turn(i)**2 * arm
-         m = m + self%mass(i) * dot_product(dx, dx) + self%inertia(i) * state%turn(i)**2
-         half_dm = half_dm + self%mass(i) * dot_product(dx, ddx) + self%inertia(i) * state%turn(i) * state%turn2(i)
-         dv = dv + gravity * self%mass(i) * dx(2)
-         dh = dh + self%mass(i) * dx(1)
+         m = m + arch%mass(i) * dot_product(dx, dx) + arch%inertia(i) * state%turn(i)**2
+         half_dm = half_dm + arch%mass(i) * dot_product(dx, ddx) + arch%inertia(i) * state%turn(i) * state%turn2(i)
+         dv = dv + gravity * arch%mass(i) * dx(2)
+         dh = dh + arch%mass(i) * dx(1)
       end do
    end subroutine coefficients
 
    !> Potential energy of gravity above the undeformed arch [J]; the links must be able to meet at q
-   pure function potential(self, q) result(v)
-      class(four_hinge), intent(in) :: self
+   pure function potential(arch, q) result(v)
+      class(four_hinge), intent(in) :: arch
       real(wp), intent(in) :: q
       real(wp) :: v
       type(four_hinge_state) :: state
       real(wp) :: arm(2)
       integer :: i
-      call self%solve(q, state)
+      call arch%solve(q, state)
       v = 0.0_wp
       do i = 1, 3
-         arm = rotate(self%centroid(:, i) - self%undeformed_pivot(i), state%cosine(i), state%sine(i))
-         v = v + gravity * self%mass(i) * (state%pivot(2, i) + arm(2) - self%centroid(2, i))
+         arm = rotate(arch%centroid(:, i) - arch%undeformed_pivot(i), state%cosine(i), state%sine(i))
+         v = v + gravity * arch%mass(i) * (state%pivot(2, i) + arm(2) - arch%centroid(2, i))
       end do
    end function potential
 
    !> The point about which a link's displacement is written: A, B, D of the undeformed arch
-   pure function undeformed_pivot(self, link) result(point)
-      class(four_hinge), intent(in) :: self
+   pure function undeformed_pivot(arch, link) result(point)
+      class(four_hinge), intent(in) :: arch
       integer, intent(in) :: link  !! 1 = AB, 2 = BC, 3 = CD
       real(wp) :: point(2)
-      point = self%hinge(:, merge(4, link, link == 3))
+      point = arch%hinge(:, merge(4, link, link == 3))
    end function undeformed_pivot
 
    !> Counter-clockwise normal of a vector

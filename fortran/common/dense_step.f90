@@ -27,43 +27,43 @@ module common_dense_step
 contains
 
    !> q at the fraction s in [0, 1] of the step
-   pure function coordinate(self, s) result(q)
-      class(dense_step), intent(in) :: self
+   pure function coordinate(dense, s) result(q)
+      class(dense_step), intent(in) :: dense
       real(wp), intent(in) :: s
       real(wp) :: q
       integer :: k
-      q = self%cq(self%degree)
-      do k = self%degree - 1, 0, -1
-         q = self%cq(k) + s * q
+      q = dense%cq(dense%degree)
+      do k = dense%degree - 1, 0, -1
+         q = dense%cq(k) + s * q
       end do
    end function coordinate
 
    !> q' at the fraction s in [0, 1] of the step
-   pure function rate(self, s) result(v)
-      class(dense_step), intent(in) :: self
+   pure function rate(dense, s) result(v)
+      class(dense_step), intent(in) :: dense
       real(wp), intent(in) :: s
       real(wp) :: v
       integer :: k
-      v = self%cv(self%degree)
-      do k = self%degree - 1, 0, -1
-         v = self%cv(k) + s * v
+      v = dense%cv(dense%degree)
+      do k = dense%degree - 1, 0, -1
+         v = dense%cv(k) + s * v
       end do
    end function rate
 
    !> Keep the first part of the step only
-   pure subroutine cut(self, fraction)
-      class(dense_step), intent(inout) :: self
+   pure subroutine cut(dense, fraction)
+      class(dense_step), intent(inout) :: dense
       real(wp), intent(in) :: fraction
       real(wp) :: power
       integer :: k
-      self%q = self%coordinate(fraction)
-      self%v = self%rate(fraction)
-      self%h = fraction * self%h
+      dense%q = dense%coordinate(fraction)
+      dense%v = dense%rate(fraction)
+      dense%h = fraction * dense%h
       power = 1.0_wp
-      do k = 1, self%degree
+      do k = 1, dense%degree
          power = power * fraction
-         self%cq(k) = self%cq(k) * power
-         self%cv(k) = self%cv(k) * power
+         dense%cq(k) = dense%cq(k) * power
+         dense%cv(k) = dense%cv(k) * power
       end do
    end subroutine cut
 

@@ -18,10 +18,10 @@ module common_dopri5
 
    abstract interface
       !> q'' at the given state
-      function acceleration(self, t, q, v) result(a)
+      function acceleration(system, t, q, v) result(a)
          import :: oscillator, wp
          implicit none (type, external)
-         class(oscillator), intent(in) :: self
+         class(oscillator), intent(in) :: system
          real(wp), intent(in) :: t  !! time [s]
          real(wp), intent(in) :: q  !! coordinate
          real(wp), intent(in) :: v  !! its rate

@@ -115,17 +115,17 @@ contains
                  .and. all(abs(harmonic) <= huge(1.0_wp)))) return
       status = status_out_of_memory
       set%item(number) = motion()
-      associate (it => set%item(number))
-         allocate (it%linear(2, size(linear, 2), n - 1), stat=failed)
+      associate (entry => set%item(number))
+         allocate (entry%linear(2, size(linear, 2), n - 1), stat=failed)
          if (failed /= 0) return
-         allocate (it%harmonic(4, size(harmonic, 2), size(linear, 2), n - 1), stat=failed)
+         allocate (entry%harmonic(4, size(harmonic, 2), size(linear, 2), n - 1), stat=failed)
          if (failed /= 0) return
-         it%linear(:, :, :) = linear
-         it%harmonic(:, :, :, :) = harmonic
+         entry%linear(:, :, :) = linear
+         entry%harmonic(:, :, :, :) = harmonic
          ! The breaks come last: a motion without them does not count as given.
-         allocate (it%breaks(n), stat=failed)
+         allocate (entry%breaks(n), stat=failed)
          if (failed /= 0) return
-         it%breaks(:) = breaks
+         entry%breaks(:) = breaks
       end associate
       status = status_ok
    end subroutine set_pieces
@@ -139,12 +139,12 @@ contains
       integer(c_int), intent(out) :: status
       status = status_bad_index
       if (number < 1 .or. number > size(set%item)) return
-      associate (it => set%item(number))
+      associate (entry => set%item(number))
          status = status_ok
-         if (allocated(it%samples)) then
-            ground = signal_sampled(it%start, it%step, it%samples, scale)
-         else if (allocated(it%breaks)) then
-            ground = signal_piecewise(it%breaks, it%linear, it%harmonic, scale)
+         if (allocated(entry%samples)) then
+            ground = signal_sampled(entry%start, entry%step, entry%samples, scale)
+         else if (allocated(entry%breaks)) then
+            ground = signal_piecewise(entry%breaks, entry%linear, entry%harmonic, scale)
          else
             status = status_not_ready
          end if

@@ -61,20 +61,20 @@ contains
    end function signal_piecewise
 
    !> Start time of segment k (1-based); k = segments + 1 gives the end of the signal
-   pure function break_time(self, k) result(t)
-      class(signal), intent(in) :: self
+   pure function break_time(motion, k) result(t)
+      class(signal), intent(in) :: motion
       integer, intent(in) :: k
       real(wp) :: t
-      if (associated(self%samples)) then
-         t = self%start + real(k - 1, wp) * self%step
+      if (associated(motion%samples)) then
+         t = motion%start + real(k - 1, wp) * motion%step
       else
-         t = self%breaks(k)
+         t = motion%breaks(k)
       end if
    end function break_time
 
    !> Horizontal and vertical value in segment k; k outside 1..segments is the quiet time around
-   pure subroutine value_at(self, k, t, horizontal, vertical)
-      class(signal), intent(in) :: self
+   pure subroutine value_at(motion, k, t, horizontal, vertical)
+      class(signal), intent(in) :: motion
       integer, intent(in) :: k               !! segment
       real(wp), intent(in) :: t              !! time [s]
       real(wp), intent(out) :: horizontal
@@ -84,32 +84,32 @@ contains
 
       horizontal = 0.0_wp
       vertical = 0.0_wp
-      if (k < 1 .or. k > self%segments) return
+      if (k < 1 .or. k > motion%segments) return
       value = 0.0_wp
-      if (associated(self%samples)) then
-         tau = (t - self%start) / self%step - real(k - 1, wp)
-         do c = 1, size(self%samples, 1)
-            value(c) = self%samples(c, k) + tau * (self%samples(c, k + 1) - self%samples(c, k))
+      if (associated(motion%samples)) then
+         tau = (t - motion%start) / motion%step - real(k - 1, wp)
+         do c = 1, size(motion%samples, 1)
+            value(c) = motion%samples(c, k) + tau * (motion%samples(c, k + 1) - motion%samples(c, k))
          end do
       else
-         tau = t - self%breaks(k)
-         channels = size(self%linear, 2)
+         tau = t - motion%breaks(k)
+         channels = size(motion%linear, 2)
          do c = 1, channels
-            value(c) = self%linear(1, c, k) + tau * self%linear(2, c, k)
-            do i = 1, size(self%harmonic, 2)
-               associate (h => self%harmonic(:, i, c, k))
+            value(c) = motion%linear(1, c, k) + tau * motion%linear(2, c, k)
+            do i = 1, size(motion%harmonic, 2)
+               associate (h => motion%harmonic(:, i, c, k))
                   value(c) = value(c) + (h(1) + tau * h(2)) * sin(h(3) * tau + h(4))
                end associate
             end do
          end do
       end if
-      horizontal = self%scale * value(1)
-      vertical = self%scale * value(2)
+      horizontal = motion%scale * value(1)
+      vertical = motion%scale * value(2)
    end subroutine value_at
 
    !> Value at time t and slope of the straight lines of segment k, sines left out
-   pure subroutine line_at(self, k, t, value, slope)
-      class(signal), intent(in) :: self
+   pure subroutine line_at(motion, k, t, value, slope)
+      class(signal), intent(in) :: motion
       integer, intent(in) :: k           !! segment
       real(wp), intent(in) :: t          !! time [s]
       real(wp), intent(out) :: value(2)  !! horizontal and vertical
@@ -119,49 +119,49 @@ contains
 
       value = 0.0_wp
       slope = 0.0_wp
-      if (k < 1 .or. k > self%segments) return
-      if (associated(self%samples)) then
-         tau = t - (self%start + real(k - 1, wp) * self%step)
-         do c = 1, size(self%samples, 1)
-            slope(c) = self%scale * (self%samples(c, k + 1) - self%samples(c, k)) / self%step
-            value(c) = self%scale * self%samples(c, k) + tau * slope(c)
+      if (k < 1 .or. k > motion%segments) return
+      if (associated(motion%samples)) then
+         tau = t - (motion%start + real(k - 1, wp) * motion%step)
+         do c = 1, size(motion%samples, 1)
+            slope(c) = motion%scale * (motion%samples(c, k + 1) - motion%samples(c, k)) / motion%step
+            value(c) = motion%scale * motion%samples(c, k) + tau * slope(c)
          end do
       else
-         tau = t - self%breaks(k)
-         do c = 1, size(self%linear, 2)
-            slope(c) = self%scale * self%linear(2, c, k)
-            value(c) = self%scale * self%linear(1, c, k) + tau * slope(c)
+         tau = t - motion%breaks(k)
+         do c = 1, size(motion%linear, 2)
+            slope(c) = motion%scale * motion%linear(2, c, k)
+            value(c) = motion%scale * motion%linear(1, c, k) + tau * slope(c)
          end do
       end if
    end subroutine line_at
 
    !> True where the signal is continuous from segment k into k + 1: samples joined by lines are
-   pure function smooth_to_next(self, k) result(answer)
-      class(signal), intent(in) :: self
+   pure function smooth_to_next(motion, k) result(answer)
+      class(signal), intent(in) :: motion
       integer, intent(in) :: k
       logical :: answer
-      answer = associated(self%samples) .and. k >= 1 .and. k < self%segments
+      answer = associated(motion%samples) .and. k >= 1 .and. k < motion%segments
    end function smooth_to_next
 
    !> Shortest period of the sines in segment k [s]; huge where it is straight
-   pure function shortest_period(self, k) result(period)
-      class(signal), intent(in) :: self
+   pure function shortest_period(motion, k) result(period)
+      class(signal), intent(in) :: motion
       integer, intent(in) :: k
       real(wp) :: period
       real(wp) :: fastest
       period = huge(period)
-      if (.not. associated(self%harmonic) .or. k < 1 .or. k > self%segments) return
-      if (size(self%harmonic, 2) == 0) return
-      fastest = maxval(abs(self%harmonic(3, :, :, k)))
+      if (.not. associated(motion%harmonic) .or. k < 1 .or. k > motion%segments) return
+      if (size(motion%harmonic, 2) == 0) return
+      fastest = maxval(abs(motion%harmonic(3, :, :, k)))
       if (fastest > 0.0_wp) period = 2.0_wp * pi / fastest
    end function shortest_period
 
    !> True where some segment may curve
-   pure function has_harmonics(self) result(answer)
-      class(signal), intent(in) :: self
+   pure function has_harmonics(motion) result(answer)
+      class(signal), intent(in) :: motion
       logical :: answer
       answer = .false.
-      if (associated(self%harmonic)) answer = size(self%harmonic, 2) > 0
+      if (associated(motion%harmonic)) answer = size(motion%harmonic, 2) > 0
    end function has_harmonics
 
 end module common_signal

@@ -9,7 +9,7 @@ module dem_energy
    use dem_model, only : block_model
    implicit none
    private
-   public :: energy_terms, energy_now
+   public :: energy_terms, energy_now, energy_residual
 
    type :: energy_terms
       real(wp) :: kinetic = 0.0_wp        !! [J], at the time of the forces
@@ -20,21 +20,19 @@ module dem_energy
       real(wp) :: damping = 0.0_wp        !! lost in dashpots [J]
       real(wp) :: mass_damping = 0.0_wp   !! lost by mass-proportional damping [J]
       real(wp) :: work = 0.0_wp           !! done by the ground and the supports [J]
-   contains
-      procedure :: residual
    end type energy_terms
 
 contains
 
    !> Energy that came from nowhere since the start [J]
-   pure function residual(energy, start) result(r)
-      class(energy_terms), intent(in) :: energy
+   pure function energy_residual(energy, start) result(r)
+      type(energy_terms), intent(in) :: energy
       type(energy_terms), intent(in) :: start
       real(wp) :: r
       r = (energy%leapfrog - start%leapfrog) + (energy%potential - start%potential) + (energy%elastic - start%elastic) &
          + (energy%friction - start%friction) + (energy%damping - start%damping) &
          + (energy%mass_damping - start%mass_damping) - (energy%work - start%work)
-   end function residual
+   end function energy_residual
 
    !> Ledger at the time of the last forces
    pure function energy_now(model) result(now)

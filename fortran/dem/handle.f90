@@ -13,12 +13,13 @@ module dem_handle
    use dem_law, only : joint_law
    use dem_loading, only : loading, support_move
    use dem_model, only : block_model
-   use dem_run, only : run_options, run_record, run_record_new, run_model
+   use dem_run, only : run_options, run_record, run_record_new, run_begin, run_on
+   use dem_state, only : state_load
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
    public :: built_model, built_model_register, built_model_destroy, built_model_take
-   public :: set_laws, set_joints, set_start, set_moves, run_built, closed_contacts
+   public :: set_laws, set_joints, set_start, set_moves, run_built, go_on_built, resume_built, closed_contacts
 
    type :: built_model
       type(body_set) :: set
@@ -164,13 +165,54 @@ contains
       status = status_ok
    end subroutine set_moves
 
-   !> Run from the state that was built; a cancelled run leaves what it has
-   subroutine run_built(built, ground, wanted, status)
+   !> Run from the state that was built, to its end or until it pauses; a cancelled run leaves what it has
+   subroutine run_built(built, ground, wanted, steps, status)
       type(built_model), intent(inout) :: built
       type(signal), intent(in) :: ground
       real(wp), intent(in) :: wanted(:)             !! output times [s]
+      integer, intent(in) :: steps                  !! after which it pauses; 0: it does not
       integer(c_int), intent(out) :: status
       type(signal) :: silence
+      call new_run(built, wanted, status)
+      if (status /= status_ok) return
+      built%model%load%ground = ground
+      call run_begin(built%model, built%options, built%record, status)
+      built%model%load%ground = silence   ! it pointed into the caller's set
+      if (status == status_ok .and. built%record%paused) call go_on_built(built, ground, steps, status)
+   end subroutine run_built
+
+   !> Go on with a run that has paused, under the same motion
+   subroutine go_on_built(built, ground, steps, status)
+      type(built_model), intent(inout) :: built
+      type(signal), intent(in) :: ground
+      integer, intent(in) :: steps                  !! after which it pauses again; 0: it does not
+      integer(c_int), intent(out) :: status
+      type(signal) :: silence
+      status = status_not_ready
+      if (.not. allocated(built%record)) return
+      if (.not. built%record%paused) return
+      built%model%load%ground = ground
+      call run_on(built%model, built%options, steps, built%record, status)
+      built%model%load%ground = silence
+   end subroutine go_on_built
+
+   !> Take back the state of a run that had paused; see dem_state
+   subroutine resume_built(built, wanted, word, status)
+      type(built_model), intent(inout) :: built
+      real(wp), intent(in) :: wanted(:)             !! output times [s]
+      integer(c_int64_t), intent(in) :: word(:)
+      integer(c_int), intent(out) :: status
+      call new_run(built, wanted, status)
+      if (status /= status_ok) return
+      call state_load(word, built%model, built%record, status)
+      if (status /= status_ok) deallocate (built%model, built%record)
+   end subroutine resume_built
+
+   !> A model and a record that have not run yet
+   subroutine new_run(built, wanted, status)
+      type(built_model), intent(inout) :: built
+      real(wp), intent(in) :: wanted(:)             !! output times [s]
+      integer(c_int), intent(out) :: status
       integer :: failed
       status = status_not_ready
       if (.not. (allocated(built%law) .and. built%settled)) return
@@ -181,14 +223,8 @@ contains
       if (failed /= 0) return
       call start_model(built, built%model, status)
       if (status == status_ok) call run_record_new(size(built%set%item), wanted, built%record, status)
-      if (status /= status_ok) then
-         deallocate (built%model, built%record)
-         return
-      end if
-      built%model%load%ground = ground
-      call run_model(built%model, built%options, built%record, status)
-      built%model%load%ground = silence   ! it pointed into the caller's set
-   end subroutine run_built
+      if (status /= status_ok) deallocate (built%model, built%record)
+   end subroutine new_run
 
    !> A copy of what was built, at rest before its first step
    subroutine start_model(built, model, status)

@@ -9,14 +9,14 @@ module dem_run
       stop_unsettled => dem_stop_unsettled, stop_overlap => dem_stop_overlap
    use common_status, only : status_ok, status_cancelled, status_not_finite, status_out_of_memory
    use dem_contacts, only : contact_pair, overlap, measure
-   use dem_energy, only : energy_now, energy_terms
+   use dem_energy, only : energy_now, energy_residual, energy_terms
    use dem_loading, only : movement_end
    use dem_model, only : block_model, advance, critical_step
    use dem_search, only : search
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: run_options, run_record, run_record_new, run_model
+   public :: run_options, run_record, run_record_new, run_begin, run_on
 
    type :: run_options
       real(wp) :: end_time = 0.0_wp          !! [s]
@@ -48,6 +48,10 @@ module dem_run
       real(wp) :: critical = 0.0_wp          !! critical step at the start [s]
       real(wp) :: stop_time = 0.0_wp         !! [s]
       real(wp) :: residual = 0.0_wp          !! greatest, over the energy that went round
+      type(energy_terms) :: start            !! energies as the shaking began
+      real(wp) :: round = 0.0_wp             !! greatest energy that went round so far [J]
+      integer :: calm_looks = 0              !! looks in a row at which all was quiet
+      logical :: paused = .false.            !! it has not come to its end and can go on
    end type run_record
 
    integer, parameter :: watch = 64          !! steps between two looks at limits
@@ -67,8 +71,8 @@ contains
       if (failed == 0) record%wanted(:) = wanted
    end subroutine run_record_new
 
-   !> Run a model; what was recorded up to a stop is valid
-   subroutine run_model(model, options, record, status)
+   !> Settle a model and take the first step of its motion; paused then, unless it cannot run
+   subroutine run_begin(model, options, record, status)
       type(block_model), intent(inout) :: model
       type(run_options), intent(in) :: options
       type(run_record), intent(inout) :: record
@@ -91,8 +95,13 @@ contains
          if (status /= status_ok .or. record%reason /= stop_end) return
       end if
       call mark_rest(model)
-      call shake(model, options, record, status)
-   end subroutine run_model
+      model%shaking = .true.
+      call several(model, 1, options%threads, record, status)
+      if (status /= status_ok) return
+      record%start = energy_now(model)
+      call write_down(model, record, record%start)
+      record%paused = .true.
+   end subroutine run_begin
 
    !> Bodies that overlap deeper than half the skin were drawn so
    subroutine overlapping(model, record)
@@ -253,25 +262,22 @@ contains
       end do
    end subroutine several
 
-   subroutine shake(model, options, record, status)
+   !> Shake a paused model to its end, or for about `steps` steps more; what was recorded up to a stop is valid.
+   !> Where it pauses changes no bit of what follows.
+   subroutine run_on(model, options, steps, record, status)
       type(block_model), intent(inout) :: model
       type(run_options), intent(in) :: options
+      integer, intent(in) :: steps                   !! 0: to the end
       type(run_record), intent(inout) :: record
       integer(c_int), intent(out) :: status
-      type(energy_terms) :: energy, start
-      real(wp) :: round, quiet
-      integer :: n, calm_looks
+      type(energy_terms) :: energy
+      real(wp) :: quiet
+      integer :: n, before
       logical :: due
 
-      model%shaking = .true.
-      record%points = 0
-      round = 0.0_wp
       quiet = movement_end(model%load)
-      calm_looks = 0
-      call several(model, 1, options%threads, record, status)
-      if (status /= status_ok) return
-      start = energy_now(model)
-      call write_down(start)
+      before = model%steps
+      record%paused = .false.
       do
          due = .false.
          n = watch
@@ -283,10 +289,11 @@ contains
          call several(model, n, options%threads, record, status)
          if (status /= status_ok) exit
          energy = energy_now(model)
-         round = max(round, energy%kinetic + abs(energy%potential - start%potential) + energy%friction &
-            + energy%damping + energy%mass_damping)
-         record%residual = max(record%residual, abs(energy%residual(start)) / max(round, start%elastic, tiny(1.0_wp)))
-         if (due) call write_down(energy)
+         record%round = max(record%round, energy%kinetic + abs(energy%potential - record%start%potential) &
+            + energy%friction + energy%damping + energy%mass_damping)
+         record%residual = max(record%residual, &
+            abs(energy_residual(energy, record%start)) / max(record%round, record%start%elastic, tiny(1.0_wp)))
+         if (due) call write_down(model, record, energy)
          if (.not. record%residual <= options%residual_limit) then
             record%reason = stop_blow_up
             record%blamed(1) = maxloc(model%set%item%vx**2 + model%set%item%vy**2, &
@@ -294,53 +301,52 @@ contains
          end if
          if (record%reason == stop_end) call limits(model, options, record)
          if (options%stop_at_rest .and. model%t > quiet) then
-            calm_looks = merge(calm_looks + 1, 0, unbalanced(model) < 1.0e-3_wp &
-               .and. energy%kinetic < 1.0e-6_wp * round)
-            if (calm_looks >= 50 .and. record%reason == stop_end) record%reason = stop_rest
+            record%calm_looks = merge(record%calm_looks + 1, 0, unbalanced(model) < 1.0e-3_wp &
+               .and. energy%kinetic < 1.0e-6_wp * record%round)
+            if (record%calm_looks >= 50 .and. record%reason == stop_end) record%reason = stop_rest
          end if
          if (record%reason /= stop_end .or. model%t - model%drift >= options%end_time - 0.5_wp * model%step) exit
-         if (cancel_requested()) then
-            status = status_cancelled
-            exit
-         end if
+         record%paused = .true.
+         if (cancel_requested()) status = status_cancelled
+         if (status /= status_ok .or. (steps > 0 .and. model%steps - before >= steps)) exit
+         record%paused = .false.
       end do
       record%stop_time = model%t - model%drift
+   end subroutine run_on
 
-   contains
-
-      !> State at the time of the last forces: half a step before the velocities, a step before the places
-      subroutine write_down(now)
-         type(energy_terms), intent(in) :: now
-         integer :: k
-         real(wp) :: half
-         if (record%points >= size(record%wanted)) return
-         record%points = record%points + 1
-         record%time(record%points) = model%t - model%drift
-         half = 0.5_wp * model%drift
-         do k = 1, size(model%set%item)
-            associate (b => model%set%item(k))
-               record%place(:, k, record%points) = [b%x - model%drift * b%vx, b%y - model%drift * b%vy, &
-                                                    b%angle - model%drift * b%spin]
-               record%rate(:, k, record%points) = [b%vx, b%vy, b%spin]
-               if (.not. b%fixed) record%rate(:, k, record%points) = record%rate(:, k, record%points) &
-                  - half * [b%fx / b%mass + model%pull(1), b%fy / b%mass + model%pull(2), b%moment / b%inertia]
-            end associate
-            record%place(1:2, k, record%points) = record%place(1:2, k, record%points) &
-               - (model%base_place - model%drift * model%base)
-            record%rate(1:2, k, record%points) = record%rate(1:2, k, record%points) - model%base
-         end do
-         record%energy(dem_energy_kinetic, record%points) = now%kinetic
-         record%energy(dem_energy_potential, record%points) = now%potential
-         record%energy(dem_energy_elastic, record%points) = now%elastic
-         record%energy(dem_energy_friction, record%points) = now%friction
-         record%energy(dem_energy_damping, record%points) = now%damping
-         record%energy(dem_energy_mass_damping, record%points) = now%mass_damping
-         record%energy(dem_energy_work, record%points) = now%work
-         record%energy(dem_energy_residual, record%points) = now%residual(start)
-         record%energy(dem_energy_leapfrog, record%points) = now%leapfrog
-      end subroutine write_down
-
-   end subroutine shake
+   !> State at the time of the last forces: half a step before the velocities, a step before the places
+   subroutine write_down(model, record, now)
+      type(block_model), intent(in) :: model
+      type(run_record), intent(inout) :: record
+      type(energy_terms), intent(in) :: now
+      integer :: k
+      real(wp) :: half
+      if (record%points >= size(record%wanted)) return
+      record%points = record%points + 1
+      record%time(record%points) = model%t - model%drift
+      half = 0.5_wp * model%drift
+      do k = 1, size(model%set%item)
+         associate (b => model%set%item(k))
+            record%place(:, k, record%points) = [b%x - model%drift * b%vx, b%y - model%drift * b%vy, &
+                                                 b%angle - model%drift * b%spin]
+            record%rate(:, k, record%points) = [b%vx, b%vy, b%spin]
+            if (.not. b%fixed) record%rate(:, k, record%points) = record%rate(:, k, record%points) &
+               - half * [b%fx / b%mass + model%pull(1), b%fy / b%mass + model%pull(2), b%moment / b%inertia]
+         end associate
+         record%place(1:2, k, record%points) = record%place(1:2, k, record%points) &
+            - (model%base_place - model%drift * model%base)
+         record%rate(1:2, k, record%points) = record%rate(1:2, k, record%points) - model%base
+      end do
+      record%energy(dem_energy_kinetic, record%points) = now%kinetic
+      record%energy(dem_energy_potential, record%points) = now%potential
+      record%energy(dem_energy_elastic, record%points) = now%elastic
+      record%energy(dem_energy_friction, record%points) = now%friction
+      record%energy(dem_energy_damping, record%points) = now%damping
+      record%energy(dem_energy_mass_damping, record%points) = now%mass_damping
+      record%energy(dem_energy_work, record%points) = now%work
+      record%energy(dem_energy_residual, record%points) = energy_residual(now, record%start)
+      record%energy(dem_energy_leapfrog, record%points) = now%leapfrog
+   end subroutine write_down
 
    !> Has a body collapsed or left the domain?
    subroutine limits(model, options, record)

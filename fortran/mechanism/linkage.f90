@@ -70,7 +70,7 @@ module mechanism_linkage
 contains
 
    !> Set up a mechanism and its state at rest
-   subroutine linkage_new(mass, centroid, inertia, side, point, row, driver, sense, made, rest, status)
+   subroutine linkage_new(mass, centroid, inertia, side, point, row, driver, sense, built, rest, status)
       real(wp), intent(in) :: mass(:)         !! (parts) [kg]
       real(wp), intent(in) :: centroid(:, :)  !! (2, parts) [m]
       real(wp), intent(in) :: inertia(:)      !! (parts) about the centroids [kg m^2]
@@ -79,7 +79,7 @@ contains
       integer(c_int), intent(in) :: row(:, :)  !! (2, 3 parts - 1) hinge and axis, from 1, of the independent equations
       integer(c_int), intent(in) :: driver    !! the part whose rotation is q
       real(wp), intent(in) :: sense           !! +1 or -1, see linkage
-      type(linkage), intent(out) :: made
+      type(linkage), intent(out) :: built
       type(linkage_state), intent(out) :: rest
       integer(c_int), intent(out) :: status   !! status_bad_geometry where the equations do not fix the motion
       integer :: n, stat
@@ -90,35 +90,35 @@ contains
       if (any(side < 0) .or. any(side > n) .or. any(row(1, :) < 1) .or. any(row(1, :) > size(side, 2))) return
       if (any(row(2, :) < 1) .or. any(row(2, :) > 2)) return
       if (any(mass <= 0.0_wp) .or. any(inertia < 0.0_wp) .or. abs(abs(sense) - 1.0_wp) > 0.0_wp) return
-      made%parts = n
-      made%driver = driver
-      made%sense = sense
-      allocate (made%mass(n), made%centroid(2, n), made%inertia(n), made%side(2, size(side, 2)), &
-         made%point(2, size(point, 2)), made%row(2, size(row, 2)), &
+      built%parts = n
+      built%driver = driver
+      built%sense = sense
+      allocate (built%mass(n), built%centroid(2, n), built%inertia(n), built%side(2, size(side, 2)), &
+         built%point(2, size(point, 2)), built%row(2, size(row, 2)), &
          rest%place(3, n), rest%first(3, n), rest%second(3, n), stat=stat)
       if (stat /= 0) then
          status = status_out_of_memory
          return
       end if
-      made%mass = mass
-      made%centroid = centroid
-      made%inertia = inertia
-      made%side = side
-      made%point = point
-      made%row = row
-      made%size = max(maxval(centroid(1, :)), maxval(point(1, :))) - min(minval(centroid(1, :)), minval(point(1, :)))
-      made%size = max(made%size, max(maxval(centroid(2, :)), maxval(point(2, :))) &
+      built%mass = mass
+      built%centroid = centroid
+      built%inertia = inertia
+      built%side = side
+      built%point = point
+      built%row = row
+      built%size = max(maxval(centroid(1, :)), maxval(point(1, :))) - min(minval(centroid(1, :)), minval(point(1, :)))
+      built%size = max(built%size, max(maxval(centroid(2, :)), maxval(point(2, :))) &
          - min(minval(centroid(2, :)), minval(point(2, :))))
       rest%place(1:2, :) = centroid
       rest%place(3, :) = 0.0_wp
-      call made%solve(rest, status)
+      call built%solve(rest, status)
       if (status == status_ok .and. .not. rest%closed) status = status_bad_geometry
-      if (status == status_ok) made%sign_at_rest = rest%determinant
+      if (status == status_ok) built%sign_at_rest = rest%determinant
    end subroutine linkage_new
 
    !> Close the hinges at state%q, starting from the places given, and find the derivatives
-   subroutine solve(self, state, status)
-      class(linkage), intent(in) :: self
+   subroutine solve(chain, state, status)
+      class(linkage), intent(in) :: chain
       type(linkage_state), intent(inout) :: state
       integer(c_int), intent(out) :: status  !! status_out_of_memory, else ok: see state%closed
       real(wp), allocatable :: matrix(:, :), right(:)
@@ -126,7 +126,7 @@ contains
       real(wp) :: change, misfit, misfit_before
       integer :: n, iteration, info, stat
 
-      n = 3 * self%parts
+      n = 3 * chain%parts
       state%closed = .false.
       allocate (matrix(n, n), right(n), pivot(n), stat=stat)
       status = merge(status_ok, status_out_of_memory, stat == 0)
@@ -134,7 +134,7 @@ contains
       change = huge(change)
       misfit_before = huge(misfit)
       do iteration = 1, most_iterations
-         call equations(self, state, matrix, right)
+         call equations(chain, state, matrix, right)
          misfit = maxval(abs(right))
          if (.not. misfit <= huge(misfit)) return
          call dgetrf(n, n, matrix, n, pivot, info)
@@ -145,28 +145,28 @@ contains
          call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
          change = maxval(abs(right))
          if (.not. change <= 1.0_wp) return
-         call move(self, right, state)
+         call move(chain, right, state)
       end do
       if (iteration > most_iterations) return
-      if (parted(self, state) > closed_apart) return
+      if (parted(chain, state) > closed_apart) return
       state%determinant = determinant_sign(matrix, pivot)
-      if (self%sign_at_rest * state%determinant < 0.0_wp) return  ! past the lock, on another branch
+      if (chain%sign_at_rest * state%determinant < 0.0_wp) return  ! past the lock, on another branch
 
       right = 0.0_wp
-      right(n) = self%sense
+      right(n) = chain%sense
       call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
-      state%first(:, :) = reshape(right, [3, self%parts])
-      state%first(1:2, :) = state%first(1:2, :) * self%size
-      call bending(self, state, right)
+      state%first(:, :) = reshape(right, [3, chain%parts])
+      state%first(1:2, :) = state%first(1:2, :) * chain%size
+      call bending(chain, state, right)
       call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
-      state%second(:, :) = reshape(right, [3, self%parts])
-      state%second(1:2, :) = state%second(1:2, :) * self%size
+      state%second(:, :) = reshape(right, [3, chain%parts])
+      state%second(1:2, :) = state%second(1:2, :) * chain%size
       state%closed = .true.
    end subroutine solve
 
    !> Carry the mechanism from a state to another q; steps that do not close are halved a few times
-   subroutine advance(self, from, q, to, status)
-      class(linkage), intent(in) :: self
+   subroutine advance(chain, from, q, to, status)
+      class(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: from  !! closed
       real(wp), intent(in) :: q                !! [rad]
       type(linkage_state), intent(out) :: to   !! to%closed is false where q is out of reach
@@ -182,7 +182,7 @@ contains
          to = here
          to%q = merge(q, here%q + step, halvings == 0 .or. abs(q - here%q) <= abs(step))
          to%place = here%place + (to%q - here%q) * (here%first + 0.5_wp * (to%q - here%q) * here%second)
-         call self%solve(to, status)
+         call chain%solve(to, status)
          if (status /= status_ok) return
          if (to%closed) then
             if (abs(to%q - q) <= 0.0_wp) return
@@ -227,8 +227,8 @@ contains
    end subroutine linkage_path
 
    !> The equations, divided by the size of the mechanism, and what is still missing to fulfil them
-   pure subroutine equations(self, state, matrix, missing)
-      type(linkage), intent(in) :: self
+   pure subroutine equations(chain, state, matrix, missing)
+      type(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: state
       real(wp), intent(out) :: matrix(:, :)  !! by the places over the size, and the rotations
       real(wp), intent(out) :: missing(:)
@@ -236,71 +236,71 @@ contains
       integer :: r, h, axis, k, part, column
 
       matrix = 0.0_wp
-      do r = 1, size(self%row, 2)
-         h = self%row(1, r)
-         axis = self%row(2, r)
+      do r = 1, size(chain%row, 2)
+         h = chain%row(1, r)
+         axis = chain%row(2, r)
          do k = 1, 2
-            part = self%side(k, h)
-            place(:, k) = part_place(self, state, part, self%point(:, h))
+            part = chain%side(k, h)
+            place(:, k) = part_place(chain, state, part, chain%point(:, h))
             if (part == 0) cycle
             lever(:, k) = place(:, k) - state%place(1:2, part)
             column = 3 * (part - 1)
             ! The first side counts positive, the second negative.
             matrix(r, column + axis) = matrix(r, column + axis) + real(3 - 2 * k, wp)
             matrix(r, column + 3) = matrix(r, column + 3) + real(3 - 2 * k, wp) &
-               * merge(-lever(2, k), lever(1, k), axis == 1) / self%size
+               * merge(-lever(2, k), lever(1, k), axis == 1) / chain%size
          end do
-         missing(r) = (place(axis, 2) - place(axis, 1)) / self%size
+         missing(r) = (place(axis, 2) - place(axis, 1)) / chain%size
       end do
-      r = 3 * self%parts
-      matrix(r, 3 * self%driver) = 1.0_wp
-      missing(r) = self%sense * state%q - state%place(3, self%driver)
+      r = 3 * chain%parts
+      matrix(r, 3 * chain%driver) = 1.0_wp
+      missing(r) = chain%sense * state%q - state%place(3, chain%driver)
    end subroutine equations
 
    !> Right-hand side of the second derivatives: the centripetal part of the hinge points
-   pure subroutine bending(self, state, right)
-      type(linkage), intent(in) :: self
+   pure subroutine bending(chain, state, right)
+      type(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: state
       real(wp), intent(out) :: right(:)
       real(wp) :: place(2)
       integer :: r, h, axis, k, part
 
       right = 0.0_wp
-      do r = 1, size(self%row, 2)
-         h = self%row(1, r)
-         axis = self%row(2, r)
+      do r = 1, size(chain%row, 2)
+         h = chain%row(1, r)
+         axis = chain%row(2, r)
          do k = 1, 2
-            part = self%side(k, h)
+            part = chain%side(k, h)
             if (part == 0) cycle
-            place = part_place(self, state, part, self%point(:, h))
+            place = part_place(chain, state, part, chain%point(:, h))
             right(r) = right(r) + real(3 - 2 * k, wp) * state%first(3, part)**2 &
-               * (place(axis) - state%place(axis, part)) / self%size
+               * (place(axis) - state%place(axis, part)) / chain%size
          end do
       end do
    end subroutine bending
 
    !> Add a step of the unknowns to the places
-   pure subroutine move(self, step, state)
-      type(linkage), intent(in) :: self
+   pure subroutine move(chain, step, state)
+      type(linkage), intent(in) :: chain
       real(wp), intent(in) :: step(:)
       type(linkage_state), intent(inout) :: state
       integer :: k
-      do k = 1, self%parts
-         state%place(1:2, k) = state%place(1:2, k) + self%size * step(3 * k - 2:3 * k - 1)
+      do k = 1, chain%parts
+         state%place(1:2, k) = state%place(1:2, k) + chain%size * step(3 * k - 2:3 * k - 1)
          state%place(3, k) = state%place(3, k) + step(3 * k)
       end do
    end subroutine move
 
    !> Greatest misfit of all hinges, also of the equations that depend on others, as a share of the size
-   pure function parted(self, state) result(apart)
-      type(linkage), intent(in) :: self
+   pure function parted(chain, state) result(apart)
+      type(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: state
       real(wp) :: apart
       integer :: h
       apart = 0.0_wp
-      do h = 1, size(self%side, 2)
-         apart = max(apart, norm2(part_place(self, state, self%side(1, h), self%point(:, h)) &
-            - part_place(self, state, self%side(2, h), self%point(:, h))) / self%size)
+      do h = 1, size(chain%side, 2)
+         apart = max(apart, norm2(part_place(chain, state, chain%side(1, h), chain%point(:, h)) &
+            - part_place(chain, state, chain%side(2, h), chain%point(:, h))) / chain%size)
       end do
    end function parted
 
@@ -317,8 +317,8 @@ contains
    end function determinant_sign
 
    !> Where a point of a part (0: the ground), given at rest, lies now
-   pure function part_place(self, state, part, point) result(place)
-      type(linkage), intent(in) :: self
+   pure function part_place(chain, state, part, point) result(place)
+      type(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: state
       integer, intent(in) :: part
       real(wp), intent(in) :: point(2)
@@ -326,7 +326,7 @@ contains
       real(wp) :: arm(2), c, s
       place = point
       if (part == 0) return
-      arm = point - self%centroid(:, part)
+      arm = point - chain%centroid(:, part)
       c = cos(state%place(3, part))
       s = sin(state%place(3, part))
       place = state%place(1:2, part) + [c * arm(1) - s * arm(2), s * arm(1) + c * arm(2)]
@@ -335,8 +335,8 @@ contains
    !> Coefficients of M q'' + (1/2) M' q'^2 + V' (1 + a_v/g) + side a_h H = 0 at a closed state (thesis Eqs 5.1, B.2)
    !>
    !> H counts positive to +x for both sides of motion; the rocker's H is side times it.
-   pure subroutine linkage_coefficients(self, state, m, half_dm, dv, dh, v)
-      type(linkage), intent(in) :: self
+   pure subroutine linkage_coefficients(chain, state, m, half_dm, dv, dh, v)
+      type(linkage), intent(in) :: chain
       type(linkage_state), intent(in) :: state
       real(wp), intent(out) :: m        !! generalised mass M [kg m^2]
       real(wp), intent(out) :: half_dm  !! (1/2) dM/dq [kg m^2]
@@ -350,13 +350,13 @@ contains
       dv = 0.0_wp
       dh = 0.0_wp
       v = 0.0_wp
-      do k = 1, self%parts
-         m = m + self%mass(k) * sum(state%first(1:2, k)**2) + self%inertia(k) * state%first(3, k)**2
-         half_dm = half_dm + self%mass(k) * dot_product(state%first(1:2, k), state%second(1:2, k)) &
-            + self%inertia(k) * state%first(3, k) * state%second(3, k)
-         dv = dv + gravity * self%mass(k) * state%first(2, k)
-         dh = dh + self%mass(k) * state%first(1, k)
-         v = v + gravity * self%mass(k) * (state%place(2, k) - self%centroid(2, k))
+      do k = 1, chain%parts
+         m = m + chain%mass(k) * sum(state%first(1:2, k)**2) + chain%inertia(k) * state%first(3, k)**2
+         half_dm = half_dm + chain%mass(k) * dot_product(state%first(1:2, k), state%second(1:2, k)) &
+            + chain%inertia(k) * state%first(3, k) * state%second(3, k)
+         dv = dv + gravity * chain%mass(k) * state%first(2, k)
+         dh = dh + chain%mass(k) * state%first(1, k)
+         v = v + gravity * chain%mass(k) * (state%place(2, k) - chain%centroid(2, k))
       end do
    end subroutine linkage_coefficients
 

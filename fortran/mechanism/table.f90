@@ -320,8 +320,8 @@ contains
    end function share
 
    !> Coefficients of the equation of motion, see rocking_rocker
-   pure subroutine coefficients(self, q, m, half_dm, dv, dh, closed)
-      class(side_table), intent(in) :: self
+   pure subroutine coefficients(sides, q, m, half_dm, dv, dh, closed)
+      class(side_table), intent(in) :: sides
       real(wp), intent(in) :: q         !! rotation; also a little below zero [rad]
       real(wp), intent(out) :: m        !! M [kg m^2]
       real(wp), intent(out) :: half_dm  !! M'/2 [kg m^2]
@@ -330,27 +330,27 @@ contains
       logical, intent(out) :: closed    !! false past the end of the table
       real(wp) :: w
 
-      closed = q <= self%last
+      closed = q <= sides%last
       m = 0.0_wp
       half_dm = 0.0_wp
       dv = 0.0_wp
       dh = 0.0_wp
       if (.not. closed) return
-      w = share(self, q)
-      call on_panel(self, panel_of(self, w), w, m, half_dm, dv, dh)
+      w = share(sides, q)
+      call on_panel(sides, panel_of(sides, w), w, m, half_dm, dv, dh)
    end subroutine coefficients
 
    !> The panel that holds w; the first also takes what lies below rest
-   pure function panel_of(self, w) result(i)
-      class(side_table), intent(in) :: self
+   pure function panel_of(sides, w) result(i)
+      class(side_table), intent(in) :: sides
       real(wp), intent(in) :: w
       integer :: i
-      i = max(1, min(panels, 1 + int(w * self%per_panel)))
+      i = max(1, min(panels, 1 + int(w * sides%per_panel)))
    end function panel_of
 
    !> The coefficients by the polynomials of panel i
-   pure subroutine on_panel(self, i, w, m, half_dm, dv, dh)
-      class(side_table), intent(in) :: self
+   pure subroutine on_panel(sides, i, w, m, half_dm, dv, dh)
+      class(side_table), intent(in) :: sides
       integer, intent(in) :: i
       real(wp), intent(in) :: w
       real(wp), intent(out) :: m
@@ -360,35 +360,35 @@ contains
       real(wp) :: t, value(3), slope, dw
       integer :: k
 
-      t = max(lowest, 2.0_wp * (w * self%per_panel - real(i - 1, wp)) - 1.0_wp)
-      value = self%coefficient(:, degree, i)
+      t = max(lowest, 2.0_wp * (w * sides%per_panel - real(i - 1, wp)) - 1.0_wp)
+      value = sides%coefficient(:, degree, i)
       slope = 0.0_wp
       do k = degree - 1, 0, -1
          slope = slope * t + value(mass)
-         value = value * t + self%coefficient(:, k, i)
+         value = value * t + sides%coefficient(:, k, i)
       end do
-      dw = 0.5_wp / (self%scale * (1.0_wp - w))
+      dw = 0.5_wp / (sides%scale * (1.0_wp - w))
       m = value(mass) * dw**2
-      half_dm = (slope * self%per_panel + value(mass) / (1.0_wp - w)) * dw**3
+      half_dm = (slope * sides%per_panel + value(mass) / (1.0_wp - w)) * dw**3
       dv = value(gravity_moment) * dw
       dh = value(drive) * dw
    end subroutine on_panel
 
    !> Potential energy of gravity above rest [J]
-   pure function potential(self, q) result(v)
-      class(side_table), intent(in) :: self
+   pure function potential(sides, q) result(v)
+      class(side_table), intent(in) :: sides
       real(wp), intent(in) :: q  !! not past the end of the table [rad]
       real(wp) :: v
       real(wp) :: w
       integer :: i
-      w = share(self, q)
-      i = panel_of(self, w)
-      v = self%start(i) + climb(self, i, 2.0_wp * (w * self%per_panel - real(i - 1, wp)) - 1.0_wp)
+      w = share(sides, q)
+      i = panel_of(sides, w)
+      v = sides%start(i) + climb(sides, i, 2.0_wp * (w * sides%per_panel - real(i - 1, wp)) - 1.0_wp)
    end function potential
 
    !> Rise of the potential from the start of a panel, t = -1 [J]
-   pure function climb(self, i, t) result(v)
-      class(side_table), intent(in) :: self
+   pure function climb(sides, i, t) result(v)
+      class(side_table), intent(in) :: sides
       integer, intent(in) :: i
       real(wp), intent(in) :: t
       real(wp) :: v
@@ -397,10 +397,10 @@ contains
       v = 0.0_wp
       low = 0.0_wp
       do k = degree, 0, -1
-         v = v * t + self%coefficient(gravity_moment, k, i) / real(k + 1, wp)
-         low = -low + self%coefficient(gravity_moment, k, i) / real(k + 1, wp)
+         v = v * t + sides%coefficient(gravity_moment, k, i) / real(k + 1, wp)
+         low = -low + sides%coefficient(gravity_moment, k, i) / real(k + 1, wp)
       end do
-      v = 0.5_wp * (v * t + low) / self%per_panel
+      v = 0.5_wp * (v * t + low) / sides%per_panel
    end function climb
 
    !> The flat list of a table

@@ -40,8 +40,8 @@ contains
       call body%set_rest_rate()
    end subroutine arch_rocker_new
 
-   pure subroutine coefficients(self, side, q, m, half_dm, dv, dh, closed)
-      class(arch_rocker), intent(in) :: self
+   pure subroutine coefficients(model, side, q, m, half_dm, dv, dh, closed)
+      class(arch_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: q
       real(wp), intent(out) :: m
@@ -49,16 +49,16 @@ contains
       real(wp), intent(out) :: dv
       real(wp), intent(out) :: dh
       logical, intent(out) :: closed
-      if (side /= 0) call self%mechanism%coefficients(q, m, half_dm, dv, dh, closed)
+      if (side /= 0) call model%mechanism%coefficients(q, m, half_dm, dv, dh, closed)
    end subroutine coefficients
 
-   pure function potential(self, side, q) result(v)
-      class(arch_rocker), intent(in) :: self
+   pure function potential(model, side, q) result(v)
+      class(arch_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: q
       real(wp) :: v
       v = 0.0_wp
-      if (side /= 0) v = self%mechanism%potential(q)
+      if (side /= 0) v = model%mechanism%potential(q)
    end function potential
 
 end module rocking_arch_rocker

@@ -64,8 +64,8 @@ contains
       status = status_ok
    end subroutine block_rocker_new
 
-   pure subroutine coefficients(self, side, q, m, half_dm, dv, dh, closed)
-      class(block_rocker), intent(in) :: self
+   pure subroutine coefficients(model, side, q, m, half_dm, dv, dh, closed)
+      class(block_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: q
       real(wp), intent(out) :: m
@@ -75,37 +75,37 @@ contains
       logical, intent(out) :: closed
       integer :: i
       i = side_index(side)
-      m = self%inertia(i)
+      m = model%inertia(i)
       half_dm = 0.0_wp
-      if (self%linear) then
-         dv = gravity * self%moment(i) * (self%alpha(i) - q)
-         dh = self%moment(i)
+      if (model%linear) then
+         dv = gravity * model%moment(i) * (model%alpha(i) - q)
+         dh = model%moment(i)
       else
-         dv = gravity * self%moment(i) * sin(self%alpha(i) - q)
-         dh = self%moment(i) * cos(self%alpha(i) - q)
+         dv = gravity * model%moment(i) * sin(model%alpha(i) - q)
+         dh = model%moment(i) * cos(model%alpha(i) - q)
       end if
       closed = .true.
    end subroutine coefficients
 
-   pure function potential(self, side, q) result(v)
-      class(block_rocker), intent(in) :: self
+   pure function potential(model, side, q) result(v)
+      class(block_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: q
       real(wp) :: v
       integer :: i
       i = side_index(side)
-      if (self%linear) then
-         v = gravity * self%moment(i) * q * (self%alpha(i) - 0.5_wp * q)
+      if (model%linear) then
+         v = gravity * model%moment(i) * q * (model%alpha(i) - 0.5_wp * q)
       else
          ! cos(alpha - q) - cos(alpha) without cancellation
-         v = 2.0_wp * gravity * self%moment(i) * sin(self%alpha(i) - 0.5_wp * q) * sin(0.5_wp * q)
+         v = 2.0_wp * gravity * model%moment(i) * sin(model%alpha(i) - 0.5_wp * q) * sin(0.5_wp * q)
       end if
    end function potential
 
    !> Taylor series in the fraction of the step. Sine and cosine of alpha - q follow their own recurrences
    !> (S' = -C q', C' = S q'), so one evaluation of each serves the whole step.
-   pure subroutine series_step(self, side, h, q, v, value, slope, tolerance, step)
-      class(block_rocker), intent(in) :: self
+   pure subroutine series_step(model, side, h, q, v, value, slope, tolerance, step)
+      class(block_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: h
       real(wp), intent(in) :: q
@@ -120,7 +120,7 @@ contains
 
       i = side_index(side)
       ! u is h v, so that q_k = u_(k-1)/k; the right-hand side is scaled by h^2
-      factor = h * h * self%moment(i) / self%inertia(i)
+      factor = h * h * model%moment(i) / model%inertia(i)
       pull = factor * (gravity + value(2))
       pull_slope = factor * h * slope(2)
       push = factor * real(side, wp) * value(1)
@@ -128,12 +128,12 @@ contains
       x(0) = q
       u(0) = h * v
       x(1) = u(0)
-      if (self%linear) then
-         s(0) = self%alpha(i) - q
+      if (model%linear) then
+         s(0) = model%alpha(i) - q
          c(0) = 1.0_wp
       else
-         s(0) = sin(self%alpha(i) - q)
-         c(0) = cos(self%alpha(i) - q)
+         s(0) = sin(model%alpha(i) - q)
+         c(0) = cos(model%alpha(i) - q)
       end if
       u(1) = -(pull * s(0) + push * c(0))
       x(2) = 0.5_wp * u(1)
@@ -141,7 +141,7 @@ contains
       tolerance_u = h * tolerance(2) + tolerance(3) * abs(u(0))
       last = order
       do k = 1, order - 1
-         if (self%linear) then
+         if (model%linear) then
             s(k) = -x(k)
             c(k) = 0.0_wp
          else

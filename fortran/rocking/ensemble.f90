@@ -20,7 +20,7 @@ module rocking_ensemble
 
    !> Room for one structure of any kind
    type :: any_body
-      class(rocker), allocatable :: it
+      class(rocker), allocatable :: model
       integer(c_int) :: status = status_ok
    end type any_body
 
@@ -119,7 +119,7 @@ contains
       !$omp shared(bodies, set, run_body, run_motion, run_scale, options, answers, run_status, built)
       !$omp do schedule(dynamic)
       do k = 1, size(built)
-         call list_body(bodies, int(k, c_int), built(k)%it, built(k)%status)
+         call list_body(bodies, int(k, c_int), built(k)%model, built(k)%status)
       end do
       !$omp end do
       !$omp do schedule(dynamic)
@@ -129,7 +129,7 @@ contains
          if (run_status(k) /= status_ok) cycle
          call motion_signal(set, run_motion(k), run_scale(k), ground, run_status(k))
          if (run_status(k) /= status_ok) cycle
-         call respond(built(run_body(k))%it, ground, options(k), answers(k), run_status(k))
+         call respond(built(run_body(k))%model, ground, options(k), answers(k), run_status(k))
       end do
       !$omp end do
       !$omp end parallel

@@ -24,8 +24,8 @@ module rocking_equation
 
 contains
 
-   function acceleration(self, t, q, v) result(a)
-      class(equation_of_motion), intent(in) :: self
+   function acceleration(system, t, q, v) result(a)
+      class(equation_of_motion), intent(in) :: system
       real(wp), intent(in) :: t
       real(wp), intent(in) :: q
       real(wp), intent(in) :: v
@@ -33,13 +33,13 @@ contains
       real(wp) :: m, half_dm, dv, dh, horizontal, vertical
       logical :: closed
 
-      call self%body%coefficients(self%side, q, m, half_dm, dv, dh, closed)
+      call system%body%coefficients(system%side, q, m, half_dm, dv, dh, closed)
       if (.not. closed) then
          a = huge(a)  ! the error test refuses the step
          return
       end if
-      call self%ground%value_at(self%segment, t, horizontal, vertical)
-      a = -(half_dm * v * v + dv * (1.0_wp + vertical / gravity) + real(self%side, wp) * horizontal * dh) / m
+      call system%ground%value_at(system%segment, t, horizontal, vertical)
+      a = -(half_dm * v * v + dv * (1.0_wp + vertical / gravity) + real(system%side, wp) * horizontal * dh) / m
    end function acceleration
 
    !> One step: by the structure's own series where it has one and the ground runs in straight lines

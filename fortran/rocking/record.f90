@@ -33,29 +33,29 @@ module rocking_record
 contains
 
    !> An event; past the room it is only counted
-   subroutine note(self, kind, when, value)
-      class(response_history), intent(inout) :: self
+   subroutine note(history, kind, when, value)
+      class(response_history), intent(inout) :: history
       integer(c_int), intent(in) :: kind
       real(wp), intent(in) :: when   !! [s]
       real(wp), intent(in) :: value  !! see event
-      self%events = self%events + 1
-      if (self%events > size(self%event_kind)) return
-      self%event_kind(self%events) = kind
-      self%event(:, self%events) = [when, value]
+      history%events = history%events + 1
+      if (history%events > size(history%event_kind)) return
+      history%event_kind(history%events) = kind
+      history%event(:, history%events) = [when, value]
    end subroutine note
 
    !> Book kinetic energy at rest as lost, or as gained back
-   subroutine lose(self, problem, rate, sign)
-      class(response_history), intent(inout) :: self
+   subroutine lose(history, problem, rate, sign)
+      class(response_history), intent(inout) :: history
       type(equation_of_motion), intent(in) :: problem
       real(wp), intent(in) :: rate  !! [rad/s]
       real(wp), intent(in) :: sign  !! +1 lost, -1 gained
-      self%loss = self%loss + sign * energy_of(problem, 0.0_wp, rate)
+      history%loss = history%loss + sign * energy_of(problem, 0.0_wp, rate)
    end subroutine lose
 
    !> Fill the output times that the first part of a step covers, and book the work done over it
-   subroutine cover(self, problem, step, covered)
-      class(response_history), intent(inout) :: self
+   subroutine cover(history, problem, step, covered)
+      class(response_history), intent(inout) :: history
       type(equation_of_motion), intent(in) :: problem
       type(dense_step), intent(in) :: step
       real(wp), intent(in) :: covered  !! fraction of the step
@@ -63,35 +63,35 @@ contains
 
       sigma = real(problem%side, wp)
       end_time = step%t + covered * step%h
-      do while (self%points < size(self%time))
-         if (self%time(self%points + 1) > end_time) exit
-         self%points = self%points + 1
-         x = max(0.0_wp, (self%time(self%points) - step%t) / step%h)
+      do while (history%points < size(history%time))
+         if (history%time(history%points + 1) > end_time) exit
+         history%points = history%points + 1
+         x = max(0.0_wp, (history%time(history%points) - step%t) / step%h)
          rotation = max(step%coordinate(x), 0.0_wp)
          rate = step%rate(x)
-         call problem%ground%value_at(problem%segment, self%time(self%points), horizontal, vertical)
+         call problem%ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
          energy = energy_of(problem, rotation, rate)
          potential = problem%body%potential(problem%side, rotation)
-         self%state(:, self%points) = [sigma * rotation, sigma * rate, &
-            sigma * problem%acceleration(self%time(self%points), rotation, rate), horizontal, vertical, &
-            energy - potential, potential, self%work + work_of(problem, step, x) - self%loss]
+         history%state(:, history%points) = [sigma * rotation, sigma * rate, &
+            sigma * problem%acceleration(history%time(history%points), rotation, rate), horizontal, vertical, &
+            energy - potential, potential, history%work + work_of(problem, step, x) - history%loss]
       end do
-      self%work = self%work + work_of(problem, step, covered)
+      history%work = history%work + work_of(problem, step, covered)
    end subroutine cover
 
    !> Fill the output times of a rest
-   subroutine rest(self, problem, until)
-      class(response_history), intent(inout) :: self
+   subroutine rest(history, problem, until)
+      class(response_history), intent(inout) :: history
       type(equation_of_motion), intent(in) :: problem
       real(wp), intent(in) :: until  !! [s]
       real(wp) :: horizontal, vertical
-      do while (self%points < size(self%time))
-         if (self%time(self%points + 1) > until) exit
-         self%points = self%points + 1
-         call problem%ground%value_at(problem%segment, self%time(self%points), horizontal, vertical)
-         self%state(:, self%points) = 0.0_wp
-         self%state(4:5, self%points) = [horizontal, vertical]
-         self%state(8, self%points) = self%work - self%loss
+      do while (history%points < size(history%time))
+         if (history%time(history%points + 1) > until) exit
+         history%points = history%points + 1
+         call problem%ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
+         history%state(:, history%points) = 0.0_wp
+         history%state(4:5, history%points) = [horizontal, vertical]
+         history%state(8, history%points) = history%work - history%loss
       end do
    end subroutine rest
 

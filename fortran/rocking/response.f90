@@ -133,8 +133,8 @@ contains
    end subroutine respond
 
    !> The state at time zero
-   subroutine start(self, body, ground, options)
-      class(run_state), intent(inout) :: self
+   subroutine start(state, body, ground, options)
+      class(run_state), intent(inout) :: state
       class(rocker), intent(in), target :: body
       type(signal), intent(in) :: ground
       type(response_options), intent(in) :: options
@@ -142,269 +142,271 @@ contains
       integer :: i
       logical :: closed
 
-      self%options = options
-      self%problem%body => body
-      self%problem%ground = ground
-      self%problem%side = options%start_side
-      self%problem%series = body%has_series .and. .not. ground%has_harmonics()
+      state%options = options
+      state%problem%body => body
+      state%problem%ground = ground
+      state%problem%side = options%start_side
+      state%problem%series = body%has_series .and. .not. ground%has_harmonics()
       do i = 1, 2
-         call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, self%problem%rest_dv(i), self%problem%rest_dh(i), closed)
+         call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, state%problem%rest_dv(i), &
+            state%problem%rest_dh(i), closed)
       end do
       i = side_index(options%start_side)
-      self%atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
-      self%atol_v = 0.01_wp * options%tolerance * 1.0e3_wp * maxval(body%rest_rate)
-      self%q = options%start_q
-      self%v = options%start_v
-      self%resting = self%q <= 0.0_wp .and. self%v <= 0.0_wp
-      if (.not. self%resting) self%answer%half_cycles = 1
-      self%h_next = 1.0e-3_wp * sqrt(body%critical(i)) / max(body%rest_rate(i) * 1.0e3_wp, tiny(1.0_wp))
-      self%problem%segment = 0
-      do while (self%problem%segment <= ground%segments)
-         if (ground%break_time(self%problem%segment + 1) > self%t) exit
-         self%problem%segment = self%problem%segment + 1
+      state%atol_q = 0.01_wp * options%tolerance * maxval(body%critical)
+      state%atol_v = 0.01_wp * options%tolerance * 1.0e3_wp * maxval(body%rest_rate)
+      state%q = options%start_q
+      state%v = options%start_v
+      state%resting = state%q <= 0.0_wp .and. state%v <= 0.0_wp
+      if (.not. state%resting) state%answer%half_cycles = 1
+      state%h_next = 1.0e-3_wp * sqrt(body%critical(i)) / max(body%rest_rate(i) * 1.0e3_wp, tiny(1.0_wp))
+      state%problem%segment = 0
+      do while (state%problem%segment <= ground%segments)
+         if (ground%break_time(state%problem%segment + 1) > state%t) exit
+         state%problem%segment = state%problem%segment + 1
       end do
-      call self%note_peak(self%q)
+      call state%note_peak(state%q)
    end subroutine start
 
    !> Is the ground motion over?
-   pure function quiet(self) result(answer)
-      class(run_state), intent(in) :: self
+   pure function quiet(state) result(answer)
+      class(run_state), intent(in) :: state
       logical :: answer
-      answer = self%problem%segment > self%problem%ground%segments
+      answer = state%problem%segment > state%problem%ground%segments
    end function quiet
 
    !> End of the segment of the ground motion, or of the run [s]
-   pure function segment_end(self) result(t_next)
-      class(run_state), intent(in) :: self
+   pure function segment_end(state) result(t_next)
+      class(run_state), intent(in) :: state
       real(wp) :: t_next
-      t_next = self%options%end_time
-      if (.not. self%quiet()) t_next = min(t_next, self%problem%ground%break_time(self%problem%segment + 1))
+      t_next = state%options%end_time
+      if (.not. state%quiet()) t_next = min(t_next, state%problem%ground%break_time(state%problem%segment + 1))
    end function segment_end
 
    !> At rest until the ground lifts the structure, or for a while
-   subroutine wait(self, t_next)
-      class(run_state), intent(inout) :: self
+   subroutine wait(state, t_next)
+      class(run_state), intent(inout) :: state
       real(wp), intent(in) :: t_next
       real(wp) :: window, lifts
       integer :: found_side
 
-      call self%count_attempt()
-      if (self%over) return
-      if (self%quiet()) then
-         self%t = self%options%end_time
-         if (associated(self%history)) call self%history%rest(self%problem, self%t)
-         self%over = .true.
+      call state%count_attempt()
+      if (state%over) return
+      if (state%quiet()) then
+         state%t = state%options%end_time
+         if (associated(state%history)) call state%history%rest(state%problem, state%t)
+         state%over = .true.
          return
       end if
       ! Long sines are searched in pieces, so that the loop answers a request to stop.
-      window = min(t_next, self%t + 64.0_wp * self%problem%ground%shortest_period(self%problem%segment))
-      call find_uplift(self%problem, self%t, window, lifts, found_side)
+      window = min(t_next, state%t + 64.0_wp * state%problem%ground%shortest_period(state%problem%segment))
+      call find_uplift(state%problem, state%t, window, lifts, found_side)
       if (found_side == 0) then
-         self%t = window
-         if (associated(self%history)) call self%history%rest(self%problem, self%t)
-         if (self%t >= t_next .and. self%t < self%options%end_time) self%problem%segment = self%problem%segment + 1
+         state%t = window
+         if (associated(state%history)) call state%history%rest(state%problem, state%t)
+         if (state%t >= t_next .and. state%t < state%options%end_time) state%problem%segment = state%problem%segment + 1
          return
       end if
-      if (associated(self%history)) call self%history%rest(self%problem, lifts)
-      self%t = lifts
-      self%resting = .false.
-      self%from_rest = .true.
-      self%problem%side = found_side
-      self%q = 0.0_wp
-      self%v = 0.0_wp
-      self%renew = .true.
-      self%answer%half_cycles = self%answer%half_cycles + 1
-      if (associated(self%history)) call self%history%note(event_uplift, self%t, real(found_side, wp))
+      if (associated(state%history)) call state%history%rest(state%problem, lifts)
+      state%t = lifts
+      state%resting = .false.
+      state%from_rest = .true.
+      state%problem%side = found_side
+      state%q = 0.0_wp
+      state%v = 0.0_wp
+      state%renew = .true.
+      state%answer%half_cycles = state%answer%half_cycles + 1
+      if (associated(state%history)) call state%history%note(event_uplift, state%t, real(found_side, wp))
    end subroutine wait
 
    !> Try one step of at most the way to t_next; where it is refused the next try is shorter
-   subroutine take_step(self, t_next, accepted)
-      class(run_state), intent(inout) :: self
+   subroutine take_step(state, t_next, accepted)
+      class(run_state), intent(inout) :: state
       real(wp), intent(in) :: t_next
       logical, intent(out) :: accepted
       real(wp) :: h, remaining, factor
 
       accepted = .false.
-      if (self%renew .and. .not. self%problem%series) self%a = self%problem%acceleration(self%t, self%q, self%v)
-      self%renew = .false.
-      remaining = t_next - self%t
+      if (state%renew .and. .not. state%problem%series) state%a = state%problem%acceleration(state%t, state%q, state%v)
+      state%renew = .false.
+      remaining = t_next - state%t
       ! An error estimate can be blind to a whole cycle of the ground inside one step.
-      h = min(self%h_next, 0.125_wp * self%problem%ground%shortest_period(self%problem%segment))
+      h = min(state%h_next, 0.125_wp * state%problem%ground%shortest_period(state%problem%segment))
       if (h >= remaining) then
          h = remaining
       else if (h > 0.5_wp * remaining) then
          h = 0.5_wp * remaining
       end if
-      call self%count_attempt()
-      if (self%over) return
-      call attempt(self%problem, self%t, h, self%q, self%v, self%a, self%atol_q, self%atol_v, &
-         self%options%tolerance, self%step)
-      if (self%problem%series) then
-         factor = series_factor(self%step)
+      call state%count_attempt()
+      if (state%over) return
+      call attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, state%atol_v, &
+         state%options%tolerance, state%step)
+      if (state%problem%series) then
+         factor = series_factor(state%step)
       else
-         call dopri5_factor(self%step%error, self%memory, factor)
+         call dopri5_factor(state%step%error, state%memory, factor)
       end if
-      accepted = self%step%error <= 1.0_wp
+      accepted = state%step%error <= 1.0_wp
       if (accepted) then
-         self%answer%steps = self%answer%steps + 1
-         self%h_next = max(h * factor, merge(self%h_next, 0.0_wp, h >= remaining .and. factor >= 1.0_wp))
+         state%answer%steps = state%answer%steps + 1
+         state%h_next = max(h * factor, merge(state%h_next, 0.0_wp, h >= remaining .and. factor >= 1.0_wp))
       else
-         self%answer%rejected = self%answer%rejected + 1
-         self%h_next = h * factor
-         if (self%h_next <= 8.0_wp * spacing(max(self%t, 1.0e-3_wp))) then
-            self%status = status_step_too_small
-            self%over = .true.
+         state%answer%rejected = state%answer%rejected + 1
+         state%h_next = h * factor
+         if (state%h_next <= 8.0_wp * spacing(max(state%t, 1.0e-3_wp))) then
+            state%status = status_step_too_small
+            state%over = .true.
          end if
       end if
    end subroutine take_step
 
    !> The ground only touched the limit: nothing rose
-   subroutine touch(self)
-      class(run_state), intent(inout) :: self
-      self%answer%half_cycles = self%answer%half_cycles - 1
-      self%resting = .true.
-      self%from_rest = .false.
-      self%t = self%t + self%step%h
-      if (associated(self%history)) then
-         self%history%events = self%history%events - 1
-         call self%history%rest(self%problem, self%t)
+   subroutine touch(state)
+      class(run_state), intent(inout) :: state
+      state%answer%half_cycles = state%answer%half_cycles - 1
+      state%resting = .true.
+      state%from_rest = .false.
+      state%t = state%t + state%step%h
+      if (associated(state%history)) then
+         state%history%events = state%history%events - 1
+         call state%history%rest(state%problem, state%t)
       end if
-      call self%advance_segment()
+      call state%advance_segment()
    end subroutine touch
 
    !> The hinges close within the step: the other side opens, or the structure rests
-   subroutine impact(self, fraction)
-      class(run_state), intent(inout) :: self
+   subroutine impact(state, fraction)
+      class(run_state), intent(inout) :: state
       real(wp), intent(in) :: fraction  !! of the step, to first accuracy
       real(wp) :: v_before
       integer :: i
 
-      call polish_impact(self%problem, self%q, self%v, self%a, self%atol_q, self%atol_v, self%options%tolerance, &
-         fraction, self%step)
-      call self%note_turning()
-      if (associated(self%history)) call self%history%cover(self%problem, self%step, 1.0_wp)
-      self%from_rest = .false.
-      self%t = self%step%t + self%step%h
-      v_before = min(self%step%v, 0.0_wp)
-      if (associated(self%history)) then
-         call self%history%note(event_impact, self%t, real(self%problem%side, wp) * v_before)
-         call self%history%lose(self%problem, -v_before, 1.0_wp)
+      call polish_impact(state%problem, state%q, state%v, state%a, state%atol_q, state%atol_v, &
+         state%options%tolerance, fraction, state%step)
+      call state%note_turning()
+      if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
+      state%from_rest = .false.
+      state%t = state%step%t + state%step%h
+      v_before = min(state%step%v, 0.0_wp)
+      if (associated(state%history)) then
+         call state%history%note(event_impact, state%t, real(state%problem%side, wp) * v_before)
+         call state%history%lose(state%problem, -v_before, 1.0_wp)
       end if
-      self%answer%impacts = self%answer%impacts + 1
-      self%problem%side = -self%problem%side
-      i = side_index(self%problem%side)
-      self%q = 0.0_wp
-      self%v = self%problem%body%restitution(i) * (-v_before)
-      if (associated(self%history)) call self%history%lose(self%problem, self%v, -1.0_wp)
-      if (self%v <= self%problem%body%rest_rate(i)) then
-         if (associated(self%history)) call self%history%lose(self%problem, self%v, 1.0_wp)
-         self%v = 0.0_wp
-         self%resting = .true.
-         if (associated(self%history)) call self%history%note(event_rest, self%t, 0.0_wp)
-         self%over = self%options%stop_when_safe .and. self%quiet()
-         if (self%over) return
+      state%answer%impacts = state%answer%impacts + 1
+      state%problem%side = -state%problem%side
+      i = side_index(state%problem%side)
+      state%q = 0.0_wp
+      state%v = state%problem%body%restitution(i) * (-v_before)
+      if (associated(state%history)) call state%history%lose(state%problem, state%v, -1.0_wp)
+      if (state%v <= state%problem%body%rest_rate(i)) then
+         if (associated(state%history)) call state%history%lose(state%problem, state%v, 1.0_wp)
+         state%v = 0.0_wp
+         state%resting = .true.
+         if (associated(state%history)) call state%history%note(event_rest, state%t, 0.0_wp)
+         state%over = state%options%stop_when_safe .and. state%quiet()
+         if (state%over) return
       else
-         self%answer%half_cycles = self%answer%half_cycles + 1
+         state%answer%half_cycles = state%answer%half_cycles + 1
       end if
-      self%renew = .true.
-      call self%advance_segment()
+      state%renew = .true.
+      call state%advance_segment()
    end subroutine impact
 
    !> The rotation passes the limit within the step
-   subroutine fall(self)
-      class(run_state), intent(inout) :: self
+   subroutine fall(state)
+      class(run_state), intent(inout) :: state
       real(wp) :: s, limit
-      limit = self%problem%body%limit(side_index(self%problem%side))
-      s = crossing_fraction(self%step, limit)
-      if (associated(self%history)) call self%history%cover(self%problem, self%step, s)
-      self%t = self%step%t + s * self%step%h
-      self%answer%outcome = outcome_collapse
-      self%answer%stop_time = self%t
-      call self%note_peak(limit)
-      if (associated(self%history)) then
-         call self%history%note(event_collapse, self%t, real(self%problem%side, wp) * limit)
+      limit = state%problem%body%limit(side_index(state%problem%side))
+      s = crossing_fraction(state%step, limit)
+      if (associated(state%history)) call state%history%cover(state%problem, state%step, s)
+      state%t = state%step%t + s * state%step%h
+      state%answer%outcome = outcome_collapse
+      state%answer%stop_time = state%t
+      call state%note_peak(limit)
+      if (associated(state%history)) then
+         call state%history%note(event_collapse, state%t, real(state%problem%side, wp) * limit)
       end if
-      self%over = .true.
+      state%over = .true.
    end subroutine fall
 
    !> An ordinary step: on to its end
-   subroutine move_on(self, t_next)
-      class(run_state), intent(inout) :: self
+   subroutine move_on(state, t_next)
+      class(run_state), intent(inout) :: state
       real(wp), intent(in) :: t_next
       logical :: was_quiet, whole
-      call self%note_turning()
-      if (associated(self%history)) call self%history%cover(self%problem, self%step, 1.0_wp)
-      self%from_rest = .false.
-      whole = self%step%h >= t_next - self%t
-      self%t = self%step%t + self%step%h
-      if (whole) self%t = t_next
-      self%q = self%step%q
-      self%v = self%step%v
-      self%a = self%step%a
-      call self%note_peak(self%q)
-      was_quiet = self%quiet()
-      call self%advance_segment()
-      if (.not. (self%options%stop_when_safe .and. was_quiet .and. self%v <= 0.0_wp)) return
-      if (self%q >= self%problem%body%critical(side_index(self%problem%side))) return
-      self%over = energy_of(self%problem, self%q, self%v) < barrier_of(self%problem)
+      call state%note_turning()
+      if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
+      state%from_rest = .false.
+      whole = state%step%h >= t_next - state%t
+      state%t = state%step%t + state%step%h
+      if (whole) state%t = t_next
+      state%q = state%step%q
+      state%v = state%step%v
+      state%a = state%step%a
+      call state%note_peak(state%q)
+      was_quiet = state%quiet()
+      call state%advance_segment()
+      if (.not. (state%options%stop_when_safe .and. was_quiet .and. state%v <= 0.0_wp)) return
+      if (state%q >= state%problem%body%critical(side_index(state%problem%side))) return
+      state%over = energy_of(state%problem, state%q, state%v) < barrier_of(state%problem)
    end subroutine move_on
 
    !> Outcome and whether it is final
-   subroutine conclude(self)
-      class(run_state), intent(inout) :: self
-      if (self%answer%outcome == outcome_collapse) return
-      self%answer%stop_time = self%t
-      if (self%answer%half_cycles > 0) self%answer%outcome = outcome_recovery
-      if (self%resting) then
-         self%answer%settled = self%status == status_ok
+   subroutine conclude(state)
+      class(run_state), intent(inout) :: state
+      if (state%answer%outcome == outcome_collapse) return
+      state%answer%stop_time = state%t
+      if (state%answer%half_cycles > 0) state%answer%outcome = outcome_recovery
+      if (state%resting) then
+         state%answer%settled = state%status == status_ok
       else
-         self%answer%settled = self%quiet() .and. self%q < self%problem%body%critical(side_index(self%problem%side)) &
-            .and. energy_of(self%problem, self%q, self%v) < barrier_of(self%problem)
+         state%answer%settled = state%quiet() .and. state%q < &
+            state%problem%body%critical(side_index(state%problem%side)) &
+            .and. energy_of(state%problem, state%q, state%v) < barrier_of(state%problem)
       end if
    end subroutine conclude
 
    !> Every pass of the loop: the limit of attempts, and now and then the request to stop
-   subroutine count_attempt(self)
-      class(run_state), intent(inout) :: self
-      self%attempts = self%attempts + 1
-      if (self%attempts > self%options%max_steps) then
-         self%status = status_too_many_steps
-      else if (mod(self%attempts, poll_every) == 0) then
-         if (cancel_requested()) self%status = status_cancelled
+   subroutine count_attempt(state)
+      class(run_state), intent(inout) :: state
+      state%attempts = state%attempts + 1
+      if (state%attempts > state%options%max_steps) then
+         state%status = status_too_many_steps
+      else if (mod(state%attempts, poll_every) == 0) then
+         if (cancel_requested()) state%status = status_cancelled
       end if
-      self%over = self%status /= status_ok
+      state%over = state%status /= status_ok
    end subroutine count_attempt
 
    !> Go to the next segment when its break is reached; the acceleration is renewed at a jump
-   subroutine advance_segment(self)
-      class(run_state), intent(inout) :: self
-      if (self%quiet()) return
-      if (self%t < self%problem%ground%break_time(self%problem%segment + 1)) return
-      if (.not. self%problem%ground%smooth_to_next(self%problem%segment)) self%renew = .true.
-      self%problem%segment = self%problem%segment + 1
+   subroutine advance_segment(state)
+      class(run_state), intent(inout) :: state
+      if (state%quiet()) return
+      if (state%t < state%problem%ground%break_time(state%problem%segment + 1)) return
+      if (.not. state%problem%ground%smooth_to_next(state%problem%segment)) state%renew = .true.
+      state%problem%segment = state%problem%segment + 1
    end subroutine advance_segment
 
    !> Keep the rotation of greatest size
-   subroutine note_peak(self, rotation)
-      class(run_state), intent(inout) :: self
+   subroutine note_peak(state, rotation)
+      class(run_state), intent(inout) :: state
       real(wp), intent(in) :: rotation
       real(wp) :: ratio
-      ratio = rotation / self%problem%body%critical(side_index(self%problem%side))
-      if (ratio > self%answer%peak_ratio) then
-         self%answer%peak_ratio = ratio
-         self%answer%peak = real(self%problem%side, wp) * rotation
+      ratio = rotation / state%problem%body%critical(side_index(state%problem%side))
+      if (ratio > state%answer%peak_ratio) then
+         state%answer%peak_ratio = ratio
+         state%answer%peak = real(state%problem%side, wp) * rotation
       end if
    end subroutine note_peak
 
    !> A turning point inside the step is a peak of the rotation
-   subroutine note_turning(self)
-      class(run_state), intent(inout) :: self
+   subroutine note_turning(state)
+      class(run_state), intent(inout) :: state
       real(wp) :: turned
-      if (.not. (self%v > 0.0_wp .and. self%step%v <= 0.0_wp)) return
-      turned = turning_fraction(self%step)
-      call self%note_peak(self%step%coordinate(turned))
-      if (associated(self%history)) call self%history%note(event_peak, self%step%t + turned * self%step%h, &
-         real(self%problem%side, wp) * self%step%coordinate(turned))
+      if (.not. (state%v > 0.0_wp .and. state%step%v <= 0.0_wp)) return
+      turned = turning_fraction(state%step)
+      call state%note_peak(state%step%coordinate(turned))
+      if (associated(state%history)) call state%history%note(event_peak, state%step%t + turned * state%step%h, &
+         real(state%problem%side, wp) * state%step%coordinate(turned))
    end subroutine note_turning
 
 end module rocking_response

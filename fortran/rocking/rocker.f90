@@ -29,10 +29,10 @@ module rocking_rocker
    end type rocker
 
    abstract interface
-      pure subroutine coefficients(self, side, q, m, half_dm, dv, dh, closed)
+      pure subroutine coefficients(model, side, q, m, half_dm, dv, dh, closed)
          import :: rocker, wp
          implicit none (type, external)
-         class(rocker), intent(in) :: self
+         class(rocker), intent(in) :: model
          integer, intent(in) :: side       !! +1 or -1
          real(wp), intent(in) :: q         !! rotation [rad]
          real(wp), intent(out) :: m        !! M [kg m^2]
@@ -42,10 +42,10 @@ module rocking_rocker
          logical, intent(out) :: closed    !! false where the structure cannot take this q
       end subroutine coefficients
 
-      pure function potential(self, side, q) result(v)
+      pure function potential(model, side, q) result(v)
          import :: rocker, wp
          implicit none (type, external)
-         class(rocker), intent(in) :: self
+         class(rocker), intent(in) :: model
          integer, intent(in) :: side
          real(wp), intent(in) :: q
          real(wp) :: v  !! potential energy of gravity above rest [J]
@@ -65,8 +65,8 @@ contains
    !>
    !> A structure whose series is cheap overrides this and sets has_series; here nothing is known of one, so
    !> the step is refused.
-   pure subroutine series_step(self, side, h, q, v, value, slope, tolerance, step)
-      class(rocker), intent(in) :: self
+   pure subroutine series_step(model, side, h, q, v, value, slope, tolerance, step)
+      class(rocker), intent(in) :: model
       integer, intent(in) :: side            !! +1 or -1
       real(wp), intent(in) :: h              !! length [s]
       real(wp), intent(in) :: q              !! rotation at the start [rad]
@@ -77,21 +77,21 @@ contains
       type(dense_step), intent(inout) :: step  !! t is left alone
       step%h = h
       step%error = huge(h)
-      if (.false.) step%q = q + v + value(1) + slope(1) + tolerance(1) + self%critical(side_index(side))
+      if (.false.) step%q = q + v + value(1) + slope(1) + tolerance(1) + model%critical(side_index(side))
    end subroutine series_step
 
    !> Rest where the kinetic energy after an impact is below 1e-6 of the energy barrier.
    !>
    !> Free rocking makes infinitely many impacts in finite time; for the slender block the rule
    !> is |theta'| < 1e-3 p alpha.
-   pure subroutine set_rest_rate(self)
-      class(rocker), intent(inout) :: self
+   pure subroutine set_rest_rate(model)
+      class(rocker), intent(inout) :: model
       real(wp) :: m, half_dm, dv, dh
       logical :: closed
       integer :: i
       do i = 1, 2
-         call self%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, dv, dh, closed)
-         self%rest_rate(i) = 1.0e-3_wp * sqrt(2.0_wp * max(self%potential(3 - 2 * i, self%critical(i)), 0.0_wp) / m)
+         call model%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, dv, dh, closed)
+         model%rest_rate(i) = 1.0e-3_wp * sqrt(2.0_wp * max(model%potential(3 - 2 * i, model%critical(i)), 0.0_wp) / m)
       end do
    end subroutine set_rest_rate
 

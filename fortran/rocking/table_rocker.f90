@@ -51,8 +51,8 @@ contains
       call body%set_rest_rate()
    end subroutine table_rocker_new
 
-   pure subroutine coefficients(self, side, q, m, half_dm, dv, dh, closed)
-      class(table_rocker), intent(in) :: self
+   pure subroutine coefficients(model, side, q, m, half_dm, dv, dh, closed)
+      class(table_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: q
       real(wp), intent(out) :: m
@@ -60,15 +60,15 @@ contains
       real(wp), intent(out) :: dv
       real(wp), intent(out) :: dh
       logical, intent(out) :: closed
-      call self%table(side_index(side))%coefficients(q, m, half_dm, dv, dh, closed)
+      call model%table(side_index(side))%coefficients(q, m, half_dm, dv, dh, closed)
    end subroutine coefficients
 
-   pure function potential(self, side, q) result(v)
-      class(table_rocker), intent(in) :: self
+   pure function potential(model, side, q) result(v)
+      class(table_rocker), intent(in) :: model
       integer, intent(in) :: side
       real(wp), intent(in) :: q
       real(wp) :: v
-      v = self%table(side_index(side))%potential(q)
+      v = model%table(side_index(side))%potential(q)
    end function potential
 
 end module rocking_table_rocker

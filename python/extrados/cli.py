@@ -17,6 +17,8 @@ from extrados._build_info import VERSION
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from extrados.running.check import Checked
+
 app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 
 
@@ -58,10 +60,11 @@ class _Progress:
             if self.bar is None:
                 from rich.progress import Progress
 
-                self.bar = Progress(console=err_console._rich, transient=True)
+                # without its refreshing thread: a process with threads of its own draws its figures alone
+                self.bar = Progress(console=err_console._rich, transient=True, auto_refresh=False)
                 self.bar.start()
                 self.task = self.bar.add_task(text, total=total)
-            self.bar.update(self.task, completed=done, total=total, description=text)
+            self.bar.update(self.task, completed=done, total=total, description=text, refresh=True)
         elif now - self.last > 5.0:
             err_console.print(f"{text}: {100 * done / max(total, 1e-300):.0f} %", markup=False)
             self.last = now
@@ -220,21 +223,78 @@ def _motion_page(result) -> None:
 
 
 @app.command()
-def check(decks: Annotated[list[Path], typer.Argument(help="decks to check")]) -> None:
-    """Check decks without running them; every complaint at once."""
+def check(
+    decks: Annotated[list[Path], typer.Argument(help="decks to check")],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="folder for the picture and the list of a survey; default results/<deck name>-check"),
+    ] = None,
+) -> None:
+    """Check decks without running them: every complaint at once, and how the stones of a survey fit."""
     from extrados.decks.reader import DeckError, read_deck
+    from extrados.running.check import check_building
+    from extrados.running.run import default_out
 
+    if out is not None and len(decks) > 1:
+        err_console.print("--out takes one deck at a time")
+        raise typer.Exit(WRONG_DECK)
     complaints = []
     for path in decks:
         try:
-            read_deck(path)
+            deck = read_deck(path)
         except DeckError as error:
             complaints += error.complaints
+            continue
+        checked = check_building(deck)
+        complaints += checked.complaints
+        if checked.inspection is not None:
+            folder = out or default_out(deck).with_name(f"{default_out(deck).name}-check")
+            _tell_survey(checked, folder, asked=out is not None)
     for line in complaints:
         err_console.print(line, markup=False)
     if complaints:
         raise typer.Exit(WRONG_DECK)
     print("ok" if len(decks) == 1 else f"{len(decks)} decks ok")
+
+
+MOST_PLACES = 40
+
+
+def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
+    """How the stones of a survey fit: its list on the terminal, all of it and its picture in a folder where there is
+    anything to list, or the folder is asked for."""
+    from rich.table import Table
+
+    from extrados.running.check import write_check
+
+    inspection = checked.inspection
+    for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
+        out_console.print(line, markup=False)
+    amiss = [row for row in checked.places if row.status != "closed"]
+    if amiss:
+        table = Table(box=None, pad_edge=False)
+        for title in ("", "what", "between", "depth [mm]", "x [m]", "y [m]", "mended by"):
+            table.add_column(title, justify="left" if title in ("what", "between", "mended by") else "right")
+        for k, row in enumerate(amiss[:MOST_PLACES], start=1):
+            depth = "" if row.depth is None else f"{1e3 * row.depth:.3g}"
+            table.add_row(str(k), row.what, row.between, depth, *(f"{v:.3f}" for v in row.place), row.mended_by)
+        out_console.print(table)
+        if len(amiss) > MOST_PLACES:
+            out_console.print(f"and {len(amiss) - MOST_PLACES} more", markup=False)
+    grounded = int((inspection.contacts.b < 0).sum())
+    out_console.print(
+        f"{len(inspection.outlines)} stones, {len(inspection.contacts.a)} joints, {grounded} of them on the ground; "
+        f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance", markup=False,
+    )  # fmt: skip
+    if not checked.places and not asked:
+        return
+    try:
+        picture, table = write_check(checked, folder)
+    except OSError as error:
+        err_console.print(f"{folder}: the picture could not be written: {error.strerror or error}", markup=False)
+        return
+    out_console.print(f"Picture: {picture}", markup=False)
+    out_console.print(f"List:    {table}", markup=False)
 
 
 @app.command()

@@ -64,6 +64,9 @@ ANALYSES: dict[str, AnalysisKind] = {
     "thrust": _analysis("limit", "Thrust", "thrust", "limit:draw_thrust", "vault/dejong-a"),
     "sweep": _analysis("limit", "Sweep", "sweep", "limit:draw_sweep", "vault/vezelay-sweep"),
     "survey": _analysis("limit", "Survey", "survey", "limit:draw_survey", "limit/survey"),
+    "imperfections": _analysis(
+        "limit", "Imperfections", "imperfections", "limit:draw_imperfections", "limit/church"
+    ),
     "supports": _analysis("limit", "Supports", "supports", "limit:draw_supports", "limit/oppenheim"),
     "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit:draw_moving_load", "limit/oppenheim"),
     "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),

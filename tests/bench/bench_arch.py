@@ -133,7 +133,7 @@ def main() -> None:
             f"extrados at no greater error: {no_worse * took:.0f} times faster"
         )
 
-    oppenheim = ArchModel(make_arch(10.0, 1.5, 157.5, 7))
+    oppenheim = ArchModel(make_arch(10.0, 1.5, 157.5, 7), "thesis")
     durations = np.linspace(0.1, 1.0, 40)
     amplitudes = np.linspace(0.0, 1.5, 41)[1:] * GRAVITY
 

@@ -11,12 +11,12 @@ module pendulum_case
       procedure :: acceleration
    end type linear_oscillator
 contains
-   function acceleration(self, t, q, v) result(a)
-      class(linear_oscillator), intent(in) :: self
+   function acceleration(system, t, q, v) result(a)
+      class(linear_oscillator), intent(in) :: system
       real(wp), intent(in) :: t, q, v
       real(wp) :: a
       a = -frequency**2 * q + 0.0_wp * (t + v)
-      if (.false. .and. same_type_as(self, self)) a = 0.0_wp
+      if (.false. .and. same_type_as(system, system)) a = 0.0_wp
    end function acceleration
 end module pendulum_case
 

@@ -31,7 +31,7 @@ MAY_IMPORT = {
         "schema",
     },
     "plots": {"kinds", "results", "schema"},
-    "running": {"analyses", "tables", "building", "decks", "motions", "results", "plots", "schema", "_build_info"},
+    "running": {"analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
     "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "schema", "_build_info"},
     "": {"analyses", "decks", "running"},
 }  # fmt: skip

@@ -75,6 +75,11 @@ ABUSES = {
     "bodies closed: ensemble": ("b = rocking.BodyList([block]); b.close();"
                                 "rocking.ensemble(b, [one], [0], [0], 1.0, 1.0)", "HandleError"),
     "dem closed: run": ("m = dem.Model(bodies(), short); m.close(); m.run(MotionSet([one]))", "HandleError"),
+    "dem state of a run that has ended": ("m = dem.Model(bodies(), short); m.run(MotionSet([one])); m.state()", "HandleError"),
+    "dem state that is damaged": ("dem.Model(bodies(), short).run(MotionSet([one]), state=np.zeros(40))", "ValueError"),
+    "dem state that is too short": (
+        "w = np.zeros(20, int); dem.Model(bodies(), short).run(MotionSet([one]), state=np.r_[w, dem._digest(w)])",
+        "ValueError"),
     "dem read before a run": ("m = dem.Model(bodies(), short); m._last_run(False)", "HandleError"),
     # indices
     "connectivity too high": ("wall(plane(connect=np.array([[0, 1, 2, 4]])))", "IndexError"),
@@ -240,7 +245,7 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
     """The core destroys what was forgotten in use when the call that uses it ends."""
     model, motions = long_run()
     before = _core.api_support.handle_count()
-    thread = threading.Thread(target=_core.api_dem.run, args=(model.handle, motions.handle, 1, 1.0, np.zeros(1)))
+    thread = threading.Thread(target=_core.api_dem.run, args=(model.handle, motions.handle, 1, 1.0, np.zeros(1), 0))
     handle = model.handle
     thread.start()
     while status_list()[_core.api_dem.summary(handle)[2]][0] != "busy":
@@ -258,7 +263,7 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
 def test_an_error_is_not_hidden_by_an_object_in_use() -> None:
     before = _core.api_support.handle_count()
     model, motions = long_run()
-    thread = threading.Thread(target=_core.api_dem.run, args=(model.handle, motions.handle, 1, 1.0, np.zeros(1)))
+    thread = threading.Thread(target=_core.api_dem.run, args=(model.handle, motions.handle, 1, 1.0, np.zeros(1), 0))
     thread.start()
     while status_list()[_core.api_dem.summary(model.handle)[2]][0] != "busy":
         pass

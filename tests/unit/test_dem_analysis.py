@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.templates.arch import make_arch
 from extrados.decks.reader import DeckError, make_deck
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
@@ -139,7 +142,7 @@ def test_failure_curve_resumes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     search = dem_domain.Search(first, options, model, [model.values], 4)
     answers = search.fails(asked)
     with monkeypatch.context() as patch:
-        patch.setattr(dem, "run", lambda *args, **keys: pytest.fail("was computed again"))
+        patch.setattr(dem.Model, "run", lambda *args, **keys: pytest.fail("was computed again"))
         again = dem_domain.Search(Context(deck, out=tmp_path / "run", resume=True), options, model, [model.values], 4)
         assert again.fails(asked) == answers
         assert (again.steps, again.residual) == (search.steps, search.residual) and search.steps > 0 < search.residual
@@ -153,14 +156,14 @@ def interrupt_from(monkeypatch: pytest.MonkeyPatch, first: int, **change) -> lis
 
     from extrados.core import dem
 
-    real, count = dem.run, []
+    real, count = dem.Model.run, []
 
     def run(*args, **keys):
         count.append(len(count) + 1)
         found = real(*args, **keys)
         return found if len(count) < first else replace(found, **(change or {"interrupted": True}))
 
-    monkeypatch.setattr(dem, "run", run)
+    monkeypatch.setattr(dem.Model, "run", run)
     return count
 
 
@@ -348,12 +351,30 @@ def test_every_structure_of_stones(name: str, tmp_path: Path) -> None:
 
 
 def test_a_start_that_it_cannot_take_is_refused() -> None:
-    """Only a block starts rotated; elsewhere the deck may say so for the other strategies alone."""
+    """Glued voussoirs are not the blocks of the mechanism; the deck may start rotated for the other strategies alone."""
     deck = {"structure": ARCH, "motion": PULSE, "initial": {"rotation_ratio": 0.2}}
-    short = {"kind": "dem", "end_time": 0.1}
-    refused, ran = answers({**deck, "analysis": [short, {**short, "initial": {"rotation_ratio": 0.0}}]})
-    assert refused.status == "refused" and "rotation_ratio" in refused.reason
+    glued = {"kind": "dem", "end_time": 0.1, "merge": "three-bars"}
+    refused, ran = answers({**deck, "analysis": [glued, {**glued, "initial": {"rotation_ratio": 0.0}}]})
+    assert refused.status == "refused" and "glued" in refused.reason
     assert ran.status == "ok"
+
+
+@pytest.mark.parametrize("ratio", [0.2, -0.2])
+def test_an_arch_starts_in_the_pose_of_its_mechanism(ratio: float) -> None:
+    """And what it swings back with is the potential of the mechanism at that rotation."""
+    run = extrados.run(
+        {
+            "structure": ARCH, "initial": {"rotation_ratio": ratio},
+            "analysis": [{"kind": "dem", "end_time": 2.0, "output_step": 0.002, "joints": {"normal_stiffness": 1e12}}],
+        }
+    )  # fmt: skip
+    model = MechanismModel(make_arch(**{k: v for k, v in ARCH.items() if k != "kind"}))
+    q = ratio * model.critical[0]
+    place = np.array(run.array("dem", "place"))
+    assert np.abs(place[0, : len(model.assembly.mass)] - model.pose([q])[0]).max() < 1e-4  # settled into its joints
+    rest, start = model.coefficients(1, [0.0, abs(q)]).potential
+    kinetic = np.array(run.array("dem", "kinetic_energy"))
+    assert 0.6 < kinetic.max() / (start - rest) < 1.02  # not all joints close at once
 
 
 def test_the_domain_starts_as_the_deck_says() -> None:

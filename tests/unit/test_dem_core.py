@@ -1,5 +1,8 @@
 """Discrete elements against exact solutions."""
 
+import itertools
+from dataclasses import fields, replace
+
 import numpy as np
 import pytest
 from dem_models import G, block_on_floor, constant, cosine, housner, model, pieces, rectangle
@@ -7,6 +10,7 @@ from interrupting import interrupted
 
 from extrados import _core
 from extrados.core import dem
+from extrados.core.ground import as_motion_set
 
 STIFF = dem.Law(1e10, 1e10, 0.6, damping=2e-3)
 
@@ -231,3 +235,43 @@ def test_cancel_answers_with_what_it_has(monkeypatch: pytest.MonkeyPatch) -> Non
     _core.api_support.set_cancel(0)
     assert run.interrupted and len(run.time) > 1
     assert np.isfinite(run.place).all()
+
+
+@pytest.mark.parametrize(("threads", "moving"), [(1, False), (2, True)])
+def test_a_run_pauses_and_goes_on_from_any_state_to_the_same_bits(threads: int, moving: bool) -> None:
+    """Blocks that fly apart: contacts go, come, and grow in number; each state is taken to another model."""
+    law = dem.Law(1e8, 1e8, 0.4, cohesion=1e4, tension=1e4, damping=1e-4)
+    blocks = [rectangle(0.5 * k, 0.5 * k + 0.5, h, h + 0.4) for k in range(6) for h in (0.0, 0.4, 0.8)]
+    bodies = model(blocks, [rectangle(-20.0, 20.0, -1.0, 0.0)], law)
+    options = dem.Options(0.6, threads=threads, residual_limit=1.0, fraction=0.1, moving_base=moving)
+    with as_motion_set([cosine(12.0, 9.0, 0.5)]) as motions:
+        with dem.Model(bodies, options) as one:
+            whole = one.run(motions)
+        states = []
+        with dem.Model(bodies, options) as two:
+            watched = two.run(motions, watch=lambda t: states.append((t, two.state())))
+        assert whole.searches > 3 and whole.place[-1].std() > 0.5 and len(states) > 2
+        assert all(0.0 <= a < b <= 0.6 for (a, _), (b, _) in itertools.pairwise(states))
+        same_run(watched, whole)
+        for _, state in states[:: max(1, len(states) // 3)]:
+            with dem.Model(bodies, replace(options, threads=3 - threads)) as other:
+                same_run(other.run(motions, state=state), whole)
+        broken = states[0][1].copy()
+        broken[20] ^= 1
+        with dem.Model(bodies, options) as other:
+            with pytest.raises(ValueError, match="damaged"):
+                other.run(motions, state=broken)
+            with pytest.raises(ValueError, match="of other times"):
+                other.run(motions, state=states[0][1], times=[0.0, 0.1])
+
+
+def same_run(one: dem.Run, two: dem.Run) -> None:
+    for item in fields(dem.Run):
+        a, b = getattr(one, item.name), getattr(two, item.name)
+        if item.name == "energy":
+            a, b = (np.stack(list(e.values())) for e in (a, b))
+        if item.name == "contacts":
+            for name in ("bodies", "point", "force", "normal", "shear"):
+                np.testing.assert_array_equal(getattr(a, name), getattr(b, name))
+        else:
+            np.testing.assert_array_equal(a, b, item.name)

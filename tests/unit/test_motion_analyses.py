@@ -10,11 +10,12 @@ from scipy.optimize import minimize
 from typer.testing import CliRunner
 
 import extrados
+from extrados.analyses.motion.members import Generated
 from extrados.cli import app
 from extrados.core import motion as core
 from extrados.decks.reader import DeckError, make_deck, read_text
 from extrados.motions import processing, pulses
-from extrados.motions.from_deck import make_members, make_motion
+from extrados.motions.from_deck import generated_set, make_motion, suite_motions
 from extrados.motions.impulse import _downhill, primary_impulses
 from extrados.motions.shake_table import Table, fit, make_drive
 from extrados.motions.wavelet_pulse import classify
@@ -219,12 +220,13 @@ def test_members(tmp_path) -> None:
         {"motion": {"kind": "suite", "folder": ".", "member": 2}, "analysis": {"kind": "motion"}}, tmp_path
     )
     assert make_motion(deck.motion, tmp_path).name == "b"
-    assert [m.name for m in make_members(deck.motion, tmp_path, 99)] == ["a", "b"]
+    assert [m.name for m in suite_motions(deck.motion, tmp_path)] == ["a", "b"]
     deck = make_deck(
         {"motion": {"kind": "generated", "mmi": 7, "duration": 3.0, "member": 4}, "analysis": {"kind": "motion"}}
     )
-    members = list(make_members(deck.motion, tmp_path, 5))
-    assert np.array_equal(members[3].ground.samples, make_motion(deck.motion, tmp_path).ground.samples)
+    (member,) = Generated(generated_set(deck.motion, tmp_path)).motions(3, 1, 1)
+    assert member.name == make_motion(deck.motion, tmp_path).name == "generated motion 4"
+    assert np.array_equal(member.ground.samples, make_motion(deck.motion, tmp_path).ground.samples)
 
 
 def test_exported_record_is_the_motion(tmp_path) -> None:

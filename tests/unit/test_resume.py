@@ -82,6 +82,14 @@ vary_damping = [0.5, 2.0]
 vary_friction = [0.5]
 find_friction = true
 """,
+    "dem, one run": BLOCK
+    + PULSE
+    + """
+[[analysis]]
+kind = "dem"
+end_time = 0.6
+time_step = 1e-5
+""",
     "dem tilt": BLOCK
     + """
 [[analysis]]
@@ -155,6 +163,15 @@ tolerance = 0.2
 kind = "motion"
 count = 3
 """,
+    "generated motions": """
+[motion]
+kind = "generated"
+mmi = 6
+duration = 3.0
+[[analysis]]
+kind = "motion"
+count = 200
+""",
     "survey": ARCH
     + """
 [[analysis]]
@@ -172,7 +189,9 @@ SURVEY = "name,thickness\n" + "".join(f"arch {k},{1.2 + 0.02 * k:.2f}\n" for k i
 #: Ends itself without a word when it has kept so many batches
 KILLED = """
 import os, signal, sys
+from extrados.analyses.dem import runs
 from extrados.results.checkpoint import Checkpoint
+runs.KEEP_SECONDS = 0.0
 real, left = Checkpoint.keep, [int(sys.argv[1])]
 def keep(self, *args):
     path = real(self, *args)
@@ -187,7 +206,12 @@ main()
 """
 #: Batches after which a run is killed, where two are too few to come to what is tried: the second curve, the last
 #: searches of a sweep, the shortest durations after the rounds of the map
-KEEPS = {"sla, one curve of each sense": 4, "sweep, its changes and optimum": 3, "failure-domain at amplitudes": 5}
+KEEPS = {
+    "sla, one curve of each sense": 4,
+    "sweep, its changes and optimum": 3,
+    "failure-domain at amplitudes": 5,
+    "generated motions": 4,
+}
 MEASURED = ("seconds_per_event", "sections_per_second")
 
 
@@ -250,7 +274,7 @@ def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     assert not folder_of(one).exists()
 
 
-@pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds"])
+@pytest.mark.parametrize("kind", ["dem-domain", "dem tilt", "sla seeds", "generated motions"])
 def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """After Ctrl-C the finished members are there, and are not computed again."""
     deck = make_deck(tomllib.loads(DECKS[kind]))
@@ -323,6 +347,29 @@ def test_constant_loads_are_not_brought_on_again(kept: int, tmp_path: Path, monk
     assert sum(done) <= whole.results["events"] + 100 + (before - 1000 if kept == 1 else 0)
     for name, array in whole.arrays.items():
         assert np.asarray(array.data).tobytes() == np.asarray(resumed.arrays[name].data).tobytes(), name
+
+
+def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
+    """Its state is kept when it is stopped; the resumed one takes only the steps that were missing."""
+    deck, out = make_deck(tomllib.loads(DECKS["dem, one run"])), tmp_path / "run"
+    told: list[float] = []
+
+    def stop(done: float, total: float, text: str) -> None:
+        told.append(done / total)
+        if len(told) == 2:
+            calls._ask()
+
+    (found,) = run_analyses(Context(deck, out=out, progress=stop))
+    assert found.status == "interrupted" and "--resume goes on from here" in found.reason
+    assert 0.0 < told[0] < told[1] < 1.0
+    again: list[float] = []
+    context = Context(deck, out=out, resume=True, progress=lambda done, total, text: again.append(done / total))
+    (resumed,) = run_analyses(context)
+    (whole,) = run_analyses(Context(deck))
+    assert min(again) > told[1] and resumed.status == whole.status == "ok"
+    assert resumed.results == whole.results
+    for name, array in whole.arrays.items():
+        np.testing.assert_array_equal(resumed.arrays[name].data, array.data)
 
 
 def test_ctrl_c_between_two_rounds_counts(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,6 +6,7 @@ import random
 import numpy as np
 import pytest
 
+from extrados.analyses.conclude import assumptions_of
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.building.errors import BadGeometry
@@ -223,6 +224,16 @@ def test_what_does_not_fit_is_refused() -> None:
     # An arch too thin for its own weight
     thin = {**STRUCTURES["arch"], "thickness": 0.5, "voussoirs": 20}
     assert "not carried" in sla(thin).reason
+
+
+def test_only_stones_assume_that_nothing_slides() -> None:
+    table = make_deck({"structure": STRUCTURES["block"], "analysis": [{"kind": "sla"}]})
+    told = assumptions_of(table.analyses[0], table.building, table.building)["joints.friction"]
+    assert (told.value, told.origin) == ("no-sliding", "method")
+    wall = make_deck(
+        {"structure": {"kind": "panel", "width": 1.0, "height": 1.0, "thickness": 0.1}, "analysis": [{"kind": "sla"}]}
+    )
+    assert "joints.friction" not in assumptions_of(wall.analyses[0], wall.building, wall.building)
 
 
 def test_a_wall_takes_the_default_loads() -> None:

@@ -31,7 +31,7 @@ def test_table_5_3(cell) -> None:
 
 def test_shipped_table_is_what_the_tool_fits() -> None:
     """One cell refitted now gives the row of the shipped table."""
-    fit, _, _ = criterion.fit_arch(ArchModel(make_arch(1.0, 0.18, 150, 30)), threads=2)
+    fit, _, _ = criterion.fit_arch(ArchModel(make_arch(1.0, 0.18, 150, 30), "thesis"), threads=2)
     stored = criterion.table()[0.18, 150.0]
     assert (fit.c1, fit.c2, fit.t_min, fit.gamma) == pytest.approx(
         (stored.c1, stored.c2, stored.t_min, stored.gamma), rel=1e-4
@@ -56,7 +56,7 @@ def test_interpolation() -> None:
 )
 def test_fits_of_the_test_arches(embrace, n, printed, allowed) -> None:
     """Eq. 5.5 of both arches at 80 % thickness, within what the restitution question allows (docs/differences.md)."""
-    model = ArchModel(make_arch(0.2, 0.024, embrace, n))
+    model = ArchModel(make_arch(0.2, 0.024, embrace, n), "thesis")
     periods = np.array([0.08, 0.09, 0.1, 0.12, 0.15, 0.2, 0.3, 0.4])
     ours = criterion.mode_i_curve(model.body, model.collapse[0].gamma, model.arch.radius, periods, cap=5.0, threads=2)
     assert np.abs(ours / criterion.Fit(*printed).amplitude(periods) - 1).max() < allowed

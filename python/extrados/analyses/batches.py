@@ -309,6 +309,11 @@ class Chain:
                 self.state = found
 
     @property
+    def keeps(self) -> bool:
+        """Whether there is a folder to keep states in."""
+        return self._checkpoint is not None
+
+    @property
     def again(self) -> str:
         """What to say to the user whose run was stopped."""
         return "; --resume goes on from here" if self._checkpoint is not None else ""

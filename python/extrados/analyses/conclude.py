@@ -73,17 +73,17 @@ def faulty(kind: str, error: Exception) -> Result:
 
 
 def assumptions_of(options: Analysis, deck: Building, building: Building) -> dict[str, Assumption]:
-    """Key -> assumption for all `uses` of the analysis, but for a key that it varies itself.
+    """Key -> assumption for all that the analysis rests on, but for a key that it varies itself.
 
     deck: the building as the deck's own tables say it; building: as the analysis sees it.
     """
     found = {}
-    for key in options.uses:
+    for key, fixed in options.rests_on(building).items():
         if key == getattr(options, "vary", None):
             continue
         table, name = key.split(".")
-        if key in options.method:
-            found[key] = Assumption(value=options.method[key], unit="", origin="method", exceptions=False)
+        if fixed is not None:
+            found[key] = Assumption(value=fixed, unit="", origin="method", exceptions=False)
             continue
         own, override = getattr(building, table), getattr(options, table, None)
         if override is not None and name in override.model_fields_set:

@@ -27,11 +27,16 @@ def _check(result: Result) -> None:
 def run_analyses(context: Context) -> list[Result]:
     """All analyses of the deck in order; after Ctrl-C the rest is marked interrupted."""
     results: list[Result] = []
+    told: tuple[str, ...] = ()
     for options, building in zip(context.deck.analyses, context.deck.buildings, strict=True):
         if results and results[-1].status == "interrupted":
             results.append(Result(options.kind, "interrupted", "not run: interrupted before"))
-        else:
-            results.append(concluded(run_one(context, options, building), options, context, building))
+            continue
+        result = concluded(run_one(context, options, building), options, context, building)
+        _, notes = building.told()
+        if notes != told:  # what was made of a survey is told once
+            result.warnings, told = [*notes, *result.warnings], notes
+        results.append(result)
     return results
 
 
@@ -55,5 +60,7 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = Result(options.kind, "failed", str(error))
     except Exception as error:  # a fault of ours: the other analyses of the deck still count
         result = faulty(options.kind, error)
+    remarks, _ = building.told()
+    result.warnings = [*remarks, *result.warnings]
     result.seconds = time.perf_counter() - begin
     return result

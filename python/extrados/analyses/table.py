@@ -1,9 +1,12 @@
 """The base of the analysis tables."""
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.schema.table import Table, key, override_of
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
 
 MaterialOverride = override_of(Material)
 JointsOverride = override_of(Joints)
@@ -30,6 +33,10 @@ class Analysis(Table):
     needs_motion: ClassVar[bool] = False
     starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = ""
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """The properties of this building that its answer rests on, with what the method fixes of them, else None."""
+        return {key: self.method.get(key) for key in self.uses}
 
 
 class BuildingAnalysis(Analysis):

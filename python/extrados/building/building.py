@@ -60,9 +60,17 @@ class Building:
 
     def blocks(self) -> Assembly:
         """Stones and joints."""
-        return self._view(
-            "blocks", (self.structure, self.material.density, *self.materials.items()), self._blocks
-        )  # fmt: skip
+        return self._view("blocks", self._stones, self._blocks)
+
+    @property
+    def _stones(self) -> tuple[Any, ...]:
+        """What its stones depend on."""
+        return (self.structure, self.material.density, *self.materials.items())
+
+    def told(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Remarks and notes on its stones, where something has looked at them; else nothing."""
+        made = self._views.get(self._key("blocks", self._stones))
+        return (made.remarks, made.notes) if made is not None else ((), ())
 
     def _blocks(self) -> Assembly:
         structure, density = self._structure(), self.material.density
@@ -78,6 +86,7 @@ class Building:
     def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
         """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches
         what falls."""
+        self.refuse_mixture()
         worn = self.joints.worn_corners
         return self._view(
             "rigid", (self.structure, self.material.density, *self.materials.items(), worn, groups, floor),
@@ -90,6 +99,17 @@ class Building:
 
         tables = (self.structure, self.material, self.joints, self.initial.rotation_ratio, linear)
         return self._view("rocker", tables, lambda: make_rocker(self, linear))
+
+    def refuse_mixture(self) -> None:
+        """BadGeometry where stones are of a named material that gives more than a density: what looks at their elastic
+        constants and strengths takes those of [material] for all stones."""
+        for name in sorted({m for m in self.blocks().materials if m}):
+            more = sorted(self.materials[name].model_fields_set - {"density"})
+            if more:
+                raise BadGeometry(
+                    f"[materials.{name}] gives stones another {more[0]}; discrete and finite elements know one elastic "
+                    "material for all stones, that of [material]: leave it out, or give the joints their stiffness"
+                )
 
     def friction(self) -> float | np.ndarray | None:
         """Coefficient of friction of the joints, one for each where they differ; None excludes sliding."""
@@ -127,9 +147,14 @@ class Building:
                     yield np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)), kind
                 elif name in index:
                     yield np.array([index[name]]), kind
+                elif name in assembly.groups:
+                    yield np.array(assembly.groups[name], dtype=int), kind
                 else:
                     known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
-                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and ground")
+                    layers = f", layers {', '.join(assembly.groups)}" if assembly.groups else ""
+                    raise BadGeometry(
+                        f"joints.types {k} names no joint '{name}'; there are {known}{layers}, and ground"
+                    )
 
     def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
@@ -138,16 +163,24 @@ class Building:
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
         return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
 
+    @property
+    def meshed_by_stones(self) -> bool:
+        """Whether its finite elements are stones with joints between them."""
+        return self.structure is not None and type(self.structure).mesh is Structure.mesh
+
     def _structure(self) -> Structure:
         if self.structure is None:
             raise NoView("the deck has no [structure]")
         return self.structure
 
     def _view(self, name: str, depends: tuple, make: Any) -> Any:
-        key = (name, str(self.folder), *(_fingerprint(part) for part in depends))
+        key = self._key(name, depends)
         if key not in self._views:
             self._views[key] = make()
         return self._views[key]
+
+    def _key(self, name: str, depends: tuple) -> tuple[Any, ...]:
+        return (name, str(self.folder), *(_fingerprint(part) for part in depends))
 
 
 def _fingerprint(part: Any) -> Any:

@@ -6,6 +6,8 @@ from extrados.building.errors import BadGeometry
 from extrados.schema import files
 from extrados.schema.files import File
 
+LARGEST_FILE = 20_000_000  # bytes of a drawing or a JSON file
+
 
 def read(file: str | Path, largest: int, folder: Path | None = None) -> File:
     """The file that a deck in `folder` names, or the one at a path; BadGeometry where it cannot be read."""

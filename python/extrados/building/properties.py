@@ -52,7 +52,10 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground', min_length=1, max_length=10000
+        about='names of joints; "ground" means all joints to the ground; the name of a layer of a drawing, those between its '
+        "stones or along its lines",
+        min_length=1,
+        max_length=10000,
     )
     friction: Annotated[float, Field(ge=0, le=10)] | Literal["no-sliding"] | None = key(None, "coefficient of friction")
     normal_stiffness: Stiffness | None = key(None, "normal stiffness per area", gt=0)
@@ -91,11 +94,11 @@ class Joints(Table):
         None, "stiffness-proportional damping in s, instead of the rule"
     )
     restitution: Literal["thesis", "energy-safe", "inelastic"] | Annotated[float, Field(ge=0, le=1)] = key(
-        "thesis",
-        "impact of rocking: the thesis' momentum balance of arches (of blocks Housner's; of other sections the energy-safe "
-        "projection); the energy-safe projection; all energy that an inelastic blow leaves; or the ratio c_v of the rates "
-        "after and before an impact (0 to 1)",
-        source="thesis Eqs 5.3, 6.2, 6.3, B.3",
+        "inelastic",
+        "impact of rocking, of blocks always Housner's: all energy that a blow without rebound leaves, with impulses at all "
+        "joints; the thesis' momentum balance of arches (of other sections the energy-safe projection); the energy-safe "
+        "projection on the next mechanism alone; or the ratio c_v of the rates after and before an impact (0 to 1)",
+        source="Moreau 1988; thesis Eqs 5.3, 6.2, 6.3, B.3",
     )
     energy_ratio: Annotated[float, Field(ge=0, le=1)] | None = key(
         None, "instead of restitution: c_E, the kinetic energy after over that before an impact of a block",

@@ -10,6 +10,7 @@ from extrados.schema.table import Table
 if TYPE_CHECKING:
     from extrados.building.building import Building
     from extrados.building.geometry.assembly import Assembly
+    from extrados.building.geometry.inspection import Inspection
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
 
@@ -36,6 +37,14 @@ class Structure(Table):
         Raises BadGeometry with the part and the bound, NoView where the kind has no stones.
         """
         raise NoView(self.lacks["blocks"])
+
+    def inspection(self, folder: Path) -> "Inspection | None":
+        """Gaps, overlaps and near misses of a surveyed structure; None where its geometry is exact by its making."""
+        return None
+
+    def mended(self, folder: Path) -> "Structure | None":
+        """The structure with the tolerance that closes its open gaps; None where there are none that one closes."""
+        return None
 
     def weighed(self, made: "Assembly", density: float, densities: Mapping[str, float]) -> "Assembly":
         """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""

@@ -1,6 +1,8 @@
 """Discrete elements in the core (fortran/dem): one run of rigid plane blocks, from rest to the end of a motion."""
 
-from collections.abc import Sequence
+import hashlib
+import time
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -8,7 +10,7 @@ import numpy.typing as npt
 
 from extrados import _core
 from extrados.core import lists
-from extrados.core.calls import indices, integers, long_call, real, room_for, thread_count
+from extrados.core.calls import indices, integers, interruptible, long_call, real, room_for, thread_count
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet, as_motion_set
 from extrados.core.handles import Owner
@@ -138,7 +140,12 @@ class Run:
     interrupted: bool = False
 
 
-_STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.zeros((1, 1, 0, 4)))
+#: Between two pauses of a run that is watched: about so long [s]; the first one comes after a few steps.
+PAUSE_SECONDS, FIRST_PAUSE = 0.5, 256
+_DIGEST = 4  # words of a state that hold its SHA-256
+
+#: No motion of the ground
+STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.zeros((1, 1, 0, 4)))
 
 
 class Model(Owner):
@@ -231,11 +238,20 @@ class Model(Owner):
         check(status, "options of the run")
 
     def run(
-        self, motions: MotionSet, motion: int = 0, *, scale: float = 1.0, times: npt.ArrayLike | None = None
+        self,
+        motions: MotionSet,
+        motion: int = 0,
+        *,
+        scale: float = 1.0,
+        times: npt.ArrayLike | None = None,
+        state: np.ndarray | None = None,
+        watch: Callable[[float], None] | None = None,
     ) -> Run:
         """Settle under gravity, then move the ground by `scale` times a motion of the set.
 
-        times: ascending output times [s] instead of every output_step.
+        times: ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
+        times and this motion had paused. watch: the run pauses now and then, and when it is interrupted, tells the time
+        it has come to [s], and may be asked for its `state`. Neither changes a bit of the result.
         """
         o = self.options
         if times is None:
@@ -248,11 +264,43 @@ class Model(Owner):
             raise IndexError(f"motion {motion} is not in the set of {len(motions)}")
         if not np.isfinite(scale):
             raise ValueError(f"scale is {scale}, expected a number")
-        status = long_call(_core.api_dem.run, self.handle, motions.handle, int(motion) + 1, float(scale), wanted)
+        where = (self.handle, motions.handle, int(motion) + 1, float(scale))
+        steps = FIRST_PAUSE if watch else 0
+        with interruptible():
+            if state is None:
+                paused, reached, status = long_call(_core.api_dem.run, *where, wanted, steps)
+            else:
+                self._resume(state, wanted)
+                paused, reached, status = long_call(_core.api_dem.go_on, *where, steps)
+            while paused and watch:
+                watch(reached)
+                if status != status_code("ok"):
+                    break
+                begin = time.perf_counter()
+                paused, reached, status = long_call(_core.api_dem.go_on, *where, steps)
+                ideal = steps * PAUSE_SECONDS / max(time.perf_counter() - begin, 1e-6)
+                steps = int(min(max(1.0, ideal), 8.0 * steps, 1e9))
         interrupted = status == status_code("cancelled")
         if not interrupted:
             check(status, "discrete elements")
         return self._last_run(interrupted)
+
+    def state(self) -> np.ndarray:
+        """The whole state of a run that has paused, for `run` of this build alone; HandleError where none has."""
+        words, status = _core.api_dem.state_size(self.handle)
+        check(status, "state of a run that has paused")
+        state, status = _core.api_dem.state(self.handle, int(words))
+        check(status, "state of the run")
+        return np.concatenate([state, _digest(state)])
+
+    def _resume(self, state: np.ndarray, wanted: np.ndarray) -> None:
+        """ValueError where the state is damaged or none of this model, these times and this build."""
+        state = np.ascontiguousarray(state, dtype=np.int64)
+        words = state[:-_DIGEST]
+        if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], _digest(words)):
+            raise ValueError("the state of the run is damaged")
+        if _core.api_dem.resume(self.handle, wanted, words) != status_code("ok"):
+            raise ValueError("the state is of a run of another model, of other times or of another build")
 
     def _last_run(self, interrupted: bool) -> Run:
         counts, measures, status = _core.api_dem.summary(self.handle)
@@ -293,6 +341,10 @@ class Model(Owner):
         )
 
 
+def _digest(words: np.ndarray) -> np.ndarray:
+    return np.frombuffer(hashlib.sha256(words.tobytes()).digest(), dtype=np.int64)
+
+
 def run(
     bodies: Bodies,
     options: Options,
@@ -307,6 +359,6 @@ def run(
     """One run of a model that is made for it; see Model and Model.run. No ground: it stands still."""
     with (
         Model(bodies, options, shift=shift, rate=rate, moves=moves) as model,
-        as_motion_set([ground or _STILL]) as motions,
+        as_motion_set([ground or STILL]) as motions,
     ):
         return model.run(motions, scale=scale, times=times)

@@ -132,6 +132,41 @@ def restitution(mass: npt.ArrayLike, inertia: npt.ArrayLike, before: npt.ArrayLi
     )
 
 
+def inelastic_blow(
+    mass: npt.ArrayLike,
+    inertia: npt.ArrayLike,
+    centroid: npt.ArrayLike,
+    sides: npt.ArrayLike,
+    ends: npt.ArrayLike,
+    frame: npt.ArrayLike,
+    before: npt.ArrayLike,
+) -> np.ndarray:
+    """Velocities (n, 3) x, y, spin of blocks after an impact without rebound at all joints (Moreau 1988).
+
+    mass, inertia (n), centroid (n, 2) of the blocks; sides (joints, 2): blocks 0 to n-1 on both sides, -1 for the
+    ground; ends (joints, 2, 2): x, y of both ends; frame (joints, 2, 2): unit normal into the first block, tangent;
+    before (n, 3).
+    """
+    n = np.size(mass)
+    side = np.asarray(sides)
+    joints = len(side)
+    if side.size and (side.min() < -1 or side.max() >= n):
+        raise ValueError(f"sides must lie between -1 and {n - 1}")
+    frames = np.asarray(frame, dtype=float)
+    after, status = _core.api_mechanism.blow(
+        real("mass", mass, (n,)),
+        real("inertia", inertia, (n,)),
+        real("centroid", np.transpose(centroid), (2, n)),
+        np.asfortranarray(side.T + 1, dtype=np.int32),
+        real("ends", np.transpose(ends, (2, 1, 0)), (2, 2, joints)),
+        real("normal", frames[:, 0].T, (2, joints)),
+        real("tangent", frames[:, 1].T, (2, joints)),
+        real("before", np.transpose(before), (3, n)),
+    )
+    check(status, "impact at the joints")
+    return after.T
+
+
 def table_body(right: Table, left: Table, restitution: tuple[float, float]) -> Body:
     """The structure that rocks to +x by one table and to -x by the other.
 

@@ -197,7 +197,7 @@ class _Checker:
             self.complain(("materials",), "expected tables [materials.NAME]")
             materials = {}
         named = {name: self.table(Material, table, ("materials", name)) for name, table in materials.items()}
-        for part in (*getattr(structure, "regions", ()), *getattr(structure, "bars", ())):
+        for part in (part for name in ("regions", "bars", "layer") for part in getattr(structure, name, ())):
             if part.material is not None and part.material not in named:
                 known = ", ".join(sorted(named)) or "none"
                 self.complain(("structure",), f"unknown material '{part.material}'; [materials] holds {known}")

@@ -1,6 +1,5 @@
 """The whole answer of limit analysis about an assembly from one call."""
 
-import itertools
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -9,7 +8,8 @@ from typing import TypeVar
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.limit.graphic import force_polygon, funicular, pier_line
+from extrados.limit.graphic import force_polygon, funicular
+from extrados.limit.lines import ThrustPath, thrust_paths
 from extrados.limit.loads import Loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.systems import Sparse
@@ -86,23 +86,9 @@ class Answer:
         """Funicular polygon of each chain [m]."""
         return {name: funicular(self.assembly, self.loads, state, j) for name, j in self.assembly.chains.items()}
 
-    def lines(self, state: State) -> dict[str, np.ndarray]:
-        """Thrust lines (k, 2) [m]: along each chain, and down each block that stands on the ground."""
-        points = state.points(self.assembly)
-        lines = {name: points[joints] for name, joints in self.assembly.chains.items()}
-        if not lines:
-            return lines  # the first course of a wall: a line down each stone says nothing
-        standing = {int(max(a, b)) for a, b in zip(self.assembly.a, self.assembly.b, strict=True) if GROUND in (a, b)}
-        for block in sorted(standing - {b for j in self.assembly.chains.values() for b in self._inner(j)}):
-            line = pier_line(self.assembly, self.loads, state, block)
-            if len(line):
-                lines[self.assembly.block_names[block]] = line
-        return lines
-
-    def _inner(self, joints: list[int]) -> set[int]:
-        """Voussoirs of a chain: blocks between two of its joints."""
-        ends = [{int(self.assembly.a[j]), int(self.assembly.b[j])} for j in joints]
-        return {b for one, two in itertools.pairwise(ends) for b in one & two}
+    def lines(self, state: State) -> list[ThrustPath]:
+        """The thrust line of a state, through every stone."""
+        return thrust_paths(self.assembly, self.loads, state)
 
     def reactions(self, state: State) -> dict[int, np.ndarray]:
         """Force (2) [N] of the ground on the block of each joint on the ground."""

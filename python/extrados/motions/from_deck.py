@@ -43,7 +43,8 @@ def make_motion(model: Model, folder: Path) -> Motion:
                 raise RecordError(f"member is {model.member}, but the suite holds {len(members)} records")
             return suite_motion(model, members[model.member - 1], folder)
         case models.Generated():
-            return _numbered("generated", generated_set(model, folder).ground(model.member - 1), model.member)
+            made = generated_set(model, folder)
+            return generated_motion(made, model.member - 1, made.motion(model.member - 1))
         case models.Compatible():
             return compatible_motion(model, folder, model.member - 1)
     raise TypeError(f"no motion for {type(model).__name__}")
@@ -54,28 +55,13 @@ def is_set(model: Model) -> bool:
     return isinstance(model, Sets)
 
 
-def make_members(model: Model, folder: Path, count: int) -> Iterator[Motion | RecordError]:
-    """All records of a suite, the first `count` motions of a generated or compatible set, or the one motion.
-
-    A record of a suite that cannot be read comes as its error: the others go on.
-    """
-    match model:
-        case models.Suite():
-            for member in suite_members(model, folder):
-                try:
-                    yield suite_motion(model, member, folder)
-                except RecordError as error:
-                    yield error
-        case models.Generated():
-            made = generated_set(model, folder)
-            for first, batch in made.batches(count):
-                for k, row in enumerate(batch, start=first):
-                    yield _numbered("generated", Ground(samples=row[None, :], step=made.step), k + 1)
-        case models.Compatible():
-            for k in range(count):
-                yield compatible_motion(model, folder, k)
-        case _:
-            yield make_motion(model, folder)
+def suite_motions(model: models.Suite, folder: Path) -> Iterator[Motion | RecordError]:
+    """All records of a suite; one that cannot be read comes as its error, and the others go on."""
+    for member in suite_members(model, folder):
+        try:
+            yield suite_motion(model, member, folder)
+        except RecordError as error:
+            yield error
 
 
 def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
@@ -142,16 +128,22 @@ def target_of(model: models.Compatible, folder: Path) -> code_spectra.Spectrum:
     return spectrum
 
 
-def _numbered(name: str, ground: Ground, number: int) -> Motion:
-    return Motion(f"{name} motion {number}", ground)
+def generated_motion(made: GeneratedSet, k: int, acceleration: np.ndarray) -> Motion:
+    """Motion k of a generated set, whose samples (points) [m/s^2] are at hand."""
+    return Motion(numbered("generated", k), Ground(samples=acceleration[None, :], step=made.step))
+
+
+def numbered(kind: str, k: int) -> str:
+    """What motion k of a generated or compatible set is called; users count from 1."""
+    return f"{kind} motion {k + 1}"
 
 
 def compatible_motion(model: models.Compatible, folder: Path, k: int, acceleration: np.ndarray | None = None) -> Motion:
     """Motion k of a compatible set; `acceleration` [m/s^2] where it was matched before. RecordError where it cannot be."""
     try:
         if acceleration is not None:
-            return _numbered("compatible", Ground(samples=acceleration[None, :], step=model.time_step), k + 1)
-        return _numbered("compatible", compatible_set(model, folder).ground(k), k + 1)
+            return Motion(numbered("compatible", k), Ground(samples=acceleration[None, :], step=model.time_step))
+        return Motion(numbered("compatible", k), compatible_set(model, folder).ground(k))
     except (NotMatched, ValueError) as error:
         raise RecordError(f"[motion] compatible: {error}") from None
 

@@ -15,13 +15,16 @@ MOST_SAMPLES = 1_000_000
 class Motion:
     """A ground motion with its name and origin; `ground` is what the core integrates [m/s^2].
 
-    horizontal: both horizontal components (2, points) as recorded [m/s^2], of a record that has them.
+    horizontal: both horizontal components (2, points) as recorded [m/s^2], of a record that has them. title, station: of
+    a record, as its file says.
     """
 
     name: str
     ground: Ground
     notes: list[str] = field(default_factory=list)
     horizontal: np.ndarray | None = None
+    title: str = ""
+    station: str = ""
 
     @property
     def end(self) -> float:

@@ -82,9 +82,15 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
     """Accelerations (points) [m/s^2] and step [s] before any treatment, units and step resolved."""
     name = source or record.name
     step = treatment.time_step
+    notes = list(record.notes)
     if record.step is not None and step is not None and abs(record.step - step) > 1e-6 * record.step:
-        raise RecordError(f"{name}: the file says a step of {record.step:g} s, the deck {step:g} s; drop time_step")
-    step = record.step if record.step is not None else step
+        # Rounded times tell the step no closer than their rounding spread over the record.
+        if abs(record.step - step) * (len(record.values) - 1) > 1.001 * record.rounded:
+            raise RecordError(f"{name}: the file says a step of {record.step:g} s, the deck {step:g} s; drop time_step")
+        notes = [note for note in notes if "their mean step is taken" not in note]
+        notes.append(f"{record.name}: time_step of the deck is taken, the times of the file are rounded")
+    elif record.step is not None:
+        step = record.step
     if step is None:
         raise RecordError(f"{name}: the file has no time step; give time_step")
     units = QUANTITIES[record.quantity]
@@ -96,7 +102,7 @@ def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> t
         raise RecordError(f'{name}: the file has no unit; give unit = "g", "m/s^2", "cm/s^2" ...')
     if known not in units:
         raise RecordError(f"{name}: '{known}' is no unit of {record.quantity}; expected one of {', '.join(units)}")
-    values, notes = record.values * units[known], list(record.notes)
+    values = record.values * units[known]
     if len(values) < 3:
         raise RecordError(f"{name}: only {len(values)} samples; a record has at least three")
     for _ in range({"acceleration": 0, "velocity": 1, "displacement": 2}[record.quantity]):
@@ -150,6 +156,8 @@ def record_motion(
         Ground(samples=rows * factor, step=step),
         notes,
         None if horizontal is None else horizontal * factor,
+        title=record.title,
+        station=" ".join(part for part in (record.station, record.component) if part),
     )
 
 

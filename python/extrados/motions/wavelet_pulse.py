@@ -15,12 +15,14 @@ _DB4 = np.array([
 _CENTRE = 5.0 / 7.0  # cycles per unit of the mother wavelet's time, whose support is 7 units
 _WAVELETS = 10  # of one scale make up the pulse
 LEAST_PGV = 0.30  # m/s
+LIKE = 0.85  # indicator
 
 
 @dataclass(frozen=True)
 class PulseClass:
     """indicator: above 0.85 pulse-like, below 0.15 not. period [s] and peak velocity [m/s] of the extracted pulse;
-    early: it arrives early in the motion; pulse_like: all three of Baker's conditions (PGV above 0.30 m/s)."""
+    early: it arrives early in the motion; pulse_like: all three of Baker's conditions (PGV above 0.30 m/s); fails: in
+    words, those that are not met."""
 
     indicator: float
     period: float
@@ -30,6 +32,7 @@ class PulseClass:
     early: bool
     pulse_like: bool
     velocity: np.ndarray
+    fails: tuple[str, ...] = ()
 
 
 @cache
@@ -62,7 +65,7 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     velocity, _ = core.kinematics(acceleration, step)
     pgv = float(np.abs(velocity).max())
     if pgv == 0.0:
-        return PulseClass(0.0, 0.0, 0.0, 1.0, 1.0, False, False, np.zeros_like(velocity))
+        return PulseClass(0.0, 0.0, 0.0, 1.0, 1.0, False, False, np.zeros_like(velocity), ("nothing moves",))
     # energy off the time grid's ends: a wavelet may reach beyond the record
     top = min(longest, 0.9 * step * len(velocity) * _CENTRE)
     periods = np.geomspace(shortest, max(top, 1.01 * shortest), 80)
@@ -88,9 +91,16 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     energy_ratio = float((rest / pgv) @ (rest / pgv)) / float((velocity / pgv) @ (velocity / pgv))
     indicator = float(1.0 / (1.0 + np.exp(-23.3 + 14.6 * pgv_ratio + 20.5 * energy_ratio)))
     early = _time_of(pulse, 0.10) < _time_of(velocity, 0.20)
+    fails = []
+    if indicator <= LIKE:
+        fails.append(f"the indicator {indicator:.2f} is not above {LIKE:g}")
+    if not early:
+        fails.append("the pulse does not arrive early in the motion")
+    if pgv <= LEAST_PGV:
+        fails.append(f"the peak velocity of {100.0 * pgv:.3g} cm/s is not above {100.0 * LEAST_PGV:g}")
     return PulseClass(
         indicator, float(length * step / (7.0 * _CENTRE)), float(np.abs(pulse).max()), pgv_ratio, energy_ratio, early,
-        indicator > 0.85 and early and pgv > LEAST_PGV, pulse,
+        not fails, pulse, tuple(fails),
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from extrados.plots import style
 from extrados.results.limit import Hinge, Tilt
 from extrados.results.store import Stored
 
+MOST_LETTERED = 26  # hinges: more are dots
 MOST_FLOW = 3.0  # points: width of the greatest force between stones
 HATCH = "#cfc6b2"
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
@@ -88,25 +89,32 @@ def overall_dimensions(ax: Axes, blocks: list[np.ndarray]) -> None:
     ax.set_ylim(low - 2.0 * away, high + 1.2 * away)
 
 
-def thrust_lines(ax: Axes, lines: dict[str, np.ndarray], colour: str | None = None, label: str = "", **options) -> None:
-    """Thrust lines of all chains and piers."""
-    for i, line in enumerate(lines.values()):
-        ax.plot(*line.T, color=colour or style.THRUST, label=label if i == 0 else "_", zorder=3, **options)
-
-
-def compression(ax: Axes, run: Stored, name: str, state: str, label: str) -> None:
-    """Where forces flow through stones that form no chain: from each stone to its joints, as thick as they press."""
-    centroid, point, normal = (run.array(name, what) for what in ("centroid", f"{state}_point", f"{state}_normal"))
-    blocks = run.array(name, "joint_block")
-    ends = np.where((blocks >= 0)[..., None], centroid[blocks], point[:, None])
-    width = MOST_FLOW * normal / max(float(normal.max()), 1e-300)
-    shown = np.flatnonzero(width > 0.01 * MOST_FLOW)
-    lines = [[end, point[j]] for j in shown for end in ends[j]]
+def thrust_lines(ax: Axes, run: Stored, name: str, state: str, colour: str, label: str) -> None:
+    """The thrust line of a state through every stone: where there are arches or stacks of one width, but for branches
+    within a stone, which share it as they press; else as wide everywhere as it presses."""
+    points, start = run.array(name, f"{state}_line"), run.array(name, f"{state}_line_start")
+    lines = [points[a:b] for a, b in itertools.pairwise(start)]
+    force = run.array(name, f"{state}_line_force")
+    if len(run.array(name, f"{state}_polygon_of")):
+        _, stone_of = np.unique(run.array(name, f"{state}_line_of").astype(str), return_inverse=True)
+        greatest = np.zeros(len(lines))
+        np.maximum.at(greatest, stone_of, force)
+        shown, width = np.arange(len(lines)), 1.2 * np.maximum(force / np.maximum(greatest[stone_of], 1e-300), 0.2)
+    else:
+        width = MOST_FLOW * force / max(float(force.max(initial=0.0)), 1e-300)
+        shown = np.flatnonzero(width > 0.01 * MOST_FLOW)
     ax.add_collection(
         LineCollection(
-            lines, linewidths=np.repeat(width[shown], 2), colors=style.THRUST, capstyle="round", zorder=3, label=label
+            [lines[k] for k in shown], linewidths=width[shown], colors=colour, capstyle="round", zorder=3, label=label
         )
     )
+
+
+def funiculars(ax: Axes, run: Stored, name: str, state: str) -> None:
+    """Funicular polygons of the arches, dashed."""
+    for k, line in enumerate(paths(run, name, f"{state}_funicular").values()):
+        label = "funicular" if k == 0 else "_"
+        ax.plot(*line.T, color=style.EDGE, linewidth=0.6, linestyle="--", label=label, zorder=2.8)
 
 
 def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] = CHAIN_COLOURS) -> None:
@@ -114,8 +122,8 @@ def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] 
     for i, (name, rays) in enumerate(polygons.items()):
         colour = colours[i % len(colours)]
         tips = rays / 1e3
-        for tip in tips[:: max(1, len(tips) // 40)]:
-            ax.plot([0.0, tip[0]], [0.0, tip[1]], color=colour, linewidth=0.4, alpha=0.7)
+        shown = [[(0.0, 0.0), tip] for tip in tips[:: max(1, len(tips) // 40)]]
+        ax.add_collection(LineCollection(shown, linewidths=0.4, colors=colour, alpha=0.7, capstyle="projecting"))
         ax.plot(*tips.T, color=colour, linewidth=1.5, marker=".", markersize=2.5, label=name)
     ax.plot(0.0, 0.0, "o", color="black", markersize=3)
     ax.annotate("pole", (0.0, 0.0), textcoords="offset points", xytext=(-4, -9), ha="right", fontsize=7)
@@ -128,10 +136,10 @@ def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] 
 def hinge_marks(ax: Axes, hinges: list[Hinge]) -> None:
     """Hinges as circles with letters."""
     points = np.array([[h.x_m, h.y_m] for h in hinges]).reshape(-1, 2)
-    if len(points) > 26:
+    if len(points) > MOST_LETTERED:
         ax.plot(*points.T, ".", color=style.HINGE, markersize=2.0, zorder=5)
         return
-    style.draw_hinges(ax, points, [chr(65 + i) for i in range(min(len(points), 26))])
+    style.draw_hinges(ax, points, [chr(65 + i) for i in range(len(points))])
 
 
 def _standing(run: Stored, name: str) -> list[int]:
@@ -145,19 +153,14 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     points = np.concatenate(blocks)
     tall = float(np.ptp(points[:, 1]) / max(np.ptp(points[:, 0]), 1e-9))
     height = float(np.clip(3.4 * tall + 1.2, 3.6, 7.0))
-    with_lines = "collapse_line" in run.arrays[name] and len(run.array(name, "collapse_line"))
-    polygons = paths(run, name, "collapse_polygon") if with_lines else {}
+    polygons = paths(run, name, "collapse_polygon")
     with style.figure(12.5 if polygons else 9.0, height, columns=3 if polygons else 2) as (fig, axes):
         stone(axes[0], blocks)
         ground(axes[0], run, name, _standing(run, name))
-        if with_lines:
-            thrust_lines(axes[0], paths(run, name, "collapse_line"), label="thrust line")
-            thrust_lines(
-                axes[0], paths(run, name, "collapse_funicular"), style.EDGE, "funicular", linewidth=0.6, linestyle="--"
-            )
+        thrust_lines(axes[0], run, name, "collapse", style.THRUST, "thrust line")
+        if polygons:
+            funiculars(axes[0], run, name, "collapse")
             style.legend_below(fig, axes[0])
-        else:
-            compression(axes[0], run, name, "collapse", "compression")
         hinge_marks(axes[0], r.hinges)
         overall_dimensions(axes[0], blocks)
         axes[0].set_title(f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)")
@@ -174,12 +177,8 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         with style.figure(10.0, height, columns=2, width_ratios=[1.3, 1]) as (fig, (ax, forces)):
             stone(ax, blocks)
             ground(ax, run, name, _standing(run, name))
-            thrust_lines(
-                ax, paths(run, name, "least_line"), style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}"
-            )
-            thrust_lines(
-                ax, paths(run, name, "most_line"), style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}"
-            )
+            thrust_lines(ax, run, name, "least", style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}")
+            thrust_lines(ax, run, name, "most", style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}")
             style.legend_below(fig, ax)
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
@@ -205,10 +204,7 @@ def _per_metre(r: Tilt, force: float) -> str:
 
 
 def _caption(r: Tilt) -> str:
-    rings = [name for name in r.thrusts or {} if not name.startswith("stack")]  # only they have an intrados
-    letters = "; ".join(
-        f"{chr(65 + i)} {f'{h.side} of ' if rings else ''}{h.name}" for i, h in enumerate(r.hinges[:26])
-    )
+    letters = "; ".join(f"{chr(65 + i)} {h.told()}" for i, h in enumerate(r.hinges[:MOST_LETTERED]))
     free = (
         " Where the line is not fixed by the mechanism its most central course is drawn."
         if len(r.thrusts or {}) > 1
@@ -251,23 +247,19 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     colours = {"least": style.THRUST, "central": "#444444", "most": style.HINGE}
     lines_of = {which: line for which in colours if (line := getattr(r, which)) is not None}
     colours = {which: colours[which] for which in lines_of}
-    lines = {which: paths(run, name, f"{which}_line") for which in colours}
     arched = r.chain is not None
     sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
     with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
         stone(ax, blocks)
         ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
         for which, colour in colours.items():
-            if arched:
-                label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m"
-                thrust_lines(ax, lines[which], colour, label)
-            else:
-                compression(ax, run, name, which, f"{which} state: compression")
+            label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m" if arched else f"{which} state"
+            thrust_lines(ax, run, name, which, colour, label)
         overall_dimensions(ax, blocks)
         style.legend_below(fig, ax)
         safety = r.geometric_safety_factor
         told = f", safety factor {safety:.2f}" if safety is not None and np.isfinite(safety) else ""
-        ax.set_title(f"{'Thrust lines' if arched else 'Compression'} at {r['gamma_g']:g} g{told}")
+        ax.set_title(f"{'Thrust lines' if arched else 'Thrust line'} at {r['gamma_g']:g} g{told}")
         style.section_axes(ax)
         for forces in others:
             polygons = {which: paths(run, name, f"{which}_polygon")[r.chain] for which in colours}
@@ -275,7 +267,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             forces.set_title(f"Force polygons of the {r['chain']}")
         caption = "Thrust lines of least, greatest and most central thrust, and their force polygons."
         if not arched:
-            caption = "The most central state: lines from stone to stone, as thick as the joints press."
+            caption = "The most central state: the thrust line through every stone, as wide as it presses."
         found = [(style.save(fig, folder, f"{name}-lines"), caption)]
     with style.figure(7.5, 3.4) as (fig, (ax,)):
         for which, colour in colours.items():
@@ -380,6 +372,34 @@ def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ax.set_xlabel("collapse acceleration [g]")
             ax.set_ylabel("share of sections at or below")
         return [(style.save(fig, folder, name), "Collapse acceleration of the sections that stand.")]
+
+
+def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Capacities of the random surveys: how many bear at most how much, the band, and the survey that is given."""
+    r = run[name]
+    gamma = run.array(name, "gamma")
+    lesser = np.sort(np.nan_to_num(gamma.min(axis=1), nan=0.0))
+    with style.figure(7.5, 3.8) as (fig, (ax,)):
+        share = np.arange(1, len(lesser) + 1) / len(lesser)
+        ax.axvspan(
+            r.low_collapse_acceleration_g, r.high_collapse_acceleration_g, color=style.STONE, zorder=0,
+            label=f"nine in ten: {r.low_collapse_acceleration_g:.4f} to {r.high_collapse_acceleration_g:.4f} g",
+        )  # fmt: skip
+        ax.step(
+            lesser,
+            share,
+            where="post",
+            color=style.THRUST,
+            label=f"{r.count} surveys within {1e3 * r.deviation_m:.3g} mm",
+        )
+        given = r.given_collapse_acceleration_g
+        ax.axvline(given, color=style.HINGE, linestyle="--", label=f"as given: {given:.4f} g")
+        ax.set_xlabel("collapse acceleration, the lesser of both senses [g]")
+        ax.set_ylabel("share of surveys at or below")
+        ax.set_ylim(0.0, 1.0)
+        ax.set_title("Capacity within the tolerance of the survey")
+        style.legend_below(fig, ax)
+        return [(style.save(fig, folder, name), "Capacities of random surveys of the same stones.")]
 
 
 def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

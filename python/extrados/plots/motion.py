@@ -28,6 +28,8 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 color=style.THRUST, linewidth=1.6 if k == 0 else 0.9, label="strongest impulses" if k == 0 else None,
             )  # fmt: skip
         acc.set_ylabel("acceleration [g]")
+        if said := ", ".join(part for part in (r.title, r.station) if part):
+            acc.set_title(said)
         if r.impulses:
             acc.legend(loc="upper right")
         vel.plot(t, 100 * run.array(name, "velocity"), color=style.HINGE, linewidth=0.9)
@@ -72,14 +74,26 @@ def _draw_one(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for ax in (psa, sd):
             ax.set_xlabel("period [s]")
             ax.set_xlim(period[0], period[-1])
-        _fourier_axes(fourier, run.array(name, "frequency"), run.array(name, "fourier"))
+        smoothed = "fourier_smooth" in run.arrays[name]
+        _fourier_axes(fourier, run.array(name, "frequency"), run.array(name, "fourier"), faint=smoothed)
+        if smoothed:
+            fourier.loglog(
+                run.array(name, "smooth_frequency"), 100 * run.array(name, "fourier_smooth"), color=style.THRUST,
+                linewidth=1.2, label="smoothed (Konno and Ohmachi)",
+            )  # fmt: skip
+            fourier.legend(loc="lower left", fontsize=7)
+            caption += ", raw and smoothed by Konno and Ohmachi's window (b = 40)"
         found.append((style.save(fig, folder, f"{name}-spectra"), f"{caption}."))
     return found
 
 
-def _fourier_axes(ax, frequency: np.ndarray, amplitude: np.ndarray) -> None:
+def _fourier_axes(ax, frequency: np.ndarray, amplitude: np.ndarray, faint: bool = False) -> None:
+    """A raw Fourier spectrum; faint where a smoothed one is drawn over it."""
     inside = (frequency >= 0.05) & (frequency <= 50.0)
-    ax.loglog(frequency[inside], 100 * amplitude[inside], color=style.HINGE, linewidth=0.6)
+    ax.loglog(
+        frequency[inside], 100 * amplitude[inside], color=style.HINGE, linewidth=0.6, alpha=0.45 if faint else 1.0,
+        label="raw" if faint else None,
+    )  # fmt: skip
     top = 100 * amplitude[inside].max(initial=1e-12)
     ax.set_ylim(top * 1e-4, 2 * top)
     ax.set_xlabel("frequency [Hz]")

@@ -1,5 +1,6 @@
 """One look for all figures."""
 
+import itertools
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -17,6 +18,9 @@ from matplotlib.ticker import MaxNLocator
 STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
 MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d")
 
+#: Marks labels that are spread as a figure is saved
+LETTER = "letter"
+RINGS = (9.0, 12.0, 18.0, 26.0)  # points from the place
 RC = {
     "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8, "figure.dpi": 150,
     "axes.spines.top": False, "axes.spines.right": False, "axes.grid": True,
@@ -26,12 +30,18 @@ RC = {
 
 
 @contextmanager
+def canvas(width: float = 7.0, height: float = 4.0) -> Iterator[Figure]:
+    """An empty figure in the common style."""
+    with matplotlib.rc_context(RC):
+        yield FigureCanvasAgg(Figure(figsize=(width, height))).figure
+
+
+@contextmanager
 def figure(
     width: float = 7.0, height: float = 4.0, rows: int = 1, columns: int = 1, **options
 ) -> Iterator[tuple[Figure, np.ndarray]]:
     """A figure in the common style; its axes come as a flat array."""
-    with matplotlib.rc_context(RC):
-        fig = FigureCanvasAgg(Figure(figsize=(width, height))).figure
+    with canvas(width, height) as fig:
         yield fig, fig.subplots(rows, columns, squeeze=False, **options).ravel()
 
 
@@ -39,10 +49,16 @@ def save(fig: Figure, folder: Path, name: str) -> str:
     """Write figures/NAME.png and .svg; returns the name."""
     target = folder / "figures"
     target.mkdir(exist_ok=True)
+    return write(fig, target, name)
+
+
+def write(fig: Figure, target: Path, name: str) -> str:
+    """Write NAME.png and NAME.svg into a folder; returns the name."""
     # Laying out measures every label and takes longer than drawing: once, at the size of the PNG. Figure.savefig
     # would lay out and draw unseen anew for each format.
     fig.get_layout_engine().execute(fig)
     fig.set_layout_engine("none")
+    _spread(fig)
     # A tenth more bytes for half the time of compressing
     FigureCanvasAgg(fig).print_png(target / f"{name}.png", pil_kwargs={"compress_level": 2})
     FigureCanvasSVG(fig).print_svg(target / f"{name}.svg", metadata={"Date": None})
@@ -80,5 +96,75 @@ def draw_blocks(ax: Axes, outlines: list[np.ndarray]) -> None:
 def draw_hinges(ax: Axes, points: np.ndarray, labels: list[str] | None = None) -> None:
     """Hinges as circles, with labels beside them."""
     ax.plot(*points.T, "o", color=HINGE, markersize=6, markerfacecolor="white", markeredgewidth=1.6, zorder=5)
-    for point, label in zip(points, labels or [], strict=False):
-        ax.annotate(label, point, textcoords="offset points", xytext=(6, 6), fontsize=8, color=HINGE)
+    if labels:
+        letters(ax, points, labels, HINGE)
+
+
+def letters(ax: Axes, points: np.ndarray, labels: list[str], colour: str) -> None:
+    """Labels beside places; where each stands is settled as the figure is saved, so that none hides another."""
+    for point, label in zip(points, labels, strict=False):
+        ax.annotate(
+            label, point, textcoords="offset points", xytext=(0, 0), fontsize=8, color=colour, ha="center", va="center",
+            gid=LETTER, zorder=7, annotation_clip=False,
+        )  # fmt: skip
+
+
+def _spread(fig: Figure) -> None:
+    """Put every letter beside its place where it hides least: no other letter, no other place, no line if that can be.
+
+    Candidates stand on rings around the place; a letter far from it gets a hair line to it.
+    """
+    pixel = fig.dpi / 72.0
+    for ax in fig.axes:
+        texts = [t for t in ax.texts if t.get_gid() == LETTER]
+        if not texts:
+            continue
+        ax.apply_aspect()  # as the drawing will, after the layout
+        places = ax.transData.transform(np.array([t.xy for t in texts]))
+        drawn = [
+            _sampled(line.get_transform().transform(line.get_xydata()), 3.0 * pixel)
+            for line in ax.lines
+            if len(line.get_xydata()) > 1
+        ]
+        ink = np.concatenate([*drawn, np.empty((0, 2))])
+        frame = ax.get_window_extent()
+        taken: list[np.ndarray] = []  # boxes: left, low, right, high
+        for text, place in zip(texts, places, strict=True):
+            half = pixel * np.array([2.9 * len(text.get_text()) + 1.0, 5.0])
+            best, least = np.zeros(2), np.inf
+            for ring in RINGS:
+                for k in range(12):
+                    turn = np.pi / 4 + k * np.pi / 6
+                    offset = pixel * ring * np.array([np.cos(turn), np.sin(turn)])
+                    middle = place + offset
+                    box = np.concatenate([middle - half, middle + half])
+                    cost = 0.02 * ring + 0.002 * k
+                    cost += 40.0 * sum(_hides(box, other) for other in taken)
+                    apart = np.abs(places - middle) < half + 4.0 * pixel
+                    cost += 20.0 * float(apart.all(axis=1).sum())
+                    cost += 0.25 * min(8.0, float((np.abs(ink - middle) < half).all(axis=1).sum()))
+                    cost += 100.0 * (not frame.x0 < middle[0] < frame.x1 or not frame.y0 < middle[1] < frame.y1)
+                    if cost < least:
+                        best, least = offset, cost
+            taken.append(np.concatenate([place + best - half, place + best + half]))
+            text.set_position(tuple(best / pixel))
+            if np.hypot(*best) > 14.0 * pixel:
+                text.arrow_patch = None
+                ends = ax.transData.inverted().transform(np.array([place, place + best * 0.72]))
+                limits = ax.get_xlim(), ax.get_ylim()
+                ax.plot(*ends.T, color=text.get_color(), linewidth=0.5, zorder=4.5)
+                ax.set_xlim(limits[0])
+                ax.set_ylim(limits[1])
+
+
+def _sampled(points: np.ndarray, step: float) -> np.ndarray:
+    """Places along a path of pixels, about a step apart."""
+    parts = [points]
+    for a, b in itertools.pairwise(points):
+        count = int(min(400.0, np.hypot(*(b - a)) / step)) if np.isfinite(a + b).all() else 0
+        parts.append(a + (b - a) * (np.arange(1, count) / max(count, 1))[:, None])
+    return np.concatenate(parts)
+
+
+def _hides(box: np.ndarray, other: np.ndarray) -> bool:
+    return bool((box[:2] < other[2:]).all() and (other[:2] < box[2:]).all())

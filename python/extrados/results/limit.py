@@ -24,8 +24,13 @@ class NamedHinge(JointHinge):
 class Hinge(NamedHinge):
     """A hinge of a mechanism, and its place."""
 
+    place: str = fact("where it is, in words: springing, haunch or crown of an arch, foot of a pier, bed or head joint")
     x_m: float = fact("x of the hinge", "m")
     y_m: float = fact("y of the hinge", "m")
+
+    def told(self) -> str:
+        """The place in words, with numbers where a stone's name alone finds nothing."""
+        return f"{self.place} (x = {self.x_m:.2f}, y = {self.y_m:.2f} m)" if "joint" in self.place else self.place
 
 
 class Reaction(ResultModel):
@@ -275,3 +280,22 @@ class Survey(KindResults):
             return judge(f"{text}.", None, None, "g")
         least = self.weakest_collapse_acceleration_g
         return judge(f"{text}; the weakest of them, {self.weakest}, bears {least:.3g} g.", None, least, "g")
+
+
+class Imperfections(KindResults):
+    """imperfections: capacities of random surveys of the same stones, the lesser of the two senses of each."""
+
+    count: int = fact("number of random surveys")
+    deviation_m: float = fact("how far each measured point lies at most from where the given survey has it", "m")
+    given_collapse_acceleration_g: float = fact("capacity of the survey that is given", "g")
+    median_collapse_acceleration_g: float = fact("median capacity", "g")
+    low_collapse_acceleration_g: float = fact("lower end of the band that holds nine tenths: the 5th percentile", "g")
+    high_collapse_acceleration_g: float = fact("its upper end: the 95th percentile", "g")
+    least_collapse_acceleration_g: float = fact("least capacity; 0 where a survey cannot stand", "g")
+    greatest_collapse_acceleration_g: float = fact("greatest capacity", "g")
+    cannot_stand: int = fact("surveys that cannot stand upright; they count as 0 g")
+    without_answer: int = fact("surveys whose programmes gave no answer; they are left out")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The 5th percentile of the capacities against the peak ground acceleration of the motion [g]."""
+        return acceleration(self.low_collapse_acceleration_g, demand)

@@ -23,11 +23,14 @@ class WaveletPulse(ResultModel):
     energy_ratio: float = fact("energy of what the pulse leaves over that of the motion")
     early: bool = fact("whether it arrives early in the motion")
     pulse_like: bool = fact("whether all of Baker's conditions are met")
+    fails: list[str] = fact("those that are not, in words")
 
 
 class OneMotion(KindResults):
     """motion: one ground motion in depth."""
 
+    title: str = maybe("of a record: the event, as its file says")
+    station: str = maybe("of a record: where it was recorded and which component, as its file says")
     pga_g: float = fact("greatest horizontal acceleration", "g")
     pga_time_s: float = fact("when it comes", "s")
     pgv_m_s: float = fact("greatest velocity", "m/s")

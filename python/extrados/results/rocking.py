@@ -20,6 +20,14 @@ class RockingHinge(ResultModel):
     y_m: float = fact("y of the hinge", "m")
 
 
+class RuleOutcome(ResultModel):
+    """What the motion does under an impact rule."""
+
+    rule: str = fact("word of [joints] restitution")
+    restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
+    outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
+
+
 class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
@@ -55,6 +63,9 @@ class Rocking(KindResults):
     hinges_opposite: list[RockingHinge] = maybe("of a mechanism: where it turns, rocking to -x")
     restitution_thesis: float = maybe("of an arch: by the momentum balance of the thesis", source="thesis Eq. 5.3")
     restitution_energy_safe: float = maybe("of an arch: by the energy-safe projection")
+    restitution_inelastic: float = maybe("of an arch: by a blow without rebound at all joints", source="Moreau 1988")
+    outcomes_by_rule: list[RuleOutcome] = maybe("under each impact rule, where their c_v differ by more than 1.3")
+    decided_by_last_digits: bool = fact("whether the motion scaled by 1 +- 1e-6 ends in another outcome")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -173,6 +184,7 @@ class Assessment(KindResults):
     restitution: float = fact("rate after over before an impact")
     impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
     verdict: Literal["stands", "fails"] = fact("whether one of them brings it down by the criterion")
+    run_outcome: RockingOutcome | None = fact("what the whole motion does by the equation of motion")
     margin: float | None = fact("least failing amplitude over amplitude; null where no impulse can do harm")
     primary_impulse: PrimaryImpulse | None = fact("the strongest impulse; null where the motion has none")
 

@@ -228,8 +228,7 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                 store.attrs["series"] = array.series
                 if array.dims == (title,):
                     store.make_scale(title)
-            sizes = {d: n for a in result.arrays.values() for d, n in zip(a.dims, np.shape(a.data), strict=True)}
-            for dim, size in sizes.items():
+            for dim, size in _sizes(result.arrays).items():
                 if dim not in group:
                     group.create_dataset(dim, data=np.arange(size)).make_scale(dim)
             for title, array in result.arrays.items():
@@ -237,6 +236,11 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                     if dim != title:
                         group[title].dims[axis].attach_scale(group[dim])
     path.write_bytes(image.getbuffer())
+
+
+def _sizes(arrays: dict[str, Array]) -> dict[str, int]:
+    """The length of every axis."""
+    return {dim: size for a in arrays.values() for dim, size in zip(a.dims, np.shape(a.data), strict=True)}
 
 
 class Stored:
@@ -306,12 +310,14 @@ class Stored:
         return there[name].data
 
     def dataset(self, analysis: str) -> Any:
-        """The arrays of an analysis as an xarray.Dataset (xarray must be installed)."""
+        """The arrays of an analysis as an xarray.Dataset (xarray must be installed), with the coordinates that its
+        group in results.h5 has: an array where one is called as the axis, else numbers from 0."""
         import xarray
 
         arrays = self.arrays[analysis]
         return xarray.Dataset(
             {n: (a.dims, a.data, {"units": a.unit, "about": a.about}) for n, a in arrays.items()},
+            coords={dim: np.arange(size) for dim, size in _sizes(arrays).items() if dim not in arrays},
             attrs={"kind": analysis, "extrados": self.summary["extrados"]["version"]},
         )
 

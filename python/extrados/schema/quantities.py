@@ -46,6 +46,7 @@ COMMON: dict[str, dict[str, float]] = {
 
 def pattern(si: str) -> str:
     """Regular expression of JSON Schema for text that may be a quantity in `si`: no common unit of another kind."""
+    si = "m/s^2" if si == "g" else si
     others = sorted({unit for kind, there in COMMON.items() if kind != si for unit in there} - set(COMMON[si]))
     strange = "|".join(re.escape(unit) for unit in others)
     return rf"^\s*{NUMBER} +(?!(?:{strange})\s*$){FACTOR}(?: ?[*/] ?{FACTOR})*\s*$"
@@ -125,6 +126,25 @@ def quantity(si: str, *, bare: bool = True) -> Any:
     return Annotated[float, BeforeValidator(read), Unit(si, bare)]
 
 
+def _in_gravity(value: Any) -> Any:
+    """A number is in g; text may be any acceleration."""
+    if isinstance(value, str):
+        return parse(value, "m/s^2") / COMMON["m/s^2"]["g"]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise ValueError("expected a number in g or text such as '0.5 g'")
+    return float(value)
+
+
+@dataclass(frozen=True)
+class OrText:
+    """Marks a number that may be given as text with a unit, which unit depends on other keys."""
+
+    def __get_pydantic_json_schema__(self, core_schema: Any, handler: Any) -> dict[str, Any]:
+        return {"anyOf": [{"type": "number"}, {"type": "string", "pattern": rf"^\s*{NUMBER} +\S.*$"}]}
+
+
+#: An acceleration whose bare number is in g
+Gravities = Annotated[float, BeforeValidator(_in_gravity), Unit("g")]
 Length = quantity("m")
 Time = quantity("s")
 Acceleration = quantity("m/s^2", bare=False)

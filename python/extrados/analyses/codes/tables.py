@@ -3,7 +3,7 @@
 from typing import ClassVar, Literal
 
 from extrados.analyses.table import BuildingAnalysis
-from extrados.schema.quantities import Acceleration, Force, Length
+from extrados.schema.quantities import Acceleration, Force, Length, Velocity
 from extrados.schema.table import key
 
 
@@ -15,7 +15,7 @@ class CodeChecks(BuildingAnalysis):
     view: ClassVar = ""
     structures: ClassVar = ("block", "column", "panel", "brickwork")
     peak_acceleration: Acceleration | None = key(None, "demand; default that of the motion", gt=0)
-    peak_velocity: float | None = key(None, "demand [m/s]; default that of the motion", gt=0)
+    peak_velocity: Velocity | None = key(None, "demand; default that of the motion", gt=0)
     behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")
     confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="NTC 2018, C8.5.4")
     axial_load: Force | None = key(None, "vertical load on top of the wall; asks for the pier rules", ge=0)

@@ -5,14 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import Chain, Unfinished
+from extrados.analyses.batches import Unfinished
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import files as dem_files
 from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.friction import friction_threshold
 from extrados.analyses.dem.model import Model
-from extrados.analyses.dem.runs import Runs, run_of
+from extrados.analyses.dem.runs import watched
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
@@ -49,15 +49,15 @@ class Seen:
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The run, and with it what else the deck asks: variations, the least friction."""
     trial = Trial(context, options, model)
-    context.progress(0, 1, "discrete elements")
     # The rates after and before impacts of a single block need a fine history.
     step = min(options.output_step, 0.002) if model.rigid.count == 1 else options.output_step
     job = trial.job([model.values], output_step=step)
-    found = dem_model.checked(_kept(context, job) if _asks_more(options) else job.one(0, context.threads), model)
+    found = dem_model.checked(watched(context, "dem-motion", job, "discrete elements"), model)
     ground = context.motion.sample(found.time) if context.deck.motion else np.zeros(len(found.time))
     seen = _look(options, model, found, ground)
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
-    result.reason = f"interrupted at {found.stop_time:.3f} s" if found.interrupted else ""
+    again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
+    result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
     numbers = _numbers(trial, found, seen) | {"animation": options.animation}
     _store(options, model, found, seen, result)
     if seen.sliding > measures.SLIDES * float(model.assembly.length.min()):
@@ -69,9 +69,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     if numbers["still_moving"]:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     if trial.idle:
-        result.warnings.append(
-            "nothing moves it: add [motion], [[initial.movements]] or, for a block, [initial] rotation_ratio"
-        )
+        result.warnings.append("nothing moves it: add [motion], [[initial.movements]] or [initial] rotation_ratio")
     if not found.interrupted:
         _further(context, options, trial, result, numbers)
     result.results = out.DemRun(**numbers)
@@ -174,21 +172,6 @@ def _store(options: Dem, model: Model, found: dem.Run, seen: Seen, result: Resul
         "snapshot_time": Array(measures.snapshot_times(options, found), ("snapshot",), "s"),
         **measures.support_arrays(model),
     }
-
-
-def _asks_more(options: Dem) -> bool:
-    return bool(options.vary_damping or options.vary_stiffness or options.vary_friction or options.find_friction)
-
-
-def _kept(context: Context, job: Runs) -> dem.Run:
-    """The run that others follow: kept, so that a resumed one goes on with those."""
-    chain = Chain(context, "dem-motion", job)
-    if chain.state is not None:
-        return run_of(chain.state[1])
-    found = job.one(0, context.threads)
-    if not found.interrupted:
-        chain.keep(1, {name: values[None] for name, values in job.rows(found).items()})
-    return found
 
 
 def _further(context: Context, options: Dem, trial: Trial, result: Result, numbers: dict[str, Any]) -> None:

@@ -1,18 +1,23 @@
 """Runs of the core as one job of the batch layer: each run is a member, its histories are rows."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.batches import Chain, stacked, sweep
 from extrados.analyses.context import Context
 from extrados.core import dem
+from extrados.core.calls import cancel_requested
 from extrados.core.errors import Cancelled, status_code
-from extrados.core.ground import Ground
+from extrados.core.ground import Ground, as_motion_set
 
 #: A run of fewer bodies is faster on one thread.
 BODIES_FOR_THREADS = 100
+#: The state of a single run is kept so often [s]; the number under which one that has ended is kept
+KEEP_SECONDS, ENDED = 10.0, 999_999_999_999
 NUMBERS = ("stop_time", "step", "critical_step", "residual")
 COUNTS = ("steps", "settling_steps", "searches", "most_pairs")
 NO_CONTACTS = dem.Contacts(*(np.zeros(shape) for shape in ((0, 2), (0, 2), (0, 2), 0, 0)))
@@ -44,14 +49,23 @@ class Runs:
     bodies: list[dem.Bodies]
     tasks: list[Task]
 
-    def one(self, k: int, threads: int = 1) -> dem.Run:
-        """A run, however it ends."""
+    def one(
+        self,
+        k: int,
+        threads: int = 1,
+        state: np.ndarray | None = None,
+        watch: Callable[[dem.Model, float], None] | None = None,
+    ) -> dem.Run:
+        """A run, however it ends; from a state of it, and watched, where wanted (see core.dem.Model.run)."""
         task, bodies = self.tasks[k], self.bodies[self.tasks[k].bodies]
         many = len(bodies.mass) >= BODIES_FOR_THREADS
-        found = dem.run(
-            bodies, replace(task.options, threads=threads if many else 1), task.ground, scale=task.scale,
-            shift=task.shift, moves=task.moves, times=task.times,
-        )  # fmt: skip
+        options = replace(task.options, threads=threads if many else 1)
+        with (
+            dem.Model(bodies, options, shift=task.shift, moves=task.moves) as model,
+            as_motion_set([task.ground or dem.STILL]) as motions,
+        ):
+            told = None if watch is None else partial(watch, model)
+            found = model.run(motions, scale=task.scale, times=task.times, state=state, watch=told)
         if task.shift is None:
             return found
         # A block that starts rotated does not settle: its place of rest is the one it was drawn in.
@@ -108,6 +122,32 @@ def run_of(rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
         **{name: float(row[name]) for name in NUMBERS},
         **{name: int(row[name]) for name in COUNTS},
     )
+
+
+def watched(context: Context, name: str, job: Runs, text: str) -> dem.Run:
+    """The one run of a job, with progress; its state is kept now and then and when it is interrupted, and the run when it
+    has ended, so that one that is resumed goes on from there. Settling under the own weight is not kept."""
+    chain = Chain(context, name, job)
+    state = None
+    if chain.state is not None:
+        step, kept = chain.state
+        if step == ENDED:
+            return run_of(kept)
+        state = kept["state"]
+    step, last = (0 if chain.state is None else chain.state[0]), time.monotonic()
+    end = job.tasks[0].options.end_time
+
+    def watch(model: dem.Model, reached: float) -> None:
+        nonlocal step, last
+        context.progress(min(reached, end), end, text)
+        if chain.keeps and (time.monotonic() - last >= KEEP_SECONDS or cancel_requested()):
+            step, last = step + 1, time.monotonic()
+            chain.keep(step, {"state": model.state()})
+
+    found = job.one(0, context.threads, state, watch)
+    if not found.interrupted:
+        chain.keep(ENDED, {name: values[None] for name, values in job.rows(found).items()})
+    return found
 
 
 def answered(

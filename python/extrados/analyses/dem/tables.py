@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from extrados.analyses.table import BuildingAnalysis
 from extrados.schema.constants import GRAVITY
-from extrados.schema.quantities import Acceleration, Length, Time
+from extrados.schema.quantities import Acceleration, Gravities, Length, Time
 from extrados.schema.table import key
 
 Positive = Annotated[float, Field(gt=0.0)]
@@ -55,7 +55,7 @@ class Dem(DemTable):
     find_friction: bool = key(False, "also find the least friction, the same at all joints, at which no joint slides")
     slip: Length = key(1e-4, "slip that counts as sliding in that search", gt=0)
     tilt_limit: Acceleration = key(2.0 * GRAVITY, "cap of the tilt test", gt=0)
-    tilt_accuracy: float = key(1e-3, "accuracy of the tilt test, in g", ge=1e-6, le=0.1)
+    tilt_accuracy: Gravities = key(1e-3, "accuracy of the tilt test", ge=1e-6, le=0.1)
 
 
 class DemDomain(DemTable):

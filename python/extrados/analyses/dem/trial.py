@@ -9,6 +9,8 @@ from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task
 from extrados.analyses.dem.tables import Dem
+from extrados.building.errors import NoView
+from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.block import BlockAssembly
 from extrados.core import dem
 from extrados.core.ground import Ground
@@ -55,25 +57,37 @@ def _moves(context: Context, model: Model) -> tuple[dem.SupportMove, ...]:
 
 
 def start(context: Context, model: Model) -> np.ndarray | None:
-    """Initial displacements (bodies, 3) [m, m, rad] of a block that starts rotated about a toe; None: from rest.
+    """Initial displacements (bodies, 3) [m, m, rad] of a structure that starts rotated; None: from rest.
 
-    Refused where another structure is to start rotated: its blocks would have to be placed first.
+    A block turns about a toe, any other structure takes the pose of its collapse mechanism to that side. Refused
+    where it has none, or where the bodies are not the blocks of the structure (glued voussoirs).
     """
     ratio = context.building.initial.rotation_ratio
     block = model.assembly
     if not ratio:
         return None
-    if not isinstance(block, BlockAssembly):
-        raise Refused(
-            "[initial] rotation_ratio: discrete elements start only a block rotated; "
-            "initial.rotation_ratio = 0 within this [[analysis]] starts it from rest"
-        )
     side = 0 if ratio > 0.0 else 1
+    if isinstance(block, BlockAssembly):
+        return _about_a_toe(block, side, ratio, len(model.rigid.mass))
+    if model.rigid.count != len(block.mass):
+        raise Refused('[initial] rotation_ratio: glued voussoirs do not start rotated; merge = "none" does')
+    try:
+        mechanism = MechanismModel(block)
+        pose = mechanism.pose([ratio * mechanism.critical[side]])[0]
+    except NoView as error:
+        raise Refused(f"[initial] rotation_ratio needs a collapse mechanism: {error}") from None
+    shift = np.zeros((len(model.rigid.mass), 3))  # the supports stay
+    shift[: len(pose)] = pose
+    shift[: len(pose), :2] -= block.centroid
+    return shift
+
+
+def _about_a_toe(block: BlockAssembly, side: int, ratio: float, bodies: int) -> np.ndarray:
     turn = -ratio * block.alpha[side]  # positive to +x is clockwise
     toe = np.array([block.toe_right, 0.0]) if side == 0 else np.array([-block.toe_left, 0.0])
     arm = block.centroid[0] - toe
     c, s = np.cos(turn), np.sin(turn)
-    shift = np.zeros((len(model.rigid.mass), 3))
+    shift = np.zeros((bodies, 3))
     shift[0, :2] = np.array([c * arm[0] - s * arm[1], s * arm[0] + c * arm[1]]) - arm
     shift[0, 2] = turn
     return shift

@@ -7,14 +7,17 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
+from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
-from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.limit.places import place_of
+from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.results.limit import Hinge, Reaction
 from extrados.results.model import Array
 
@@ -106,6 +109,22 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
         raise Refused(f"fracture: {error}") from None
 
 
+def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: float) -> str | None:
+    """What a survey with open gaps would bear to +x if they were closed, in words beside its capacity gamma [g]; None
+    where none is open."""
+    if not building.told()[0] or building.structure is None:
+        return None
+    mended = building.structure.mended(building.folder)
+    if mended is None:
+        return None
+    told = f'with all gaps closed (contact_tolerance = "{1e3 * mended.contact_tolerance:.3g} mm")'
+    try:
+        closed = limit_of(building.apart().having(structure=mended), options).collapse(1)[0].gamma
+    except (BadGeometry, Refused, NoEquilibrium, NoAnswer, Immovable) as error:
+        return f"{told} there is no capacity: {error}"
+    return f"{told} it bears {closed:.4f} g to +x, {closed / gamma:.2f} times the {gamma:.4f} g told here"
+
+
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
     """What every picture of the structure needs."""
     outlines = [np.asarray(o) for o in assembly.outlines]
@@ -151,11 +170,29 @@ def packed(name: str, paths: dict[str, np.ndarray], unit: str, about: str) -> di
     }
 
 
+def line_arrays(name: str, found: list[ThrustPath], about: str) -> dict[str, Array]:
+    """Thrust lines through all stones, and the greatest force along each of their pieces."""
+    points = [path.points for path in found] or [np.empty((0, 2))]
+    title = f"{name}_line"
+    return {
+        title: Array(np.concatenate(points), (f"{title}_vertex", "axis"), "m", f"thrust lines {about}"),
+        f"{title}_start": Array(
+            np.cumsum([0, *(len(path.points) for path in found)]), (f"{title}_edge",), "", f"first vertex of each path of {title}, and the end"
+        ),
+        f"{title}_of": Array(
+            np.array([path.name for path in found], dtype=object), (f"{title}_path",), "", f"the chain or stone of each path of {title}"
+        ),
+        f"{title}_force": Array(
+            np.array([path.force for path in found]), (f"{title}_path",), "N", f"greatest force along each path of {title}"
+        ),
+    }  # fmt: skip
+
+
 def graphic_arrays(answer: Answer, name: str, state: State, about: str) -> dict[str, Array]:
     """Thrust lines, funicular and force polygons of a state."""
     per_metre = {k: v / answer.assembly.depth for k, v in answer.polygons(state).items()}
     return {
-        **packed(f"{name}_line", answer.lines(state), "m", f"thrust lines {about}"),
+        **line_arrays(name, answer.lines(state), about),
         **packed(f"{name}_funicular", answer.funiculars(state), "m", f"funicular polygons {about}"),
         **packed(f"{name}_polygon", per_metre, "N/m", f"rays of the force polygons {about}, per metre of depth"),
     }
@@ -166,7 +203,8 @@ def hinge_rows(assembly: Assembly, hinges: list[tuple[int, str]], pivot: np.ndar
     rows = []
     for j, side in hinges:
         x, y = assembly.p[j] + pivot[j] * (assembly.q[j] - assembly.p[j])
-        rows.append(Hinge(joint=j, side=side, name=assembly.joint_names[j], x_m=x, y_m=y))
+        place = place_of(assembly, j, np.array([x, y]))
+        rows.append(Hinge(joint=j, side=side, name=assembly.joint_names[j], place=place, x_m=x, y_m=y))
     return rows
 
 

@@ -5,6 +5,9 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.limit.tables import Supports
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.chains import in_order
+from extrados.limit.places import place_of
 from extrados.limit.programme import NoEquilibrium
 from extrados.limit.supports import support_movement
 from extrados.results import limit as out
@@ -13,18 +16,24 @@ from extrados.results.model import Array, Result, TableData
 SHOWN = (0.0, 0.25, 0.5, 0.75, 1.0)  # of the movement at the fall
 
 
+def _place(arch: Assembly, hinge: tuple[int, str]) -> str:
+    """Where a hinge is, in words."""
+    joint, side = hinge
+    return place_of(arch, joint, (arch.p if side == "intrados" else arch.q)[joint])
+
+
 def run(context: Context, options: Supports) -> Result:
     """States on the way, the movement at the fall, how the thrust and the hinges change."""
     if options.spread == 0.0 and options.settle == 0.0:
         raise Refused("supports: with spread = 0 and settle = 0 nothing moves")
-    arch = context.building.blocks()
+    arch = in_order(context.building.blocks())
     try:
         states = support_movement(arch, (options.spread, -options.settle), options.steps)
     except NoEquilibrium as error:
         raise Refused(f"the arch cannot follow the movement: {error}") from None
     movement = np.array([s.movement for s in states])
     force = np.array([s.force for s in states])
-    ends = np.array([arch.p[arch.chains["arch"][k]] for k in (0, -1)])
+    ends = arch.p[[0, -1]]
     span = float(np.hypot(*(ends[1] - ends[0])))
     stages = [0, *[i for i in range(1, len(states)) if states[i].hinges != states[i - 1].hinges]]
     last = states[-1]
@@ -43,7 +52,7 @@ def run(context: Context, options: Supports) -> Result:
         hinges_at_fall=[out.JointHinge(joint=k, side=side) for k, side in last.hinges],
         joints_touched_at_fall=fourth,
         stages=[
-            out.Stage(movement_m=movement[i], hinges=[f"{side} of joint {k}" for k, side in states[i].hinges])
+            out.Stage(movement_m=movement[i], hinges=[_place(arch, hinge) for hinge in states[i].hinges])
             for i in stages
         ],
     )
@@ -68,7 +77,7 @@ def run(context: Context, options: Supports) -> Result:
     }  # fmt: skip
     way = "spreads" if options.spread > 0 and options.settle == 0 else "moves"
     result.answer = (
-        f"The right support {way}: the arch follows on three hinges ({', '.join(f'{side} of joint {k}' for k, side in states[0].hinges)}) "
+        f"The right support {way}: the arch follows on three hinges ({'; '.join(_place(arch, hinge) for hinge in states[0].hinges)}) "
         f"and falls at {movement[-1]:.4g} m, {100 * movement[-1] / span:.2f} % of the span, after "
         f"{len(stages) - 1} change{'s' if len(stages) != 2 else ''} of hinges; meanwhile the thrust goes from "
         f"{force[0, 0] / 1e3:.4g} to {force[-1, 0] / 1e3:.4g} kN."

@@ -26,7 +26,8 @@ from extrados.building.errors import BadGeometry
 from extrados.limit.motion import finite_motion
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
-from extrados.schema.quantities import unit_of
+from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import parse, unit_of
 from extrados.schema.table import Table
 
 # Of the range: how closely changes of mechanism and the optimum are found.
@@ -93,12 +94,38 @@ def _is_whole(model: Table, table: str, path: str) -> bool:
     return "int" in text and "float" not in text
 
 
+def _unit(table: type[Table], path: str) -> str:
+    """Unit of a key, dotted for one of a table within the table."""
+    place: Any = table
+    *way, last = path.split(".")
+    for part in way:
+        annotation = place.model_fields[part].annotation
+        place = next((a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")), annotation)
+    return unit_of(place, last)
+
+
+def _number(value: float | str | None, unit: str) -> float:
+    """A value of a sweep in the unit of its key; Refused where its text is no quantity of it."""
+    if not isinstance(value, str):
+        return float(value or 0.0)
+    if not unit:
+        raise Refused(f"'{value}': the key that varies has no unit, give a number")
+    try:
+        return parse(value, "m/s^2" if unit == "g" else unit) / (GRAVITY if unit == "g" else 1.0)
+    except ValueError as error:
+        raise Refused(str(error)) from None
+
+
 def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
     table, path = _placed(options.vary)
     model = getattr(context.building, table)
     whole = _is_whole(model, table, path)
-    values = np.array(options.values) if options.values else np.linspace(options.start, options.stop, options.count)
+    unit = _unit(type(model), path)
+    if options.values:
+        values = np.array([_number(value, unit) for value in options.values])
+    else:
+        values = np.linspace(_number(options.start, unit), _number(options.stop, unit), options.count)
     values = np.unique(np.round(values)) if whole else np.sort(values)
     data = {**context.deck.data.get(table, {}), **(options.model_dump(exclude_none=True).get(table) or {})}
     ask = Range(context.building, table, path, data, options, whole)
@@ -121,7 +148,7 @@ def run(context: Context, options: Sweep) -> Result:
     fractured = [o.fractured for o in outcomes]
     r = out.Sweep(
         vary=options.vary,
-        unit=unit_of(type(model), path),
+        unit=unit,
         mechanisms=[out.GoverningMechanism(number=n, hinges=spoken(s)) for s, n in numbers.items()],
         changes=[
             out.Change(

@@ -1,11 +1,11 @@
-"""Analysis kinds of limit analysis: tilt, thrust, sweep, survey, supports, moving load."""
+"""Analysis kinds of limit analysis: tilt, thrust, sweep, survey, imperfections, supports, moving load."""
 
 from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
 from extrados.analyses.table import BuildingAnalysis
-from extrados.schema.quantities import Force, Length
+from extrados.schema.quantities import Force, Gravities, Length
 from extrados.schema.table import Table, key
 
 ARCHES = ("arch", "pointed-arch", "elliptical-arch")
@@ -41,7 +41,7 @@ class Thrust(LimitAnalysisTable):
     """Thrust lines at a given horizontal acceleration: least, greatest and most central thrust, safety, reactions."""
 
     kind: Literal["thrust"]
-    gamma: float = key(0.0, "horizontal acceleration to +x, in g, at which the lines are drawn", ge=-5, le=5)
+    gamma: Gravities = key(0.0, "horizontal acceleration to +x at which the lines are drawn", ge=-5, le=5)
     chain: str | None = key(None, "whose thrust is least and greatest; default the first: arch, vault or nave")
 
 
@@ -54,10 +54,12 @@ class Sweep(LimitAnalysisTable):
         about="key to vary: of [structure], for instance buttress_width or right.buttress_width, or of another table, for "
         "instance joints.friction or material.compressive_strength"
     )
-    start: float | None = key(None, "first value, in the unit of the key")
-    stop: float | None = key(None, "last value")
+    start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
+    stop: float | str | None = key(None, "last value")
     count: int = key(41, "number of values from start to stop", ge=2, le=2000)
-    values: list[float] | None = key(None, "the values, in place of start and stop", min_length=2, max_length=2000)
+    values: list[float | str] | None = key(
+        None, "the values, in place of start and stop", min_length=2, max_length=2000
+    )
     fracture: bool = key(False, "also with the leeward buttress cracked")
     locate: bool = key(True, "find changes of mechanism, the optimum and the ends of the stable range closely")
 
@@ -77,11 +79,26 @@ class Survey(LimitAnalysisTable):
     fracture: bool = key(False, "also with the leeward buttress cracked")
 
 
+class Imperfections(LimitAnalysisTable):
+    """Random surveys of the same stones, each point within the deviation of the survey: a band on the capacity."""
+
+    kind: Literal["imperfections"]
+    starter: ClassVar = {"deviation": '"5 mm"'}
+    deviation: Length | None = key(
+        None,
+        "how far a measured point may lie from its true place; default the contact_tolerance of `blocks`",
+        gt=0,
+        le=1,
+    )
+    count: int = key(200, "number of random surveys", ge=10, le=100000)
+    seed: int = key(1, "seed of the random numbers", ge=0)
+
+
 class Supports(BuildingAnalysis):
-    """An arch whose supports spread or settle: three-hinge states on the way, until it falls."""
+    """An arch whose supports spread or settle, also one of free blocks: three-hinge states on the way, until it falls."""
 
     kind: Literal["supports"]
-    structures: ClassVar = ARCHES
+    structures: ClassVar = (*ARCHES, "blocks")
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     steps: int = key(200, "steps from rest to the fall", ge=10, le=5000)

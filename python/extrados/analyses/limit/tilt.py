@@ -9,13 +9,13 @@ from extrados.analyses.limit.common import (
     geometry_arrays,
     graphic_arrays,
     hinge_rows,
+    mended_capacity,
     reaction_rows,
     state_arrays,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
 from extrados.limit.graphic import thrust_of
@@ -85,6 +85,8 @@ def run(context: Context, options: Tilt) -> Result:
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
     result.answer = _words(context.building.structure.word, assembly, answer, found)
     result.warnings += answer.warnings
+    if closed := mended_capacity(context.building, options, answer.gamma):
+        result.warnings.append(closed)
     needed = found.required_friction or 0.0
     if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
@@ -161,17 +163,14 @@ def _fracture(building: Building, options: Tilt, answer: Answer, result: Result)
     return {"fracture": told}
 
 
-def _some(names: list[str]) -> str:
+def _some(names: list[str], apart: str = ", ") -> str:
     """The first of many names."""
-    return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
+    return apart.join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
 
 
 def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> str:
     gamma, back = answer.gamma, -answer.back_state.gamma
-    if not all(is_stack(assembly, joints) for joints in assembly.chains.values()):
-        where = _some([f"{h.side} of {h.name}" for h in found.hinges])
-    else:
-        where = _some([f"{h.name} (x = {h.x_m:.2f}, y = {h.y_m:.2f} m)" for h in found.hinges])
+    where = _some([h.told() for h in found.hinges], "; ")
     slides = _some([assembly.joint_names[j] for j in answer.mechanism.sliding])
     moves = ([f"it hinges at the {where}"] if where else []) + ([f"it slides or parts at {slides}"] if slides else [])
     text = (

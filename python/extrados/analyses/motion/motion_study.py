@@ -1,50 +1,56 @@
 """motion: what a ground motion is, alone or as a set: peaks, measures, spectra, pulses, export."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from extrados.analyses.batches import stacked, stop_if_asked, sweep
+from extrados.analyses.batches import stop_if_asked, sweep
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.motion.members import (
+    Generated,
+    Held,
+    Matched,
+    Measures,
+    Members,
+    PrimaryImpulses,
+    Spectra,
+    rotd_peaks,
+    series,
+)  # fmt: skip
 from extrados.analyses.motion.tables import MotionStudy
 from extrados.core import motion as core
+from extrados.core.calls import interruptible
 from extrados.motions import directions, export
 from extrados.motions import tables as models
 from extrados.motions.formats.record import RecordError
-from extrados.motions.from_deck import compatible_motion, compatible_set, generated_set, is_set, make_members
+from extrados.motions.from_deck import compatible_motion, compatible_set, generated_set, is_set, suite_motions
 from extrados.motions.impulse import Impulse, primary_impulses
-from extrados.motions.measures import fourier_spectrum, spectral_measures
+from extrados.motions.measures import BANDWIDTH, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
 from extrados.motions.wavelet_pulse import classify
 from extrados.results import motion as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
-MOST_POINTS = 2_000_000
 MOST_SPECTRA = 1000  # of a set: what percentiles are taken over
 MOST_IMPULSES = 60  # of a set: whose primary impulse is fitted
+SMOOTHED = 300  # frequencies of a smoothed spectrum
 SHOWN = 4  # motions of a set that are stored and drawn
 PERCENTILES = (16, 50, 84)
+#: Measures of a motion whose medians over a set are results
+MEDIANS = ("pga_g", "pgv_m_s", "pgd_m", "arias_m_s", "cav_m_s", "duration_5_95_s")
 
 
 def run(context: Context, options: MotionStudy) -> Result:
     """One motion in depth, or the statistics of a set."""
-    return _run_set(context, options) if is_set(context.deck.motion) else _run_one(context, options)
+    if not is_set(context.deck.motion):
+        return _run_one(context, options)
+    with interruptible():  # over all sweeps: Ctrl-C between two of them counts
+        return _run_set(context, options)
 
 
 def _periods(options: MotionStudy, step: float) -> np.ndarray:
     return np.geomspace(max(options.shortest, core.POINTS_PER_CYCLE * step / 4096.0), options.longest, options.periods)
-
-
-def _series(motion: Motion) -> tuple[np.ndarray, float]:
-    """Horizontal acceleration from time zero of the file, and its step."""
-    time, acceleration = motion.series()
-    if len(time) > MOST_POINTS:
-        raise Refused(f"{motion.name} has {len(time)} samples, at most {MOST_POINTS} can be studied")
-    return acceleration, float(time[1] - time[0])
 
 
 def _impulse(i: Impulse) -> out.Impulse:
@@ -56,7 +62,7 @@ def _impulse(i: Impulse) -> out.Impulse:
 
 def _study(motion: Motion, options: MotionStudy) -> dict:
     """All numbers of one motion, keys ending in their unit."""
-    a, step = _series(motion)
+    a, step = series(motion)
     m, s = core.measures(a, step), spectral_measures(a, step)
     time = step * np.arange(len(a))
     impulses = primary_impulses(time, a, options.impulses, None, options.max_period)
@@ -82,13 +88,15 @@ def _study(motion: Motion, options: MotionStudy) -> dict:
         "wavelet_pulse": out.WaveletPulse(
             indicator=pulse.indicator, period_s=pulse.period, peak_velocity_m_s=pulse.peak_velocity,
             pgv_ratio=pulse.pgv_ratio, energy_ratio=pulse.energy_ratio, early=pulse.early, pulse_like=pulse.pulse_like,
+            fails=list(pulse.fails),
         ),
+        **{name: said for name in ("title", "station") if (said := getattr(motion, name))},
     }  # fmt: skip
 
 
 def _run_one(context: Context, options: MotionStudy) -> Result:
     motion = context.motion
-    a, step = _series(motion)
+    a, step = series(motion)
     velocity, displacement = core.kinematics(a, step)
     periods = _periods(options, step)
     spectra = core.response_spectra(a, step, periods, options.dampings, threads=context.threads)
@@ -113,6 +121,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
         "husid": Array(husid / max(husid[-1], 1e-300), ("time",), "", "share of the Arias intensity"),
         "frequency": Array(frequency, ("frequency",), "Hz"),
         "fourier": Array(amplitude, ("frequency",), "m/s", "Fourier amplitude of the acceleration"),
+        **_smoothed(frequency, amplitude),
         **_spectra_arrays(spectra),
     }
     if context.motion.ground.channels > 1:
@@ -123,7 +132,7 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     rotd: dict[str, np.ndarray] = {}
     if motion.horizontal is not None:
         rotd = _all_directions(context, options, periods, result)
-        r |= {**_rotd_peaks(motion), "rotd_damping": _damping(options)}
+        r |= {**rotd_peaks(motion), "rotd_damping": _damping(options)}
     result.tables = {
         "motion": TableData(
             {"time": time, "acceleration": a, "velocity": velocity, "displacement": displacement},
@@ -149,6 +158,19 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     return result
 
 
+def _smoothed(frequency: np.ndarray, amplitude: np.ndarray) -> dict[str, Array]:
+    """The Fourier spectrum smoothed, from 0.05 Hz or what the motion resolves up to 50 Hz or what it holds."""
+    low, high = max(0.05, 2.0 * float(frequency[1])), min(50.0, float(frequency[-1]))
+    if low >= high:
+        return {}
+    centre = np.geomspace(low, high, SMOOTHED)
+    about = f"Fourier amplitude smoothed by the window of Konno and Ohmachi, b = {BANDWIDTH:g}"
+    return {
+        "smooth_frequency": Array(centre, ("smooth_frequency",), "Hz"),
+        "fourier_smooth": Array(konno_ohmachi(frequency, amplitude, centre), ("smooth_frequency",), "m/s", about),
+    }
+
+
 def _damping(options: MotionStudy) -> float:
     """Damping ratio where one spectrum must do."""
     return options.dampings[min(1, len(options.dampings) - 1)]
@@ -169,16 +191,11 @@ def _all_directions(
     return found
 
 
-def _rotd_peaks(motion: Motion) -> dict[str, float]:
-    """PGA over all directions; NaN where only one component is known."""
-    peaks = np.full(2, np.nan) if motion.horizontal is None else directions.peaks(motion.horizontal) / GRAVITY
-    return {"rotd50_pga_g": float(peaks[0]), "rotd100_pga_g": float(peaks[1])}
-
-
 def describe(name: str, r: out.OneMotion) -> str:
     """The numbers of one motion in words."""
+    said = ", ".join(part for part in (r.title, r.station) if part)
     text = (
-        f"{name}: peak {r.pga_g:.4g} g at {r.pga_time_s:.2f} s, {100 * r.pgv_m_s:.3g} cm/s, {100 * r.pgd_m:.3g} cm; "
+        f"{name}{f' ({said})' if said else ''}: peak {r.pga_g:.4g} g at {r.pga_time_s:.2f} s, {100 * r.pgv_m_s:.3g} cm/s, {100 * r.pgd_m:.3g} cm; "
         f"Arias intensity {r.arias_m_s:.3g} m/s over {r.duration_5_95_s:.3g} s (5 to 95 %). "
     )
     if r.rotd100_pga_g is not None:
@@ -189,11 +206,9 @@ def describe(name: str, r: out.OneMotion) -> str:
             f"(explains {100 * first.goodness_of_fit:.0f} % of the motion over its span). "
         )
     pulse = r.wavelet_pulse
-    kind = "pulse-like" if pulse.pulse_like else "not pulse-like"
-    return (
-        text
-        + f"By Baker's classification it is {kind} (indicator {pulse.indicator:.2f}, period {pulse.period_s:.2f} s)."
-    )
+    if pulse.pulse_like:
+        return f"{text}By Baker's classification it is pulse-like (indicator {pulse.indicator:.2f}, period {pulse.period_s:.2f} s)."
+    return f"{text}By Baker's classification it is not pulse-like: {'; '.join(pulse.fails)} (period {pulse.period_s:.2f} s)."
 
 
 def _spectra_arrays(spectra: core.Spectra) -> dict[str, Array]:
@@ -208,97 +223,70 @@ def _spectra_arrays(spectra: core.Spectra) -> dict[str, Array]:
     }
 
 
-def _readable(members: Iterator[Motion | RecordError], warnings: list[str]) -> Iterator[Motion]:
-    """The motions of a set; a record that cannot be read becomes a warning, and a refusal if it is the only one."""
-    found, wrong = 0, []
-    for member in members:
-        if isinstance(member, RecordError):
-            wrong.append(str(member))
+def _readable(context: Context, model: models.Suite, warnings: list[str]) -> list[Motion]:
+    """The motions of a suite; a record that cannot be read becomes a warning, and a refusal if it is the only one."""
+    found: list[Motion] = []
+    wrong: list[str] = []
+    for motion in suite_motions(model, context.deck.folder):
+        stop_if_asked()
+        if isinstance(motion, RecordError):
+            wrong.append(str(motion))
             warnings += wrong[-1:] if len(wrong) <= 10 else []
-            continue
-        found += 1
-        yield member
+        else:
+            found.append(motion)
+            warnings += motion.notes[:1] if len(warnings) < 10 else []
     if len(wrong) > 10:
         warnings.append(f"and {len(wrong) - 10} more records that cannot be read")
     if not found:
         raise Refused(f"none of the {len(wrong)} records can be read; the first: {wrong[0]}")
+    return found
 
 
-@dataclass(frozen=True)
-class Matched:
-    """Member k is motion k of a compatible set: its matching takes seconds."""
-
-    model: models.Compatible
-    folder: Path
-
-    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
-        def member(k: int) -> dict[str, np.ndarray]:
-            stop_if_asked()
-            return {"acceleration": compatible_motion(self.model, self.folder, k).ground.samples[0]}
-
-        return stacked(member, first, count)
-
-
-def _members(context: Context, count: int) -> Iterator[Motion | RecordError]:
-    """The motions of the set; those of a compatible one, which take long to make, by the batch layer."""
+def _members(context: Context, options: MotionStudy, warnings: list[str]) -> tuple[Members, int]:
+    """The motions of the set and how many they are. A compatible one, whose motions take long to make, is made here."""
     model, folder = context.deck.motion, context.deck.folder
-    if not isinstance(model, models.Compatible):
-        return make_members(model, folder, count)
-    swept = sweep(context, "compatible", Matched(model, folder), count, "compatible motions", slow=True).whole()
-    return (compatible_motion(model, folder, k, a) for k, a in enumerate(swept["acceleration"]))
+    if isinstance(model, models.Suite):
+        read = _readable(context, model, warnings)
+        return Held(read), len(read)
+    if isinstance(model, models.Generated):
+        return Generated(generated_set(model, folder)), options.count
+    job = Matched(model, folder)
+    swept = sweep(context, "compatible", job, options.count, "compatible motions", slow=True).whole()
+    made = [compatible_motion(model, folder, k, a) for k, a in enumerate(swept["acceleration"])]
+    return Held(made), options.count
 
 
 def _run_set(context: Context, options: MotionStudy) -> Result:
     model, folder = context.deck.motion, context.deck.folder
     suite = isinstance(model, models.Suite)
-    damping = _damping(options)
-    if isinstance(model, models.Compatible):
-        damping = model.damping
-    rows: dict[str, list] = {
-        n: [] for n in ("name", "pga_g", "pgv_m_s", "pgd_m", "arias_m_s", "cav_m_s", "duration_5_95_s")
-    }
-    components: list[dict[str, float]] = []
-    psa, shown, impulses, squares, warnings = [], [], [], None, []
-    periods = None
+    damping = model.damping if isinstance(model, models.Compatible) else _damping(options)
+    warnings: list[str] = []
     try:
-        for k, motion in enumerate(_readable(_members(context, options.count), warnings)):
-            a, step = _series(motion)
-            m = core.measures(a, step)
-            for name, value in (("name", motion.name), ("pga_g", m.pga[0] / GRAVITY), ("pgv_m_s", m.pgv[0]), ("pgd_m", m.pgd[0]),
-                                ("arias_m_s", m.arias[0]), ("cav_m_s", m.cav[0]), ("duration_5_95_s", m.duration[0])):  # fmt: skip
-                rows[name].append(value if name == "name" else float(value))
-            if suite:
-                components.append(_components(motion))
-            if periods is None:
-                periods = _periods(options, step)
-            if k < MOST_SPECTRA:
-                psa.append(core.response_spectra(a, step, periods, [damping], threads=context.threads).psa[0])
-                if not suite:
-                    frequency, amplitude = fourier_spectrum(a, step)
-                    squares = amplitude**2 if squares is None else squares + amplitude**2
-            if k < MOST_IMPULSES:
-                found = primary_impulses(step * np.arange(len(a)), a, 1, None, options.max_period)
-                impulses.append((abs(found[0].amplitude) / GRAVITY, found[0].period) if found else (np.nan, np.nan))
-            if k < SHOWN:
-                shown.append((motion.name, a, step))
-            warnings += motion.notes[:1] if len(warnings) < 10 else []
-            context.progress(k + 1, options.count, "motions")
+        members, count = _members(context, options, warnings)
     except RecordError as error:
         raise Refused(str(error)) from None
-    psa, impulses = np.array(psa), np.array(impulses)
-    count = len(rows["name"])
+    shown = [(motion.name, *series(motion)) for motion in members.motions(0, min(count, SHOWN), context.threads)]
+    periods = _periods(options, shown[0][2])
+    measures = sweep(context, "measures", Measures(members, suite), count, "measures of motions").whole().arrays
+    job = Spectra(members, periods, damping, not suite)
+    spectra = sweep(context, "spectra", job, min(count, MOST_SPECTRA), "spectra of motions").whole()
+    primary = PrimaryImpulses(members, options.max_period)
+    impulses = sweep(context, "impulses", primary, min(count, MOST_IMPULSES), "impulses of motions", slow=True).whole()
+    psa = spectra["psa"]
     result = Result("motion", warnings=warnings)
     r = {
         "count": count,
         "damping": damping,
-        **{f"median_{n}": float(np.median(v)) for n, v in rows.items() if n != "name"},
-        **{f"largest_{n}": float(np.max(v)) for n, v in rows.items() if n in ("pga_g", "pgv_m_s")},
-        "median_impulse_amplitude_g": float(np.nanmedian(impulses[:, 0])),
-        "median_impulse_period_s": float(np.nanmedian(impulses[:, 1])),
+        **{f"median_{n}": float(np.median(measures[n])) for n in MEDIANS},
+        **{f"largest_{n}": float(np.max(measures[n])) for n in ("pga_g", "pgv_m_s")},
+        "median_impulse_amplitude_g": float(np.nanmedian(impulses["amplitude_g"])),
+        "median_impulse_period_s": float(np.nanmedian(impulses["period_s"])),
         "time_step_s": shown[0][2],
     }
-    have = {n: [c[n] for c in components] for n in (components[0] if components else ())}
-    result.tables["ensemble"] = TableData(rows | {n: v for n, v in have.items() if np.isfinite(v).any()})
+    result.tables["ensemble"] = TableData(
+        {"name": [members.name(k) for k in range(count)]}
+        | {n: v for n, v in measures.items() if n in MEDIANS or np.isfinite(v).any()}
+    )
     result.arrays = {
         "period": Array(periods, ("period",), "s"),
         "psa_percentile": Array(
@@ -306,19 +294,21 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         ),
         "psa_mean": Array(psa.mean(axis=0), ("period",), "m/s^2", "mean pseudo-acceleration of the set"),
         "psa_shown": Array(psa[:SHOWN], ("shown", "period"), "m/s^2"),
-        "impulse_amplitude": Array(impulses[:, 0], ("studied",), "g", "primary impulses"),
-        "impulse_period": Array(impulses[:, 1], ("studied",), "s"),
+        "impulse_amplitude": Array(impulses["amplitude_g"], ("studied",), "g", "primary impulses"),
+        "impulse_period": Array(impulses["period_s"], ("studied",), "s"),
         **{
             f"shown_{k + 1}": Array(a, (f"point_{k + 1}",), "m/s^2", name, "shown")
             for k, (name, a, _) in enumerate(shown)
         },
         "shown_step": Array(np.array([s for _, _, s in shown]), ("shown",), "s"),
     }
-    if squares is not None:
-        result.arrays["frequency"] = Array(frequency, ("frequency",), "Hz")
+    if not suite:
+        _, a, step = shown[0]
+        result.arrays["frequency"] = Array(fourier_spectrum(a, step)[0], ("frequency",), "Hz")
         result.arrays["fourier"] = Array(
-            np.sqrt(squares / len(psa)), ("frequency",), "m/s", "root mean square Fourier amplitude"
-        )
+            np.sqrt(np.mean(spectra["fourier"] ** 2, axis=0)), ("frequency",), "m/s",
+            "root mean square Fourier amplitude",
+        )  # fmt: skip
     if isinstance(model, models.Generated):
         r |= _compare_with_intensity(result, r, model, context)
     elif isinstance(model, models.Compatible):
@@ -338,13 +328,6 @@ def _run_set(context: Context, options: MotionStudy) -> Result:
         if "columns" in options.export:
             result.files[f"motion_{k + 1}.csv"] = export.columns(name, a, step)
     return result
-
-
-def _components(motion: Motion) -> dict[str, float]:
-    """Peaks of the components beside the horizontal one in the plane; NaN for those a record lacks."""
-    samples = motion.ground.samples
-    up = float(np.abs(samples[1]).max()) / GRAVITY if len(samples) > 1 else np.nan
-    return {"vertical_pga_g": up, **_rotd_peaks(motion)}
 
 
 def _compare_with_intensity(

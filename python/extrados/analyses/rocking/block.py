@@ -4,6 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
+from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.block import BlockModel
@@ -33,6 +34,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     result = rocking_result(
         context,
         response,
+        doubts(context, options, rocker, response, end_time),
         f"the {rocker.word}",
         friction[:, None],
         restitution=c_v[0],

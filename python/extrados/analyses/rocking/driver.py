@@ -6,6 +6,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
+from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.arch import ArchModel
@@ -48,15 +49,17 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
 
     thrust = _thrust(model, response)
     needed = max(float(thrust.friction.max(initial=0.0)), _onset_friction(model, context, response))
-    thesis, projection = model.restitutions
+    doubt = doubts(context, options, rocker, response, end_time)
     result = rocking_result(
         context,
         response,
+        doubt,
         "link AB",
         thrust.friction,
         restitution=model.restitution,
-        restitution_thesis=thesis,
-        restitution_energy_safe=projection,
+        restitution_thesis=model.impacts.thesis,
+        restitution_energy_safe=model.impacts.energy_safe,
+        restitution_inelastic=model.impacts.inelastic,
         critical_rotation_rad=model.limits.critical,
         uplift_acceleration_g=gamma,
         required_friction=needed,

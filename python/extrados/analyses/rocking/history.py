@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.rocking.doubts import Doubts
 from extrados.analyses.rocking.tables import Rocking
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
@@ -43,7 +44,9 @@ def run_history(
         room = response.events_found
 
 
-def rocking_result(context: Context, response: Response, of: str, friction: np.ndarray, **further: Any) -> Result:
+def rocking_result(
+    context: Context, response: Response, doubt: Doubts, of: str, friction: np.ndarray, **further: Any
+) -> Result:
     """Results, tables and arrays that every rocking structure has; `of` says whose rotation it is.
 
     friction (times, joints): coefficient of friction needed. further: the results that only this structure has.
@@ -77,9 +80,12 @@ def rocking_result(context: Context, response: Response, of: str, friction: np.n
         energy_residual_ratio=float(np.abs(energy - response.ledger).max(initial=0.0)) / scale,
         steps=response.steps,
         rejected_steps=response.rejected,
+        decided_by_last_digits=doubt.on_the_edge,
+        **({"outcomes_by_rule": doubt.rules} if doubt.rules else {}),
         **further,
     )
     result.results = r
+    result.warnings += doubt.warnings
     result.tables["rocking"] = TableData(
         {
             "time": response.time, "rotation": response.rotation, "rotation_rate": response.rate,

@@ -4,6 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import geometry_arrays
+from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.mechanism import MechanismModel
@@ -32,7 +33,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     known = any(one.determinate for one in model.linkages)
     side = 0 if response.peak >= 0.0 else 1
     result = rocking_result(
-        context, response, model.driver(side), friction,
+        context, response, doubts(context, options, rocker, response, end_time), model.driver(side), friction,
         restitution=model.restitution[0],
         restitution_to_left=model.restitution[1],
         critical_rotation_rad=model.critical[0],

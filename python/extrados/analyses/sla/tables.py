@@ -1,15 +1,19 @@
 """The deck tables of sequentially linear analysis."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.places import Placed, Range
+from extrados.building.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Force, Length, LineForce, Stress
 from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
 
 
 class Part(Placed):
@@ -84,6 +88,12 @@ class Sla(BuildingAnalysis):
     )  # fmt: skip
     starter_structure: ClassVar = "panel"
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """Also, of stones, that their joints do not slide."""
+        found = super().rests_on(building)
+        return {**found, "joints.friction": NO_SLIDING} if building.meshed_by_stones else found
+
     constant: list[Load] | None = key(
         None,
         "loads A, there from the start; default the weight of stones, and of walls whose reference is not given",

@@ -1,13 +1,16 @@
 """Analysis kinds of the rocking statistics: fragility, resonance, spectra, code checks."""
 
-from typing import ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import model_validator
 
 from extrados.analyses.rocking.tables import RockingTable
-from extrados.schema.quantities import Acceleration, Frequency, Time
+from extrados.schema.quantities import Acceleration, Angle, Frequency, OrText, Time, factor, parse
 from extrados.schema.table import key
 
+#: Measures of levels that have a dimension: SI unit, and the unit of a bare number
+LEVELS = {"pga": ("m/s^2", "g"), "sa": ("m/s^2", "g"), "arias": ("m/s", "m/s")}
+Level = Annotated[float, OrText()]
 UNCERTAIN = {
     "block": ("width", "height", "centre_height", "toe_right", "toe_left", "restitution"),
     "arch": ("radius", "thickness", "restitution"),
@@ -29,7 +32,10 @@ class Fragility(RockingTable):
         "pga", "measure of the levels: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) [g], Arias intensity "
         "[m/s], or the factor itself", source="Dimitrakopoulos and Paraskeva 2015",
     )  # fmt: skip
-    levels: list[float] | None = key(None, "intensities to which every motion is scaled", min_length=1, max_length=500)
+    levels: list[Level] | None = key(
+        None, 'intensities to which every motion is scaled, numbers in the unit of the measure or text such as "0.1 g"',
+        min_length=1, max_length=500,
+    )  # fmt: skip
     sa_period: Time | None = key(None, "period of SA", gt=0)
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
@@ -40,6 +46,19 @@ class Fragility(RockingTable):
     bins: int = key(20, "of the histogram up to the critical rotation", ge=2, le=1000)
     settle: Time | None = key(None, "time after the motion; default 40 natural time units", ge=0)
     tolerance: float = key(1e-8, "relative tolerance of the integrator", ge=1e-13, le=1e-3)
+
+    @model_validator(mode="before")
+    @classmethod
+    def _units(cls, data: Any) -> Any:
+        """Levels given as text, in the unit of their measure."""
+        levels = data.get("levels") if isinstance(data, dict) else None
+        if not isinstance(levels, list) or not any(isinstance(level, str) for level in levels):
+            return data
+        intensity = data.get("intensity", "pga")
+        if intensity not in LEVELS:
+            raise ValueError(f"levels of intensity = {intensity!r} are numbers without a unit")
+        si, unit = LEVELS[intensity]
+        return {**data, "levels": [parse(v, si) / factor(unit, si) if isinstance(v, str) else v for v in levels]}
 
     @model_validator(mode="after")
     def _sensible(self) -> "Fragility":
@@ -85,7 +104,7 @@ class RockingSpectrum(RockingTable):
         min_length=1,
         max_length=5000,
     )
-    slenderness: list[float] = key([10.0, 15.0, 20.0, 25.0], "alpha in degrees", min_length=1, max_length=50)
+    slenderness: list[Angle] = key([10.0, 15.0, 20.0, 25.0], "alpha", min_length=1, max_length=50)
 
     @model_validator(mode="after")
     def _angles(self) -> "RockingSpectrum":

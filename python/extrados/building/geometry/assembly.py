@@ -18,7 +18,9 @@ class Assembly:
     What drivers and pictures know of its parts: `chains`, name -> joints of an arch from springing to
     springing; `buttresses`, blocks that stand on the ground at the sides, from left to right, and may
     crack when tilted; `fill` (nb, 3), mass [kg] that rests on each block and its place x, y [m];
-    `measures`, derived lengths worth telling, by names that end in their unit.
+    `measures`, derived lengths worth telling, by names that end in their unit; `materials`, for each block a name of
+    [materials] or None, empty where all are of one; `groups`, name -> joints that may be named together.
+    `remarks` must be told beside every answer; `notes`, what was made of a survey, once.
 
     `inward` (nj) is +1 where the left side of p -> q lies in block a, -1 where the right side does; None
     lets the centroids decide, which is right for every block that is convex near its joints.
@@ -40,6 +42,10 @@ class Assembly:
     buttresses: list[int] = field(default_factory=list, kw_only=True)
     fill: np.ndarray | None = field(default=None, kw_only=True)
     measures: dict[str, float] = field(default_factory=dict, kw_only=True)
+    materials: list[str | None] = field(default_factory=list, kw_only=True)
+    groups: dict[str, list[int]] = field(default_factory=dict, kw_only=True)
+    remarks: tuple[str, ...] = field(default=(), kw_only=True)
+    notes: tuple[str, ...] = field(default=(), kw_only=True)
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {len(self.mass)} blocks, {len(self.a)} joints>"

@@ -1,9 +1,11 @@
 """Chains of stones found in any assembly: arches from springing to springing, and stacks on the ground."""
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
 
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 
 
@@ -29,6 +31,39 @@ def with_chains(assembly: Assembly) -> Assembly:
     for word, rows in (("chain", [joints for _, _, joints in spans]), ("stack", stacks)):
         chains |= {word if len(rows) == 1 else f"{word} {k}": joints for k, joints in enumerate(rows, start=1)}
     return _turned(replace(assembly, chains=chains), [joints for _, _, joints in spans])
+
+
+def in_order(assembly: Assembly) -> Assembly:
+    """A single arch between two grounds with its stones and joints numbered from left to right: joint k has stone k on its
+    right, `a`, and stone k - 1 on its left, `b`. BadGeometry where the assembly is something else."""
+    joints = next(iter(assembly.chains.values()), [])
+    count = len(assembly.mass)
+    ends = [{int(assembly.a[j]), int(assembly.b[j])} for j in joints]
+    whole = len(assembly.chains) == 1 and len(joints) == len(assembly.a) == count + 1
+    if not whole or not (GROUND in ends[0] and GROUND in ends[-1]):
+        raise BadGeometry(
+            f"expected a single arch between two supports; here are {count} stones, {len(assembly.a)} joints and "
+            f"{len(assembly.chains)} rows of stones"
+        )
+    order = [next(iter((one & two) - {GROUND})) for one, two in itertools.pairwise(ends)]
+    a, b = np.array([*order, GROUND]), np.array([GROUND, *order])
+    inward = np.sign((assembly.normal[joints] * _left(assembly.p[joints], assembly.q[joints])).sum(axis=1))
+    inward = np.where(assembly.a[joints] == a, inward, -inward).astype(int)
+    rank = np.empty(count + 1, dtype=int)
+    rank[order], rank[GROUND] = np.arange(count), GROUND
+    return replace(
+        assembly, outlines=[assembly.outlines[i] for i in order], mass=assembly.mass[order],
+        centroid=assembly.centroid[order], inertia=assembly.inertia[order], p=assembly.p[joints], q=assembly.q[joints],
+        a=rank[a], b=rank[b], inward=inward, block_names=[assembly.block_names[i] for i in order],
+        joint_names=[assembly.joint_names[j] for j in joints], chains={next(iter(assembly.chains)): list(range(count + 1))},
+        materials=[assembly.materials[i] for i in order] if assembly.materials else [], groups={},
+        fill=None if assembly.fill is None else assembly.fill[order],
+    )  # fmt: skip
+
+
+def _left(p: np.ndarray, q: np.ndarray) -> np.ndarray:
+    """To the left of p -> q, as long as it."""
+    return np.column_stack([p[:, 1] - q[:, 1], q[:, 0] - p[:, 0]])
 
 
 def _on_ground(assembly: Assembly, joint: int) -> bool:

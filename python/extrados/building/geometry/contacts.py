@@ -1,13 +1,22 @@
-"""Joints of polygons that touch: shared stretches of their edges; overlaps and near misses are named."""
+"""Joints of polygons that touch, and one list of all gaps and overlaps between them."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.polygons import following, inside
 
-NEAR = 50.0  # times the tolerance: gaps up to this are reported as near misses
+#: How far apart stones that face each other may stand to be told as a near miss: 50 tolerances, within these bounds
+#: [m], or twice the tolerance.
+NEAR = 50.0
+NEAR_BOUNDS = (1e-3, 1e-2)
+#: Of the tolerance: gaps and overlaps below it are rounding.
+ROUNDING = 1e-3
+#: Cosine of the angle by which stretches of one face may differ.
+SAME_WAY = 0.7
+PAIRS_AT_ONCE = 5000
 
 
 class Overlap(BadGeometry):
@@ -15,70 +24,130 @@ class Overlap(BadGeometry):
 
 
 @dataclass(frozen=True)
-class Contacts:
-    """p, q (k, 2) [m] along the edges of block a, which lies to the left; b is -1 on the ground.
+class Flaw:
+    """Two blocks that do not lie on each other as drawn; `second` is -1 where it is the ground.
 
-    near: (block, block, gap in m) of pairs that face each other without touching.
+    depth [m]: the widest part of a gap along the faces (length [m] of them), or how deep the two lie in each other.
+    """
+
+    kind: Literal["gap", "overlap"]
+    first: int
+    second: int
+    depth: float
+    place: tuple[float, float]
+    length: float = 0.0
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """p, q (k, 2) [m] midway between the faces that touch, block a to the left; b is -1 on the ground.
+
+    flaws: every gap and overlap beyond rounding, those within the tolerance too, the deepest first.
     """
 
     p: np.ndarray
     q: np.ndarray
     a: np.ndarray
     b: np.ndarray
-    near: list[tuple[int, int, float]]
+    flaws: list[Flaw]
 
 
-def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: float, names: list[str]) -> Contacts:
+def shortest_joint(tolerance: float) -> float:
+    """Length [m] below which a shared stretch is a point: ten tolerances, or three where that is above 1 mm."""
+    return min(10.0 * tolerance, max(1e-3, 3.0 * tolerance))
+
+
+def find_contacts(outlines: list[np.ndarray], ground: np.ndarray, tolerance: float) -> Contacts:
     """Contacts of counter-clockwise outlines with each other and with ground segments (k, 4) x, y, x, y.
 
-    Edges touch where they run opposite ways within `tolerance` [m] of one line. Stretches shorter than ten
-    tolerances are points, not joints. Overlap names blocks that lie in each other by more than the tolerance.
+    Faces touch where they run opposite ways within `tolerance` [m] of each other; stretches of one face that bends by
+    less than `shortest_joint` are one joint. Overlaps are listed, not refused.
     """
     start = np.cumsum([0, *map(len, outlines)])
     first = np.concatenate(outlines)
     last = np.concatenate([following(o) for o in outlines])
     owner = np.repeat(np.arange(len(outlines)), np.diff(start))
-    one, two = _edge_pairs(outlines, start, NEAR * tolerance)
-    _refuse_overlaps(outlines, first, last, owner, one, two, tolerance, names)
+    reach = max(float(np.clip(NEAR * tolerance, *NEAR_BOUNDS)), 2.0 * tolerance)
+    shortest = shortest_joint(tolerance)
+    one, two = _edge_pairs(outlines, start, reach)
+    rows, gaps = [], []
 
-    low, high, gap = _shared(first[one], last[one], first[two], last[two])
-    long_enough = high - low > 10.0 * tolerance
-    touch = long_enough & (gap <= tolerance)
-    near: dict[tuple[int, int], float] = {}
-    for i, j, g in zip(
-        owner[one[long_enough & ~touch]], owner[two[long_enough & ~touch]], gap[long_enough & ~touch], strict=True
-    ):
-        if g <= NEAR * tolerance:
-            near[i, j] = min(g, near.get((i, j), np.inf))
-    rows = [_stretches(first, last, one[touch], low[touch], high[touch], owner[one[touch]], owner[two[touch]])]
+    def meet(e: np.ndarray, begin: np.ndarray, end: np.ndarray, other: np.ndarray, middle: bool) -> None:
+        """Joints and gaps of edges e with opposite edges begin -> end of the blocks `other`."""
+        low, high, at_low, at_high = _shared(first[e], last[e], begin, end)
+        faces = high - low > shortest
+        gap = np.maximum(np.abs(at_low), np.abs(at_high))
+        on = faces & (gap <= tolerance)
+        half = 0.5 if middle else 0.0
+        rows.append(
+            _stretches(
+                first, last, e[on], low[on], high[on], half * at_low[on], half * at_high[on], owner[e[on]], other[on]
+            )
+        )
+        apart = np.maximum(-at_low, -at_high)  # the other lies to the right, outside
+        for k in np.flatnonzero(faces & (apart > ROUNDING * tolerance) & (gap <= reach)).tolist():
+            along = (last[e[k]] - first[e[k]]) / np.hypot(*(last[e[k]] - first[e[k]]))
+            place = first[e[k]] + (low[k] if -at_low[k] > -at_high[k] else high[k]) * along
+            gaps.append(
+                Flaw("gap", int(owner[e[k]]), int(other[k]), float(apart[k]), _xy(place), float(high[k] - low[k]))
+            )
 
+    meet(one, first[two], last[two], owner[two], middle=True)
     if len(ground):
         g = np.repeat(np.arange(len(ground)), len(first))
         e = np.tile(np.arange(len(first)), len(ground))
         for begin, end in ((ground[:, :2], ground[:, 2:]), (ground[:, 2:], ground[:, :2])):
-            low, high, gap = _shared(first[e], last[e], begin[g], end[g])
-            on = (high - low > 10.0 * tolerance) & (gap <= tolerance)
-            rows.append(_stretches(first, last, e[on], low[on], high[on], owner[e[on]], np.full(int(on.sum()), -1)))
-    table = _joined(np.concatenate(rows), 10.0 * tolerance)
-    touching = {(int(r[0]), int(r[1])) for r in table}
-    misses = [
-        (int(i), int(j), float(g)) for (i, j), g in near.items() if (i, j) not in touching and (j, i) not in touching
-    ]
-    return Contacts(table[:, 2:4], table[:, 4:6], table[:, 0].astype(int), table[:, 1].astype(int), misses)
+            meet(e, begin[g], end[g], np.full(len(e), -1), middle=False)
+    table = _joined(np.concatenate(rows), shortest)
+    flaws = _distinct([*gaps, *_overlaps(outlines, first, last, owner, one, two, ROUNDING * tolerance)], shortest)
+    return Contacts(table[:, 2:4], table[:, 4:6], table[:, 0].astype(int), table[:, 1].astype(int), flaws)
+
+
+def _distinct(flaws: list[Flaw], apart: float) -> list[Flaw]:
+    """The deepest first; of those between the same two blocks and `apart` [m] or less from each other, the deepest."""
+    told: dict[tuple[str, int, int], list[tuple[float, float]]] = {}
+    found = []
+    for flaw in sorted(flaws, key=lambda flaw: (-flaw.depth, flaw.first, flaw.second)):
+        places = told.setdefault((flaw.kind, flaw.first, flaw.second), [])
+        if all(np.hypot(x - flaw.place[0], y - flaw.place[1]) > apart for x, y in places):
+            places.append(flaw.place)
+            found.append(flaw)
+    return found
+
+
+def nearest(outlines: list[np.ndarray], ground: np.ndarray, block: int) -> Flaw | None:
+    """The gap between a block and what stands nearest to it, another block or the ground; None where there is nothing."""
+    best: Flaw | None = None
+    edges = [(j, o, following(o)) for j, o in enumerate(outlines) if j != block]
+    edges += [(-1, ground[:, :2], ground[:, 2:])] if len(ground) else []
+    own = outlines[block]
+    for j, a, b in edges:
+        for points, (begin, end) in ((own, (a, b)), (np.concatenate([a, b]), (own, following(own)))):
+            distance = _distance(points[:, None], begin, end)
+            k = int(distance.min(axis=1).argmin())
+            if best is None or distance[k].min() < best.depth:
+                first, second = (block, j) if j < 0 else (min(block, j), max(block, j))
+                best = Flaw("gap", first, second, float(distance[k].min()), _xy(points[k]))
+    return best
+
+
+def _xy(place: np.ndarray) -> tuple[float, float]:
+    return float(place[0]), float(place[1])
+
+
+def _distance(points: np.ndarray, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Distance [m] of points from segments a -> b, shapes that broadcast."""
+    along = b - a
+    share = np.clip(((points - a) * along).sum(axis=-1) / np.maximum((along**2).sum(axis=-1), 1e-300), 0.0, 1.0)
+    off = a + share[..., None] * along - points
+    return np.hypot(off[..., 0], off[..., 1])
 
 
 def _edge_pairs(outlines: list[np.ndarray], start: np.ndarray, reach: float) -> tuple[np.ndarray, np.ndarray]:
     """Edge numbers of all pairs of blocks whose boxes come within `reach`, the lower block first."""
     low = np.array([o.min(axis=0) for o in outlines]) - 0.5 * reach
     high = np.array([o.max(axis=0) for o in outlines]) + 0.5 * reach
-    order = np.argsort(low[:, 0])
-    reach_to = np.searchsorted(low[order, 0], high[order, 0], side="right")
-    count = np.maximum(reach_to - np.arange(len(order)) - 1, 0)
-    i = np.repeat(np.arange(len(order)), count)
-    j = i + 1 + np.arange(len(i)) - np.repeat(np.cumsum(count) - count, count)
-    i, j = order[i], order[j]
-    meet = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
-    i, j = np.minimum(i, j)[meet], np.maximum(i, j)[meet]
+    i, j = box_pairs(low, high)
     edges_i, edges_j = np.diff(start)[i], np.diff(start)[j]
     total = edges_i * edges_j
     within = np.arange(total.sum()) - np.repeat(np.cumsum(total) - total, total)
@@ -86,10 +155,23 @@ def _edge_pairs(outlines: list[np.ndarray], start: np.ndarray, reach: float) -> 
     return np.repeat(start[i], total) + within // per, np.repeat(start[j], total) + within % per
 
 
+def box_pairs(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs i < j of boxes (k, 2) low .. high that meet, by a sweep along x."""
+    order = np.argsort(low[:, 0])
+    reach_to = np.searchsorted(low[order, 0], high[order, 0], side="right")
+    count = np.maximum(reach_to - np.arange(len(order)) - 1, 0)
+    i = np.repeat(np.arange(len(order)), count)
+    j = i + 1 + np.arange(len(i)) - np.repeat(np.cumsum(count) - count, count)
+    i, j = order[i], order[j]
+    meet = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
+    return np.minimum(i, j)[meet], np.maximum(i, j)[meet]
+
+
 def _shared(
     a0: np.ndarray, a1: np.ndarray, b0: np.ndarray, b1: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Stretch of edges a that opposite edges b share, as distances along a, and their gap there."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Stretch of edges a that opposite edges b share, as distances along a, and where b lies at its ends, positive to
+    the left of a. Edges that run the same way share nothing."""
     along = a1 - a0
     length = np.hypot(along[:, 0], along[:, 1])
     t = along / length[:, None]
@@ -97,11 +179,9 @@ def _shared(
     s0, s1 = (u0 * t).sum(axis=1), (u1 * t).sum(axis=1)
     d0, d1 = t[:, 0] * u0[:, 1] - t[:, 1] * u0[:, 0], t[:, 0] * u1[:, 1] - t[:, 1] * u1[:, 0]
     low, high = np.maximum(s1, 0.0), np.minimum(s0, length)
-    # Edges that run the same way share nothing; the gap is taken at the ends of the shared stretch.
     run = np.where(s0 > s1, s0 - s1, 1.0)
     slope = (d0 - d1) / run
-    gap = np.maximum(np.abs(d1 + slope * (low - s1)), np.abs(d1 + slope * (high - s1)))
-    return low, np.where(s0 > s1, high, low), gap
+    return low, np.where(s0 > s1, high, low), d1 + slope * (low - s1), d1 + slope * (high - s1)
 
 
 def _stretches(
@@ -110,43 +190,68 @@ def _stretches(
     edge: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
+    at_low: np.ndarray,
+    at_high: np.ndarray,
     a: np.ndarray,
     b: np.ndarray,
 ) -> np.ndarray:
-    """Rows a, b, p, q."""
+    """Rows a, b, p, q; at_low and at_high shift p and q to the left of the edge [m]."""
     along = last[edge] - first[edge]
     t = along / np.hypot(along[:, 0], along[:, 1])[:, None]
-    return np.column_stack([a, b, first[edge] + low[:, None] * t, first[edge] + high[:, None] * t])
+    left = np.column_stack([-t[:, 1], t[:, 0]])
+    p = first[edge] + low[:, None] * t + at_low[:, None] * left
+    q = first[edge] + high[:, None] * t + at_high[:, None] * left
+    return np.column_stack([a, b, p, q])
 
 
 def _joined(rows: np.ndarray, slack: float) -> np.ndarray:
-    """Stretches of one line between the same two blocks, end to end, made one; sorted by blocks."""
+    """Stretches of one face between the same two blocks, end to end and within `slack` of one line, made one; sorted
+    by blocks."""
     rows = rows[np.lexsort((rows[:, 1], rows[:, 0]))]
-    kept: list[np.ndarray] = []
+    kept: list[tuple[tuple[float, float], np.ndarray]] = []  # pair, and the ends (n, 2) of its stretches, two first
     for row in rows:
-        for other in reversed(kept):
-            if other[0] != row[0] or other[1] != row[1]:
-                kept.append(row)
-                break
-            t = (other[4:6] - other[2:4]) / np.hypot(*(other[4:6] - other[2:4]))
-            off = np.array([row[2:4] - other[2:4], row[4:6] - other[2:4]])
-            s, d = off @ t, off @ np.array([-t[1], t[0]])
-            length = float((other[4:6] - other[2:4]) @ t)
-            if np.abs(d).max() < slack and s.min() < length + slack and s.max() > -slack:
-                begin, end = min(0.0, s.min()), max(length, s.max())
-                other[4:6] = other[2:4] + end * t
-                other[2:4] = other[2:4] + begin * t
-                break
-        else:
-            kept.append(row)
-    return np.array(kept).reshape(-1, 6)
+        pair, face = (row[0], row[1]), row[2:].reshape(2, 2)
+        k = len(kept) - 1
+        while k >= 0 and kept[k][0] == pair:
+            if (together := _in_line(kept[k][1], face, slack)) is not None:
+                face = together
+                del kept[k]
+                k = len(kept)  # longer now, it may meet those that it did not meet before
+            k -= 1
+        kept.append((pair, face))
+    return np.array([[*pair, *face[0], *face[1]] for pair, face in kept]).reshape(-1, 6)
 
 
-def _refuse_overlaps(
+def _in_line(face: np.ndarray, more: np.ndarray, slack: float) -> np.ndarray | None:
+    """Ends of two stretches (n, 2) and (m, 2) as those of one, the outermost two first; None where they make no one line."""
+    one, two = face[1] - face[0], more[1] - more[0]
+    if one @ two < SAME_WAY * np.hypot(*one) * np.hypot(*two):
+        return None
+    together = np.concatenate([face, more])
+    s = together @ ((one + two) / np.hypot(*(one + two)))
+    n = len(face)
+    if s[n:].min() > s[:n].max() + slack or s[n:].max() < s[:n].min() - slack:
+        return None
+    first, last = int(s.argmin()), int(s.argmax())
+    t = (together[last] - together[first]) / np.hypot(*(together[last] - together[first]))
+    off = together - together[first]
+    if np.abs(off[:, 1] * t[0] - off[:, 0] * t[1]).max() >= slack:
+        return None
+    rest = [k for k in range(len(together)) if k not in (first, last)]
+    return together[[first, last, *rest]]
+
+
+def _overlaps(
     outlines: list[np.ndarray], first: np.ndarray, last: np.ndarray, owner: np.ndarray, one: np.ndarray, two: np.ndarray,
-    tolerance: float, names: list[str],
-) -> None:  # fmt: skip
-    """Overlap where two blocks lie in each other: their edges cross, or one holds a place of the other."""
+    rounding: float,
+) -> list[Flaw]:  # fmt: skip
+    """Where two blocks lie in each other by more than `rounding`: their edges cross, or one holds a place of the other."""
+    found: dict[tuple[int, int], Flaw] = {}
+
+    def add(i: int, j: int, depth: float, place: np.ndarray) -> None:
+        pair = (min(i, j), max(i, j))
+        if pair not in found or depth > found[pair].depth:
+            found[pair] = Flaw("overlap", *pair, float(depth), _xy(place))
 
     def offsets(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         t = last[a] - first[a]
@@ -155,12 +260,13 @@ def _refuse_overlaps(
         return begin, end
 
     (b0, b1), (a0, a1) = offsets(one, two), offsets(two, one)
-    cross = (np.minimum(b0, b1) < -tolerance) & (np.maximum(b0, b1) > tolerance)
-    cross &= (np.minimum(a0, a1) < -tolerance) & (np.maximum(a0, a1) > tolerance)
-    if cross.any():
-        k = int(np.flatnonzero(cross)[0])
-        raise Overlap(_say(names, owner[one[k]], owner[two[k]], 0.5 * (first[one[k]] + last[one[k]])))
-    # No edges cross: then one lies in the other only with all of it. Corners, middles of edges and a place
+    crossing = np.minimum.reduce([
+        -np.minimum(b0, b1), np.maximum(b0, b1), -np.minimum(a0, a1), np.maximum(a0, a1)
+    ])  # fmt: skip
+    for k in np.flatnonzero(crossing > rounding).tolist():
+        where = first[two[k]] + b0[k] / (b0[k] - b1[k]) * (last[two[k]] - first[two[k]])
+        add(int(owner[one[k]]), int(owner[two[k]]), crossing[k], where)
+    # Where no edges cross, one lies in the other only with all of it. Corners, middles of edges and a place
     # inside tell, among them those that lie on the other's outline.
     start = np.searchsorted(owner, np.arange(len(outlines) + 1))
     pairs = np.unique(np.column_stack([owner[one], owner[two]]), axis=0) if len(one) else np.empty((0, 2), int)
@@ -178,14 +284,10 @@ def _refuse_overlaps(
         group = np.cumsum(edges) - edges
         at = np.repeat(np.arange(len(pair)), edges)
         edge = start[some[pair[at], 1]] + np.arange(len(at)) - group[at]
-        deep = _depth(points[probe[at]], first[edge], last[edge], group) > tolerance
-        if deep.any():
-            k = int(np.flatnonzero(deep)[0])
-            i, j = some[pair[k]].tolist()
-            raise Overlap(_say(names, i, j, points[probe[k]]))
-
-
-PAIRS_AT_ONCE = 5000
+        deep = _depth(points[probe[at]], first[edge], last[edge], group)
+        for k in np.flatnonzero(deep > rounding).tolist():
+            add(int(some[pair[k], 0]), int(some[pair[k], 1]), deep[k], points[probe[k]])
+    return list(found.values())
 
 
 def _within(outline: np.ndarray) -> np.ndarray:
@@ -206,11 +308,5 @@ def _depth(points: np.ndarray, a: np.ndarray, b: np.ndarray, group: np.ndarray) 
     with np.errstate(divide="ignore", invalid="ignore"):
         right = x < a[:, 0] + (y - a[:, 1]) / (b[:, 1] - a[:, 1]) * (b[:, 0] - a[:, 0])
     crossed = np.add.reduceat((spans & right).astype(int), group) % 2 == 1
-    along = b - a
-    share = np.clip(((points - a) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
-    near = np.minimum.reduceat(np.hypot(*(a + share[:, None] * along - points).T), group)
+    near = np.minimum.reduceat(_distance(points, a, b), group)
     return np.where(crossed, near, 0.0)
-
-
-def _say(names: list[str], i: int, j: int, place: np.ndarray) -> str:
-    return f"blocks '{names[i]}' and '{names[j]}' overlap near x = {place[0]:.4g} m, y = {place[1]:.4g} m"

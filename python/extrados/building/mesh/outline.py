@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from extrados.building.errors import BadGeometry
-from extrados.building.files import read
-from extrados.building.geometry.drawing import LARGEST_FILE, read_dxf
+from extrados.building.files import LARGEST_FILE, read
+from extrados.building.geometry.dxf import read_dxf
 from extrados.building.geometry.polygons import signed_area
 
 JITTER = 0.33  # of the spacing: Delaunay triangles stay well shaped and keep to straight edges
@@ -17,8 +17,8 @@ def fill_outline(drawing: str, unit: str | None, folder: Path, size: float, seed
     from matplotlib.path import Path as Ring
     from scipy.spatial import Delaunay, cKDTree
 
-    polygons, _ = read_dxf(read(drawing, LARGEST_FILE, folder), unit)
-    rings = sorted((np.asarray(p.points) for p in polygons), key=lambda r: -abs(signed_area(r)))
+    blocks = read_dxf(read(drawing, LARGEST_FILE, folder), unit).blocks
+    rings = sorted((np.asarray(p.points) for p in blocks), key=lambda r: -abs(signed_area(r)))
     if not rings:
         raise BadGeometry(f"{drawing}: no closed polyline in the drawing")
     outer, holes = Ring(rings[0]), [Ring(r) for r in rings[1:]]

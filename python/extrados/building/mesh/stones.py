@@ -113,6 +113,7 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
                 kind, connect, gauss, np.full(n, assembly.depth), np.zeros(n, dtype=int), np.zeros(n, dtype=bool),
                 np.full(n, np.nan),
             ))  # fmt: skip
+    building.refuse_mixture()
     materials, index, dry = _joint_materials(building, assembly, thickness)
     normal = assembly.normal[joint]
     n = len(row)

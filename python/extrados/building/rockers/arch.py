@@ -7,9 +7,12 @@ import numpy as np
 
 from extrados.building.errors import NoView
 from extrados.building.geometry.mass import together
+from extrados.building.rockers.impact import energy_kept
 from extrados.building.templates.arch import ArchAssembly, make_arch
 from extrados.core import arch as core_arch
+from extrados.core import mechanism as core_mechanism
 from extrados.core.rocking import Body, arch_body
+from extrados.limit.linkage import linkage
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
 
@@ -56,11 +59,35 @@ def four_hinge(arch: ArchAssembly, mechanism: Mechanism) -> core_arch.FourHinge:
 
 
 @dataclass(frozen=True)
+class Impacts:
+    """Rate after over rate before an impact of the four-hinge arch, c_v, by each rule.
+
+    thesis: momentum balances of Eqs B.3, which may exceed 1 or fall below 0; energy_safe: projection on the mirrored
+    mechanism alone, below 0 where it would have to close further; inelastic: the energy that a blow without rebound
+    leaves, with impulses at all joints (rockers.impact), between 0 and 1 and continuous in the geometry.
+    """
+
+    thesis: float
+    energy_safe: float
+    inelastic: float
+
+    @property
+    def by_rule(self) -> dict[str, float]:
+        """The same by the words of decks."""
+        return {"thesis": self.thesis, "energy-safe": self.energy_safe, "inelastic": self.inelastic}
+
+    def differing(self, factor: float) -> dict[str, float]:
+        """All c_v, held between 0 and 1, where the greatest exceeds the least by the factor; else none."""
+        used = {rule: float(np.clip(value, 0.0, 1.0)) for rule, value in self.by_rule.items()}
+        return used if max(used.values()) > factor * min(used.values()) else {}
+
+
+@dataclass(frozen=True)
 class ArchModel:
-    """An arch that stands, its collapse state to +x, and its impact rule ("thesis", "energy-safe" or c_v)."""
+    """An arch that stands, its collapse state to +x, and its impact rule (a word of Impacts.by_rule, or c_v)."""
 
     arch: ArchAssembly
-    rule: str | float = "thesis"
+    rule: str | float = "inelastic"
 
     @cached_property
     def limit(self) -> LimitAnalysis:
@@ -100,39 +127,48 @@ class ArchModel:
         return core_arch.limits(self.four_hinge)
 
     @cached_property
-    def restitutions(self) -> tuple[float, float]:
-        """c_v by the momentum balance of the thesis (uncapped) and by the workless-impulse projection."""
+    def impacts(self) -> Impacts:
+        """c_v by each rule."""
         a, m = self.arch, self.four_hinge
         opposite = np.where(
             np.isclose(m.hinge, a.intrados[m.joint]).all(axis=1)[:, None],
             a.extrados[m.joint],
             a.intrados[m.joint],
         )
-        return core_arch.restitution(a.mass, a.centroid, a.inertia, m.joint, m.hinge, opposite)
+        thesis, projection = core_arch.restitution(a.mass, a.centroid, a.inertia, m.joint, m.hinge, opposite)
+        one = linkage(a, self.collapse[1], 1)
+        opening = one.velocities(a.centroid, core_mechanism.follow(one, [0.0])[1][0])
+        # the mirrored mechanism has the same mass, so that energies are squares of rates
+        return Impacts(thesis, projection, float(np.sqrt(energy_kept(a, -opening))))
 
     @property
     def restitution(self) -> float:
-        """c_v used: by the rule, never above 1; NoView where the hinges do not reflect."""
+        """c_v used: by the rule, between 0 and 1; NoView where the rule says that the hinges do not reflect."""
         if not isinstance(self.rule, str):
             return float(self.rule)
-        thesis, projection = self.restitutions
-        value = projection if self.rule == "energy-safe" else thesis
+        value = self.impacts.by_rule[self.rule]
         if value < 0.0:
             raise NoView(
-                f'the impact rule "{self.rule}" gives c_v = {value:.3f}: the hinges of an arch this stocky do not reflect '
-                "at impact; give restitution a number between 0 and 1"
+                f'the impact rule "{self.rule}" gives c_v = {value:.3f}: the mirrored mechanism would have to close '
+                f'further; restitution = "inelastic" gives {self.impacts.inelastic:.3f}'
             )
         return min(value, 1.0)
 
     @property
     def warnings(self) -> list[str]:
-        thesis, projection = self.restitutions
-        if self.rule == "thesis" and thesis > 1.0:
+        impacts = self.impacts
+        if self.rule == "thesis" and impacts.thesis > 1.0:
             return [
-                f"the impact balance of the thesis gives c_v = {thesis:.3f}, which would create energy; 1 is used "
-                f'(the energy-safe rule gives {projection:.3f}: restitution = "energy-safe")'
+                f"the impact balance of the thesis gives c_v = {impacts.thesis:.3f}, which would create energy; 1 is used "
+                f'(restitution = "inelastic" gives {impacts.inelastic:.3f}, "energy-safe" {impacts.energy_safe:.3f})'
             ]
         return []
+
+    def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
+        """Rule -> (c_v, structure) of all rules where they differ by more than the factor; none for a given number."""
+        if not isinstance(self.rule, str):
+            return {}
+        return {rule: (c_v, arch_body(self.four_hinge, c_v)) for rule, c_v in self.impacts.differing(factor).items()}
 
     @cached_property
     def body(self) -> Body:

@@ -65,6 +65,10 @@ class BlockModel:
             return ["it is too stocky for Housner's impact (c_v below zero): it lands flat and stays, c_v = 0 is used"]
         return []
 
+    def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
+        """None: all impact rules are Housner's for a block."""
+        return {}
+
     @cached_property
     def body(self) -> Body:
         b, (right, left) = self.block, self.restitution

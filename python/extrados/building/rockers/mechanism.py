@@ -8,12 +8,12 @@ import numpy.typing as npt
 
 from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.rockers.impact import MOST_BLOCKS, energy_kept
 from extrados.core import mechanism as core_mechanism
 from extrados.core.errors import CoreError
 from extrados.core.mechanism import Coefficients, Table, table_body
 from extrados.core.rocking import Body
 from extrados.limit.answer import why_not
-from extrados.limit.impact import MOST_BLOCKS, energy_kept
 from extrados.limit.linkage import CannotRock, Linkage, laden, linkage
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
@@ -58,7 +58,7 @@ class MechanismModel:
     """
 
     assembly: Assembly
-    rule: str | float = "energy-safe"
+    rule: str | float = "inelastic"
 
     @cached_property
     def collapse(self) -> tuple[tuple[State, Mechanism], tuple[State, Mechanism]]:
@@ -151,7 +151,7 @@ class MechanismModel:
     @cached_property
     def energy_kept(self) -> tuple[float, float] | None:
         """Share of the kinetic energy that the impacts that start rocking to +x and to -x would leave if hinges could
-        open anywhere (limit.impact); None for too many blocks. Above what the projection leaves, the blow sets more
+        open anywhere (rockers.impact); None for too many blocks. Above what the projection leaves, the blow sets more
         than the two mechanisms in motion, and what follows an impact is beyond a model of one coordinate.
         """
         if len(self.assembly.mass) > MOST_BLOCKS:
@@ -162,17 +162,33 @@ class MechanismModel:
     @cached_property
     def restitution(self) -> tuple[float, float]:
         """Rate after over rate before, of the impacts that start rocking to +x and to -x."""
-        if self.rule == "energy-safe":
+        return self._by_rule(self.rule)
+
+    def _by_rule(self, rule: str | float) -> tuple[float, float]:
+        if rule == "energy-safe":
             return max(0.0, self.projections[0]), max(0.0, self.projections[1])
         ratio = float(np.sqrt(self.tables[1].mass / self.tables[0].mass))
-        if self.rule == "inelastic":
+        if rule == "inelastic":
             if self.energy_kept is None:
-                raise NoView(f'the impact rule "inelastic" is for at most {MOST_BLOCKS} blocks; give a number')
+                raise NoView(
+                    f'the impact rule "inelastic" is for at most {MOST_BLOCKS} blocks; give [joints] restitution = '
+                    '"energy-safe" or a number'
+                )
             right, left = np.sqrt(self.energy_kept)
             return float(right) * ratio, float(left) / ratio
-        if isinstance(self.rule, str):
-            raise NoView(f'the impact rule "{self.rule}" is not known here: "energy-safe", "inelastic", or a number')
-        return float(self.rule) * ratio, float(self.rule) / ratio
+        if isinstance(rule, str):
+            raise NoView(f'the impact rule "{rule}" is not known here: "energy-safe", "inelastic", or a number')
+        return float(rule) * ratio, float(rule) / ratio
+
+    def rivals(self, factor: float) -> dict[str, tuple[float, Body]]:
+        """Rule -> (c_v to +x, structure) of all rules where they differ by more than the factor; none for a number."""
+        if not isinstance(self.rule, str) or self.energy_kept is None:
+            return {}
+        found = {rule: self._by_rule(rule) for rule in ("energy-safe", "inelastic")}
+        one, other = found.values()
+        if all(max(x, y) <= factor * min(x, y) for x, y in zip(one, other, strict=True)):
+            return {}
+        return {rule: (pair[0], table_body(*self.tables, pair)) for rule, pair in found.items()}
 
     @cached_property
     def warnings(self) -> list[str]:

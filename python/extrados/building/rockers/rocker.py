@@ -65,7 +65,7 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
     made = building.blocks() if piers is None else piers
     if linear:
         raise NoView('form = "linear" is known of blocks and columns only')
-    if isinstance(made, ArchAssembly) and building.joints.restitution != "inelastic":
+    if isinstance(made, ArchAssembly):
         arch = ArchModel(made, building.joints.restitution)
         limits = arch.limits
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block

@@ -1,23 +1,29 @@
-"""Free polygons as a structure: from a deck, a JSON file or a drawing."""
+"""Free polygons as a structure: from a deck, a JSON file, an assembly of COMPAS or a drawing."""
 
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from extrados.building.errors import BadGeometry
-from extrados.building.files import read
+from extrados.building.files import LARGEST_FILE, read
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import with_chains
-from extrados.building.geometry.contacts import find_contacts
-from extrados.building.geometry.drawing import LARGEST_FILE, MOST_POINTS, Polygon, read_dxf, read_json
-from extrados.building.geometry.polygons import crossing_edges, following, properties, signed_area
+from extrados.building.geometry.compas import is_compas, read_compas
+from extrados.building.geometry.contacts import shortest_joint
+from extrados.building.geometry.drawing import Drawing, Layer, Polygon, parsed, read_json
+from extrados.building.geometry.dxf import SAGITTA, read_dxf
+from extrados.building.geometry.inspection import Inspection, areas, inspect, refuse
+from extrados.building.geometry.polygons import properties
 from extrados.building.structure import Structure
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
 
-FARTHEST = 1e5
+MARKS = 0.01  # m: how far a line that marks joints may lie from their middles
 
 
 def make_blocks(
@@ -28,85 +34,63 @@ def make_blocks(
     tolerance: float = 1e-4,
 ) -> Assembly:
     """Blocks whose shared edges are the joints, with the chains found among them. ground: segments (k, 4) [m], or None for the lowest level."""
-    if not polygons:
-        raise BadGeometry("there are no blocks")
-    names = [p.name for p in polygons]
-    if len(set(names)) < len(names):
-        twice = next(n for n in names if names.count(n) > 1)
-        raise BadGeometry(f"two blocks are called '{twice}'")
-    outlines = [_outline(p, tolerance) for p in polygons]
-    if ground is None:
-        lowest = min(float(o[:, 1].min()) for o in outlines)
-        left = min(float(o[:, 0].min()) for o in outlines)
-        right = max(float(o[:, 0].max()) for o in outlines)
-        ground = np.array([[left - 1.0, lowest, right + 1.0, lowest]])
-    contacts = find_contacts(outlines, np.asarray(ground, dtype=float).reshape(-1, 4), tolerance, names)
-    if not (contacts.b < 0).any():
-        raise BadGeometry("no block touches the ground: give `ground` segments where the supports are")
-    area, centroid, polar = zip(*map(properties, outlines), strict=True)
+    return assemble(inspect(Drawing(polygons), ground, tolerance), density, depth)
+
+
+def assemble(inspection: Inspection, density: float, depth: float) -> Assembly:
+    """The blocks of a survey [kg/m^3, m]; BadGeometry with all that is amiss."""
+    refuse(inspection)
+    names, contacts, polygons = inspection.names, inspection.contacts, inspection.drawing.blocks
+    area, centroid, polar = areas(inspection)
     rho = np.array([density if p.density is None else p.density for p in polygons]) * depth
+    joint_names = [
+        f"{names[a]} on {'the ground' if b < 0 else names[b]}" for a, b in zip(contacts.a, contacts.b, strict=True)
+    ]
+    several = {name for name, count in Counter(joint_names).items() if count > 1}
+    seen: Counter[str] = Counter()
+    for j, name in enumerate(joint_names):
+        if name in several:  # two blocks may meet along several faces
+            seen[name] += 1
+            joint_names[j] = f"{name} ({seen[name]})"
     assembly = Assembly(
-        outlines=outlines,
-        mass=np.array(area) * rho,
-        centroid=np.array(centroid),
-        inertia=np.array(polar) * rho,
+        outlines=inspection.outlines,
+        mass=area * rho,
+        centroid=centroid,
+        inertia=polar * rho,
         p=contacts.p,
         q=contacts.q,
         a=contacts.a,
         b=contacts.b,
         depth=depth,
         block_names=names,
-        joint_names=[
-            f"{names[a]} on {'the ground' if b < 0 else names[b]}" for a, b in zip(contacts.a, contacts.b, strict=True)
-        ],
+        joint_names=joint_names,
         inward=np.ones(len(contacts.a), dtype=int),
+        materials=[p.material if p.density is None else None for p in polygons],
+        groups=_groups(inspection),
+        remarks=tuple(inspection.remarks()),
+        notes=tuple(inspection.notes()),
     )
-    _refuse_loose(assembly, contacts.near)
     return with_chains(assembly)
 
 
-def _outline(polygon: Polygon, tolerance: float) -> np.ndarray:
-    points = np.asarray(polygon.points, dtype=float)
-    if not (np.abs(points) <= FARTHEST).all():  # NaN too
-        raise BadGeometry(f"block '{polygon.name}': a vertex lies farther than {FARTHEST:g} m from the origin")
-    if len(points) > 1 and np.allclose(points[0], points[-1], atol=tolerance, rtol=0.0):
-        points = points[:-1]
-    apart = np.hypot(*(following(points) - points).T) > tolerance if len(points) else np.array([], bool)
-    points = points[apart]
-    if not 3 <= len(points) <= MOST_POINTS:
-        raise BadGeometry(f"block '{polygon.name}': {len(points)} distinct vertices, expected 3 to {MOST_POINTS}")
-    if crossing_edges(points) is not None:
-        raise BadGeometry(f"block '{polygon.name}': its outline crosses itself")
-    area = signed_area(points)
-    if abs(area) < tolerance * float(np.ptp(points, axis=0).max()):
-        raise BadGeometry(f"block '{polygon.name}': it has no area to speak of ({abs(area):.3g} m^2)")
-    return points if area > 0.0 else points[::-1]
-
-
-def _refuse_loose(assembly: Assembly, near: list[tuple[int, int, float]]) -> None:
-    """Name blocks that no joint leads to the ground from, and the gaps that may be to blame."""
-    reached = set(assembly.a[assembly.b < 0].tolist())
-    pairs = [(a, b) for a, b in zip(assembly.a.tolist(), assembly.b.tolist(), strict=True) if b >= 0]
-    neighbours: dict[int, list[int]] = {}
-    for a, b in pairs:
-        neighbours.setdefault(a, []).append(b)
-        neighbours.setdefault(b, []).append(a)
-    front = list(reached)
-    while front:
-        front = list({n for block in front for n in neighbours.get(block, [])} - reached)
-        reached.update(front)
-    loose = [i for i in range(len(assembly.mass)) if i not in reached]
-    if not loose:
-        return
-    names = assembly.block_names
-    shown = ", ".join(f"'{names[i]}'" for i in loose[:5]) + (f" and {len(loose) - 5} more" if len(loose) > 5 else "")
-    gaps = [
-        f"'{names[i]}' and '{names[j]}' are {1000.0 * gap:.3g} mm apart"
-        for i, j, gap in near
-        if i in loose or j in loose
-    ]
-    hint = f"; near misses: {'; '.join(gaps[:3])} (see contact_tolerance)" if gaps else ""
-    raise BadGeometry(f"no joint leads from the ground to block{'s' if len(loose) > 1 else ''} {shown}{hint}")
+def _groups(inspection: Inspection) -> dict[str, list[int]]:
+    """Joints by layer: those between stones of one layer, and those that lines of a layer mark."""
+    contacts, found = inspection.contacts, {}
+    layers = [p.layer for p in inspection.drawing.blocks]
+    for layer in sorted({name for name in layers if name}):
+        own = np.array([name == layer for name in layers])
+        found[layer] = np.flatnonzero((contacts.b >= 0) & own[contacts.a] & own[contacts.b]).tolist()
+    middle = 0.5 * (contacts.p + contacts.q)
+    reach = max(MARKS, shortest_joint(inspection.tolerance))
+    for layer, lines in inspection.drawing.marks.items():
+        a, along = lines[:, :2], lines[:, 2:] - lines[:, :2]
+        share = ((middle[:, None] - a) * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), 1e-300)
+        off = a + np.clip(share, 0.0, 1.0)[..., None] * along - middle[:, None]
+        marked = np.flatnonzero(np.hypot(off[..., 0], off[..., 1]).min(axis=1) <= reach).tolist()
+        if not marked:
+            raise BadGeometry(f"the lines of layer '{layer}' mark no joint: none passes the middle of one within 10 mm")
+        found[layer] = marked
+    return found
 
 
 class BlockTable(Table):
@@ -117,50 +101,127 @@ class BlockTable(Table):
     density: Density | None = key(None, "density, where it differs from the others", gt=0, le=30000)
 
 
+class LayerTable(Table):
+    """A layer of the drawing that is more than plain stones of [material]."""
+
+    name: str = key(about="name of the layer, whatever its case", max_length=255)
+    role: Literal["stones", "ground", "joints", "left-out"] = key(
+        "stones",
+        'stones; lines of the ground, as those of GROUND are; lines drawn along joints, which [[joints.types]] may then name by '
+        "this layer; or nothing to read",
+    )  # fmt: skip
+    material: str | None = key(None, "a name of [materials], for the stones of this layer")
+
+    @model_validator(mode="after")
+    def _stones(self) -> "LayerTable":
+        if self.material is not None and self.role != "stones":
+            raise ValueError(f"material: a layer of role '{self.role}' has none; expected role = \"stones\"")
+        return self
+
+
 class Blocks(Structure):
     """Any plane assembly of polygons; edges that lie on each other are the joints."""
 
     starter: ClassVar = {"block": '[{ name = "pier", points = [[0, 0], [1, 0], [1, 3], [0, 3]] }]'}
     word: ClassVar = "assembly of blocks"
     kind: Literal["blocks"]
-    file: str | None = key(None, "JSON or DXF file with the blocks, beside the deck", max_length=500)
+    file: str | None = key(None, "JSON, COMPAS JSON or DXF file with the blocks, beside the deck", max_length=500)
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
-        None, "unit of a drawing that does not say (DXF without $INSUNITS)"
+        None, "unit of a file that does not say (DXF without $INSUNITS, COMPAS)"
     )
-    layers: list[str] | None = key(None, "layers of the drawing to read; default all", max_length=200)
+    layers: list[str] | None = key(None, "layers of the drawing to read as stones; default all", max_length=200)
+    layer: list[LayerTable] = key(
+        [], "layers of the drawing with a material or another role, [[structure.layer]]", max_length=200
+    )
+    join_tolerance: Length = key(
+        1e-3, "ends of loose lines and arcs of a drawing nearer than this are one point", gt=0, le=0.1
+    )
+    origin: Annotated[list[Length], Field(min_length=2, max_length=2)] | Literal["lower-left"] | None = key(
+        None, '[x, y] of the file that becomes 0, 0, or "lower-left" of all blocks: for georeferenced surveys'
+    )
     block: list[BlockTable] | None = key(None, "the blocks, where no file is given", max_length=20000)
     ground: list[list[Length]] | None = key(
-        None, "segments [x1, y1, x2, y2] the structure stands on; default its lowest level", max_length=2000
-    )
-    contact_tolerance: Length = key(1e-4, "edges nearer than this touch", gt=0, le=0.1)
-    depth: Length = key(1.0, "depth out of plane", gt=0)
+        None, "segments [x1, y1, x2, y2] the structure stands on, in the coordinates of the blocks; default the ground of the "
+        "file, or else the lowest level", max_length=2000,
+    )  # fmt: skip
+    foundation_levels: list[Length] | None = key(
+        None, "heights, in the coordinates of the blocks, at which every level sole that no stone bears is a support: "
+        "foundations at unlike levels", min_length=1, max_length=100,
+    )  # fmt: skip
+    contact_tolerance: Length = key(
+        1e-4, "faces nearer than this touch, overlaps less deep are let pass; `check` says which tolerance closes which gap",
+        gt=0, le=0.1,
+    )  # fmt: skip
+    depth: Length | None = key(None, "depth out of plane; default that of the file, or 1 m", gt=0)
 
     @model_validator(mode="after")
     def _source(self) -> "Blocks":
         if (self.file is None) == (self.block is None):
             raise ValueError("expected either a file or [[structure.block]] tables")
-        for name, rows, width in (("ground", self.ground or [], 4),):
-            for row in rows:
-                if len(row) != width:
-                    raise ValueError(f"{name}: a row has {len(row)} numbers, expected {width}")
+        for row in self.ground or []:
+            if len(row) != 4:
+                raise ValueError(f"ground: a row has {len(row)} numbers, expected 4")
         for i, block in enumerate(self.block or []):
             if any(len(point) != 2 for point in block.points):
                 raise ValueError(f"block {i + 1}: a vertex is not [x, y]")
+        names = [layer.name.upper() for layer in self.layer]
+        if len(set(names)) < len(names):
+            raise ValueError("layer: one layer has two tables")
         return self
 
-    def assembly(self, density: float, folder: Path) -> Assembly:
-        ground = None
-        if self.file is not None:
-            suffix = Path(self.file).suffix.lower()
-            if suffix not in (".dxf", ".json"):
-                raise BadGeometry(f"{self.file}: expected a .json or .dxf file")
-            file = read(self.file, LARGEST_FILE, folder)
-            polygons, ground = read_dxf(file, self.unit, self.layers) if suffix == ".dxf" else read_json(file)
-        else:
+    def _drawing(self, folder: Path) -> tuple[Drawing, float | None]:
+        """What the file or the deck says, and the depth where the file has one."""
+        if self.file is None:
             polygons = [
                 Polygon(b.name or f"block {i + 1}", np.array(b.points), b.density)
                 for i, b in enumerate(self.block or [])
             ]
-        if self.ground is not None:
-            ground = np.array(self.ground)
-        return make_blocks(polygons, ground, density, self.depth, self.contact_tolerance)
+            return Drawing(polygons), None
+        file = read(self.file, LARGEST_FILE, folder)
+        sort = file.path.suffix.lower()
+        if sort == ".dxf":
+            meaning = {layer.name: Layer(layer.role, layer.material) for layer in self.layer}
+            fine = min(SAGITTA, max(0.5 * self.contact_tolerance, 1e-6))
+            drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine)
+            return drawing, None
+        if sort != ".json":
+            raise BadGeometry(f"{self.file}: expected a .json or .dxf file")
+        if self.layers is not None or self.layer:
+            raise BadGeometry(f"{self.file}: has no layers; they belong to drawings (.dxf)")
+        if is_compas(value := parsed(file)):
+            return read_compas(value, file.path.name, self.unit)
+        return read_json(file), None
+
+    def _inspected(self, folder: Path) -> tuple[Inspection, float]:
+        drawing, depth = self._drawing(folder)
+        corner = np.array(self.origin) if isinstance(self.origin, list) else None
+        if self.origin == "lower-left":
+            corner = np.min([np.min(p.points, axis=0) for p in drawing.blocks], axis=0)
+        if corner is not None:
+            drawing = replace(
+                drawing,
+                marks={layer: lines - np.tile(corner, 2) for layer, lines in drawing.marks.items()},
+                loose=tuple(((x - corner[0], y - corner[1]), gap) for (x, y), gap in drawing.loose),
+            )
+        ground = None if self.ground is None else np.array(self.ground)
+        found = inspect(drawing, ground, self.contact_tolerance, self.foundation_levels, corner)
+        return found, self.depth or depth or 1.0
+
+    def inspection(self, folder: Path) -> Inspection:
+        return self._inspected(folder)[0]
+
+    def mended(self, folder: Path) -> "Blocks | None":
+        tolerance = self.inspection(folder).closing()
+        return None if tolerance is None else self.model_copy(update={"contact_tolerance": tolerance})
+
+    def assembly(self, density: float, folder: Path) -> Assembly:
+        inspection, depth = self._inspected(folder)
+        return assemble(inspection, density, depth)
+
+    def weighed(self, made: Assembly, density: float, densities: Mapping[str, float]) -> Assembly:
+        mass, inertia = made.mass.copy(), made.inertia.copy()
+        for i, name in enumerate(made.materials):
+            if name is not None:
+                area, _, polar = properties(made.outlines[i])
+                mass[i], inertia[i] = area * densities[name] * made.depth, polar * densities[name] * made.depth
+        return replace(made, mass=mass, inertia=inertia)

@@ -8,9 +8,11 @@ import re
 
 import numpy as np
 
-from extrados.motions.formats.record import Lines, Record, unit_in
+from extrados.motions.formats.record import TIME, Lines, Record, time_unit_in, unit_in
 
 MOST_HEADER = 60
+LONGEST_STEP = 0.5  # s: longer steps of a column that names no unit are milliseconds, or no record
+ROUNDED = 3.0  # units of the last decimal in a step, at least, for uneven steps to be rounding
 
 
 def read(text: Lines) -> list[Record]:
@@ -25,12 +27,21 @@ def read(text: Lines) -> list[Record]:
     short = len(rows[-1][1]) != width  # the last row of a path file may be
     table = text.numbers(rows[:-1] if short else rows).reshape(-1, width)
     said = " \n".join(header)
+    title = next((line.strip() for line in header if _is_title(line)), "")
     unit = unit_in(said)
-    if width > 1 and (width == 2 or _is_time(table[:, 0])):
+    rounded = _resolution(rows) if width > 1 else 0.0
+    if width > 1 and (width == 2 or _is_time(table[:, 0], rounded)):
         if short:
             raise text.error(rows[-1][0], f"{len(rows[-1][1])} columns where {width} stood before: the file is cut off")
-        step = _step(text, rows, table[:, 0])
         names = _names(header, width)
+        given = time_unit_in(names[0])
+        per = TIME[given or "s"]
+        step, uneven = _step(text, rows, table[:, 0], rounded, given)
+        notes = [f"times of {text.path.name} are in {given}"] if given not in (None, "s") else []
+        if uneven:
+            notes.append(
+                f"times of {text.path.name} are rounded to {1e3 * per * rounded:g} ms; their mean step is taken"
+            )
         return [
             Record(
                 text.path.stem,
@@ -38,6 +49,9 @@ def read(text: Lines) -> list[Record]:
                 step,
                 unit_in(names[k]) or unit,
                 component=names[k] if width > 2 else "",
+                notes=list(notes),
+                title=title,
+                rounded=per * rounded,
             )
             for k in range(1, width)
         ]
@@ -48,7 +62,7 @@ def read(text: Lines) -> list[Record]:
         re.I,
     )
     step = text.step(steps[1], 0) if steps else None
-    return [Record(text.path.stem, values, step, unit)]
+    return [Record(text.path.stem, values, step, unit, title=title)]
 
 
 def _split(text: Lines) -> tuple[list[str], list[tuple[int, list[str]]]]:
@@ -86,15 +100,40 @@ def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:
         raise text.error(lines[0], f"'{sample[0].strip()[:40]}' holds decimal commas; the decimal sign is a point")
 
 
-def _is_time(column: np.ndarray) -> bool:
+def _is_title(line: str) -> bool:
+    """True for a line of words about the record, none of which is the name of a column."""
+    words = re.findall(r"[A-Za-z]{3,}", line)
+    return len(words) > 1 and not re.search(r"\b(?:time|acc\w*|spac\w+|points|dt|npts|units?)\b", line, re.I)
+
+
+def _resolution(rows: list[tuple[int, list[str]]]) -> float:
+    """To which the numbers of the first column are rounded: a unit of their last decimal; 0 where some have an exponent."""
+    first = [row[0] for _, row in rows]
+    if any(re.search(r"[eEdD]", token) for token in first):
+        return 0.0
+    return float(10.0 ** -max(len(token.partition(".")[2]) for token in first))
+
+
+def _even(column: np.ndarray, rounded: float) -> bool:
+    """True where times lie within their rounding of equal steps, which are several times as long."""
+    count = len(column) - 1
+    step = (column[-1] - column[0]) / max(count, 1)
+    even = column[0] + step * np.arange(count + 1)
+    return bool(step > ROUNDED * rounded and np.abs(column - even).max() <= 1.001 * rounded)
+
+
+def _is_time(column: np.ndarray, rounded: float) -> bool:
     """True for a column that ascends in equal steps."""
     steps = np.diff(column)
-    return len(column) > 2 and bool(
-        np.all(steps > 0.0) and np.all(np.abs(steps - np.median(steps)) <= 0.02 * np.median(steps))
-    )
+    if len(column) < 3 or not (steps > 0.0).all():
+        return False
+    return bool(np.all(np.abs(steps - np.median(steps)) <= 0.02 * np.median(steps))) or _even(column, rounded)
 
 
-def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray) -> float:
+def _step(
+    text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray, rounded: float, given: str | None
+) -> tuple[float, bool]:
+    """The step [s] of a time column in a unit (seconds where none is given), and whether only rounding makes it uneven."""
     if len(time) < 3:
         raise text.error(rows[-1][0], f"only {len(time)} samples; a record has at least three")
     steps = np.diff(time)
@@ -102,12 +141,19 @@ def _step(text: Lines, rows: list[tuple[int, list[str]]], time: np.ndarray) -> f
     if not step > 0.0:
         raise text.error(rows[int(np.argmin(steps)) + 1][0], "the time column does not ascend")
     off = np.flatnonzero(np.abs(steps - step) > 0.02 * step)
-    if off.size:
+    uneven = bool(off.size) and _even(time, rounded)
+    if off.size and not uneven:
         k = int(off[0])
         raise text.error(
             rows[k + 1][0], f"the time step is {steps[k]:g} s here and {step:g} s elsewhere; resample to equal steps"
         )
-    return float(np.round((time[-1] - time[0]) / (len(time) - 1), 9))
+    step = TIME[given or "s"] * (time[-1] - time[0]) / (len(time) - 1)
+    if given is None and step >= LONGEST_STEP:
+        raise text.error(
+            rows[0][0],
+            f"the time step is {step:g} s, which is no accelerogram's; if the times are milliseconds, call their column time_ms",
+        )
+    return float(np.round(step, 9)), uneven
 
 
 def _names(header: list[str], width: int) -> list[str]:

@@ -6,8 +6,9 @@ they need the instrument's response.
 """
 
 import re
+from dataclasses import replace
 
-from extrados.motions.formats.record import Lines, Record, fortran_columns
+from extrados.motions.formats.record import Lines, Record, fortran_columns, said_in
 
 #: COSMOS table of unit codes
 _UNITS = {2: "g", 4: "cm/s^2", 5: "cm/s", 6: "cm", 7: "in/s^2", 8: "in/s", 9: "in", 10: "gal", 11: "mg", 50: "counts"}
@@ -35,6 +36,7 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
     found = re.search(r"with\s+(\d+)\s+text lines", text[at], re.I)
     first = at
     at += int(found[1]) if found else 13
+    event, station = said_in(text.lines[first : min(at, len(text))])
     name = next(
         (text[k] for k in range(first, min(at, len(text))) if re.match(r"\s*sta(?:tn)?\s+chan", text[k], re.I)), ""
     )
@@ -57,7 +59,7 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
             at += 1
             continue
         at, record = _block(text, at, step, " ".join(name.split()))
-        records.append(record)
+        records.append(replace(record, title=event, station=station))
     if at >= len(text):
         raise text.error(at, "ends without 'End-of-data': the file is cut off")
     return at + 1, records

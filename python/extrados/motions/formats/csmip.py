@@ -7,8 +7,9 @@ Headers of several styles are passed over: each block of data announces itself b
 
 import re
 
-from extrados.motions.formats.record import Lines, Record, fortran_columns, unit_in
+from extrados.motions.formats.record import Lines, Record, fortran_columns, said_in, unit_in
 
+HEADER = 12  # the first lines, which speak of event and station
 _BLOCK = re.compile(
     r"\s*(\d+)\s+points\s+of\s+(?:\w+[\s-]+)*?(accel|veloc|displ)\w*\s+data\s+equally\s+spaced\s+at\s+([\d.]+)\s*sec",
     re.I,
@@ -23,6 +24,7 @@ def recognises(text: Lines) -> bool:
 
 def read(text: Lines) -> list[Record]:
     records, name, at = [], "", 0
+    event, station = said_in(text.lines[:HEADER])
     while at < len(text):
         line = text[at]
         if channel := re.search(r"\bchan(?:nel)?\s*(\d+)\s*:\s*(.*?)(?:\s{2,}|\s*from\b|$)", line, re.I):
@@ -39,7 +41,9 @@ def read(text: Lines) -> list[Record]:
         # volume 1 states no format: eight columns of nine
         columns, width = fortran_columns(line) or (8, _width(text[at + 1]))
         values, end = text.fixed(at + 1, count, width, columns)
-        records.append(Record(text.path.stem, values, step, unit_in(line, quantity), quantity, name))
+        records.append(
+            Record(text.path.stem, values, step, unit_in(line, quantity), quantity, name, title=event, station=station)
+        )
         at = end
     if not records:
         raise text.error(

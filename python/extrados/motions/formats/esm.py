@@ -36,4 +36,13 @@ def read(text: Lines) -> list[Record]:
     quantity = _QUANTITY.get(kind[:3].upper(), "acceleration")
     unit = unit_in(keys.get("UNITS", (0, ""))[1], quantity)
     default = {"acceleration": "cm/s^2", "velocity": "cm/s", "displacement": "cm"}[quantity]
-    return [Record(text.path.stem, values, step, unit or default, quantity, keys.get("STREAM", (0, ""))[1], notes)]
+
+    def told(*names: str) -> str:
+        return " ".join(said for name in names if (said := keys.get(name, (0, ""))[1]))
+
+    return [
+        Record(
+            text.path.stem, values, step, unit or default, quantity, told("STREAM"), notes,
+            title=told("EVENT_NAME", "EVENT_DATE_YYYYMMDD"), station=told("NETWORK", "STATION_CODE", "STATION_NAME"),
+        )
+    ]  # fmt: skip

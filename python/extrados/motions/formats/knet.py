@@ -47,4 +47,5 @@ def read(text: Lines) -> list[Record]:
         raise text.error(HEADER, f"only {len(counts)} samples; a record has at least three")
     counts = counts - counts.mean()
     return [Record(text.path.stem, counts * factor, 1.0 / rate, "gal", component=keys.get("Dir.", (0, ""))[1],
-                   notes=["mean taken off"])]  # fmt: skip
+                   notes=["mean taken off"], title=keys.get("Origin Time", (0, ""))[1],
+                   station=keys.get("Station Code", (0, ""))[1])]  # fmt: skip

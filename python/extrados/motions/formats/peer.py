@@ -36,4 +36,18 @@ def read(text: Lines) -> list[Record]:
     values, notes = text.check_count(text.numbers(rows), count, at)
     if count < 3:
         raise text.error(at, f"NPTS is {count}; a record has at least three samples")
-    return [Record(text.path.stem, values, step, unit_in(header, quantity), quantity, notes=notes)]
+    title, station = _said(text[1])
+    return [
+        Record(
+            text.path.stem, values, step, unit_in(header, quantity), quantity, notes=notes, title=title, station=station
+        )
+    ]  # fmt: skip
+
+
+def _said(line: str) -> tuple[str, str]:
+    """Event, with its date, and station, with the component, of the second line: 'Event, date, station, component'."""
+    parts = [part.strip() for part in line.split(",")]
+    if len(parts) < 3 or "NPTS" in line.upper():
+        return "", ""
+    cut = 2 if re.search(r"\d", parts[1]) and len(parts) > 3 else 1
+    return ", ".join(parts[:cut]), ", ".join(parts[cut:])

@@ -30,7 +30,8 @@ class RecordError(ValueError):
 class Record:
     """Samples as in the file [unit of the file] at `step` [s]; step or unit None where the file has none.
 
-    component: the channel's own name or direction. notes: what was mended or ought to be known.
+    component: the channel's own name or direction; title, station: of the event and where it was recorded, as the file
+    says. notes: what was mended or ought to be known. rounded: to which the times are rounded that give the step [s].
     """
 
     name: str
@@ -40,6 +41,9 @@ class Record:
     quantity: str = "acceleration"
     component: str = ""
     notes: list[str] = field(default_factory=list)
+    title: str = ""
+    station: str = ""
+    rounded: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -166,10 +170,39 @@ def read_lines(file: File) -> Lines:
     return Lines(path, re.split(r"\r\n|\n|\r", text.rstrip("\r\n \t\x1a")))
 
 
+def said_in(lines: list[str]) -> tuple[str, str]:
+    """Event and station of header lines: the first that speaks of an earthquake, and what follows 'station'; "" where
+    they say neither."""
+    event = next((line.strip() for line in lines if re.search(r"\bearthquake\b", line, re.I)), "")
+    found = (
+        re.search(r"\bsta(?:tion|tn|\b)\s*(?:no\b\.?)?\s*[:=.]?\s+(?=\S)(.+?)\s*(?:\bcomponent\s*=.*)?$", line, re.I)
+        for line in lines if not re.search(r"\bsta(?:tion|tn)?\s+chan", line, re.I)
+    )  # fmt: skip
+    station = next((match[1] for match in found if match), "")
+    return " ".join(re.sub(r"(?i)^(?:record|rcrd) of ", "", event).split()), " ".join(station.split())
+
+
 def fortran_columns(text: str) -> tuple[int, int] | None:
     """(columns, width) of a Fortran format such as (8F10.5), 8E10.4 or (10I8) in a text; None if there is none."""
     found = re.search(r"\(\s*(\d{1,2})\s*[FEGDI]\s*(\d{1,2})(?:\.\d+)?\s*\)", text, re.I)
     return (int(found[1]), int(found[2])) if found and int(found[1]) and int(found[2]) else None
+
+
+#: Units of time that a column may be in, in seconds
+TIME = {"ms": 1e-3, "us": 1e-6, "min": 60.0, "s": 1.0}
+_TIMES = (
+    ("ms", r"m(?:illi)?s(?:ec(?:ond)?s?)?"), ("us", r"[uµμ]s(?:ec)?|microsec(?:ond)?s?"), ("min", r"min(?:ute)?s?"),
+    ("s", r"s(?:ec(?:ond)?s?)?"),
+)  # fmt: skip
+
+
+def time_unit_in(name: str) -> str | None:
+    """The unit of time that the name of a column ends in, such as time_ms, t [s] or Time (sec); None without one."""
+    low = name.strip().lower()
+    for unit, words in _TIMES:
+        if re.search(rf"(?:^|[\s_\[(/,])(?:{words})[\])]?\s*$", low):
+            return unit
+    return None
 
 
 def unit_in(text: str, quantity: str = "acceleration") -> str | None:

@@ -6,7 +6,7 @@ refused; their corrected companions are equally spaced.
 
 import re
 
-from extrados.motions.formats.record import Lines, Record
+from extrados.motions.formats.record import Lines, Record, said_in
 
 _MISSING = 1.7e38
 _QUANTITY = {"VELOCITY": ("velocity", "cm/s"), "DISPLACEMENT": ("displacement", "cm")}
@@ -33,4 +33,7 @@ def read(text: Lines) -> list[Record]:
     if (abs(values) >= _MISSING).any():
         raise text.error(at + comments, "holds values marked as missing")
     found = re.search(r"component\s*=\s*(\S+)", text[5])
-    return [Record(text.path.stem, values, 1.0 / rate, unit, quantity, found[1] if found else "")]
+    _, station = said_in(text.lines[:11])
+    event = " ".join(text[3].split())
+    component = found[1] if found else ""
+    return [Record(text.path.stem, values, 1.0 / rate, unit, quantity, component, title=event, station=station)]

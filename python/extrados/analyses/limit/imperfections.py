@@ -1,0 +1,113 @@
+"""imperfections: random surveys of the same stones give a band on the capacity."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.common import answer_of, geometry_arrays, loads_of
+from extrados.analyses.limit.tables import Imperfections
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.deviation import resurveyed
+from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.results import limit as out
+from extrados.results.model import Array, Result, TableData
+
+BAND = (5.0, 95.0)  # percentiles that are told
+
+
+@dataclass(frozen=True)
+class Surveys:
+    """Member k is the k-th random survey; its rows are the capacities to +x and -x [g], NaN where it cannot stand, and
+    whether the programmes had an answer."""
+
+    assembly: Assembly
+    friction: float | np.ndarray | None
+    strength: float | None
+    options: Imperfections
+    deviation: float
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(self._member, first, count)
+
+    def _member(self, k: int) -> dict[str, np.ndarray]:
+        survey = resurveyed(self.assembly, self.deviation, np.random.default_rng([self.options.seed, k]))
+        limit = LimitAnalysis(
+            survey, self.friction, strength=self.strength, associated=self.options.friction_rule == "associated",
+            loads=loads_of(survey, self.options),
+        )  # fmt: skip
+        gamma, answered = np.full(2, np.nan), True
+        try:
+            found = np.array([sense * limit.collapse(sense)[0].gamma for sense in (1, -1)])
+            if (found > 0.0).all():
+                gamma = found
+        except NoEquilibrium:
+            pass
+        except NoAnswer:
+            answered = False
+        return {"gamma": gamma, "answered": np.array(answered)}
+
+
+def run(context: Context, options: Imperfections) -> Result:
+    """Capacities of all surveys, their median and the band that holds nine tenths."""
+    building = context.building
+    assembly, deviation = building.blocks(), options.deviation
+    if deviation is None:
+        deviation = getattr(building.structure, "contact_tolerance", None)
+    if deviation is None:
+        raise Refused(
+            "imperfections: give the deviation of a survey; only `blocks` have a contact_tolerance that tells it"
+        )
+    shortest = float(assembly.length.min())
+    if 4.0 * deviation > shortest:
+        raise Refused(
+            f"imperfections: a deviation of {1e3 * deviation:.3g} mm is more than a quarter of the shortest joint, "
+            f"'{assembly.joint_names[int(assembly.length.argmin())]}' ({1e3 * shortest:.3g} mm)"
+        )
+    nominal = answer_of(building, options)
+    job = Surveys(assembly, building.friction(), building.material.compressive_strength, options, deviation)
+    swept = sweep(context, "imperfections", job, options.count, "random surveys", slow=True).whole()
+    gamma = swept["gamma"]
+    lesser, given = gamma.min(axis=1), min(nominal.gamma, -nominal.back_state.gamma)
+    answered = swept["answered"].astype(bool)
+    stand = np.isfinite(lesser)
+    fallen = int((answered & ~stand).sum())
+    if not stand.any():
+        raise Refused(f"none of {options.count} surveys within {1e3 * deviation:.3g} mm can stand")
+    # A survey that cannot stand bears nothing: it belongs to the lower end of the band.
+    borne = np.where(stand, lesser, 0.0)[answered]
+    low, median, high = np.percentile(borne, [BAND[0], 50.0, BAND[1]]).tolist()
+    result = Result("imperfections")
+    r = out.Imperfections(
+        count=options.count,
+        deviation_m=deviation,
+        given_collapse_acceleration_g=given,
+        median_collapse_acceleration_g=median,
+        low_collapse_acceleration_g=low,
+        high_collapse_acceleration_g=high,
+        least_collapse_acceleration_g=float(borne.min()),
+        greatest_collapse_acceleration_g=float(borne.max()),
+        cannot_stand=fallen,
+        without_answer=int((~answered).sum()),
+    )
+    result.results = r
+    result.arrays = {
+        **geometry_arrays(assembly),
+        "gamma": Array(gamma, ("survey", "sense"), "g", "capacity to +x and to -x; NaN where a survey cannot stand"),
+    }
+    result.tables = {
+        "imperfections": TableData(
+            {"survey": list(range(1, options.count + 1)), "to_right": gamma[:, 0], "to_left": gamma[:, 1]},
+            {"to_right": "g", "to_left": "g"},
+        )
+    }
+    result.answer = (
+        f"Of {options.count} random surveys within {1e3 * deviation:.3g} mm of the one given, nine in ten bear {low:.4f} to "
+        f"{high:.4f} g (median {median:.4f} g, least {borne.min():.4f} g); the one given bears {given:.4f} g."
+    )
+    if fallen:
+        result.answer += f" {fallen} of them cannot stand."
+    if r.without_answer:
+        result.warnings.append(f"{r.without_answer} surveys are left out: their programmes gave no answer")
+    return result

@@ -1,0 +1,258 @@
+"""Drawings: closed polylines are blocks, loose lines and arcs are joined to outlines, layers say what they mean."""
+
+import io
+import itertools
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from extrados.building.errors import BadGeometry
+from extrados.building.geometry.drawing import GROUND_LAYER, MOST_BLOCKS, UNITS, Drawing, Layer, Polygon
+from extrados.building.geometry.linework import holds, net_of
+from extrados.building.geometry.polygons import signed_area
+from extrados.schema.files import File
+
+# DXF $INSUNITS -> our unit
+INSUNITS = {1: "in", 2: "ft", 4: "mm", 5: "cm", 6: "m"}
+SAGITTA = 2e-4  # m: how far the chords of an arc may lie from it
+CURVES = {"LINE", "ARC", "LWPOLYLINE", "POLYLINE", "SPLINE", "ELLIPSE", "CIRCLE"}
+#: What a drawing holds beside lines, and what to call it
+LEFT_OUT = {
+    "HATCH": "hatch", "MPOLYGON": "hatch", "TEXT": "text", "MTEXT": "text", "ATTDEF": "text", "ATTRIB": "text",
+    "DIMENSION": "dimension", "ARC_DIMENSION": "dimension", "LEADER": "leader", "MULTILEADER": "leader", "MLEADER": "leader",
+    "POINT": "point", "VIEWPORT": "viewport", "SOLID": "solid fill", "TRACE": "solid fill", "WIPEOUT": "wipeout",
+    "IMAGE": "image", "PDFUNDERLAY": "underlay", "DWFUNDERLAY": "underlay", "DGNUNDERLAY": "underlay",
+    "XLINE": "construction line", "RAY": "construction line", "TOLERANCE": "text", "OLE2FRAME": "embedded object",
+}  # fmt: skip
+MOST_ENTITIES = 200_000
+MOST_LINES = 200_000
+DEEPEST = 16  # blocks within blocks
+NEAR = 0.1  # m: gaps of loose lines up to this are told
+
+
+@dataclass
+class _Read:
+    """What has been read so far, in the unit of the drawing."""
+
+    closed: list[tuple[str, str, np.ndarray]] = field(default_factory=list)  # layer, handle, vertices
+    open: list[tuple[str, str, np.ndarray]] = field(default_factory=list)
+    ground: list[np.ndarray] = field(default_factory=list)
+    marks: dict[str, list[np.ndarray]] = field(default_factory=dict)
+    left_out: Counter[str] = field(default_factory=Counter)
+    other_layers: Counter[str] = field(default_factory=Counter)
+
+
+def read_dxf(
+    file: File,
+    unit: str | None = None,
+    layers: list[str] | None = None,
+    meaning: Mapping[str, Layer] | None = None,
+    join_tolerance: float = 1e-3,
+    sagitta: float = SAGITTA,
+) -> Drawing:
+    """Blocks, ground and marks of a drawing. Needs the extra `dxf` (ezdxf).
+
+    layers: those to read as stones, all where it is None. meaning: layers that are something else than plain stones;
+    GROUND is the ground. Ends of loose lines within `join_tolerance` [m] are one point; `sagitta` [m]: how far
+    chords may lie from curves. BadGeometry names layer and entity; a drawing without a unit is refused until `unit`
+    is given.
+    """
+    name = file.path.name
+    document = _document(file.content, name)
+    scale = UNITS[unit or _unit(name, int(document.header.get("$INSUNITS", 0)))]
+    known = {k.upper(): v for k, v in (meaning or {}).items()}
+    known.setdefault(GROUND_LAYER, Layer("ground"))
+    found = _Read()
+    seen = set()
+    for count, (entity, layer) in enumerate(_entities(document, name)):
+        if count >= MOST_ENTITIES:
+            raise BadGeometry(f"{name}: more than {MOST_ENTITIES} entities")
+        seen.add(layer)
+        means = known.get(layer.upper(), Layer())
+        if means.role == "left-out":
+            found.other_layers[layer] += 1
+        elif means.role != "stones" or layers is None or layer in layers or layer.upper() in known:
+            _take(entity, layer, means, found, name, sagitta / scale)
+        else:
+            found.other_layers[layer] += 1
+    for missing in [one for one in (*(layers or []), *(meaning or {})) if one.upper() not in {s.upper() for s in seen}]:
+        raise BadGeometry(f"{name}: no layer '{missing}'; there are {', '.join(sorted(seen)) or 'none'}")
+    return _drawing(found, known, name, scale, join_tolerance)
+
+
+def _document(data: bytes, name: str) -> Any:
+    try:
+        from ezdxf.filemanagement import dxf_stream_info, read
+        from ezdxf.lldxf.const import DXFError
+    except ImportError:
+        raise BadGeometry("reading DXF needs ezdxf: pip install 'extrados[dxf]'") from None
+    if data.startswith(b"AutoCAD Binary DXF"):
+        raise BadGeometry(f"{name}: is a binary DXF file; save it as text (ASCII DXF)")
+    try:
+        head = dxf_stream_info(io.StringIO(data[:100_000].decode("latin-1")))
+        return read(io.StringIO(data.decode(head.encoding, errors="surrogateescape"), newline=None))
+    except (DXFError, UnicodeError, LookupError, ValueError, OSError) as error:
+        raise BadGeometry(f"{name}: is not a sound DXF file: {error}") from None
+
+
+def _unit(name: str, code: int) -> str:
+    if code not in INSUNITS:
+        what = "has no unit ($INSUNITS = 0)" if code == 0 else f"has a unit not known here ($INSUNITS = {code})"
+        raise BadGeometry(f'{name}: {what}; say which with  unit = "mm"  (one of {", ".join(UNITS)})')
+    return INSUNITS[code]
+
+
+def _entities(document: Any, name: str) -> Iterator[tuple[Any, str]]:
+    """All entities with their layers, those of block references in their places; within a block, what lies on layer 0
+    lies on the layer of the reference."""
+
+    def within(entity: Any, layer: str, depth: int) -> Iterator[tuple[Any, str]]:
+        if entity.dxftype() != "INSERT":
+            yield entity, layer
+            return
+        if depth > DEEPEST:
+            raise BadGeometry(f"{name}: block '{entity.dxf.name}' lies within more than {DEEPEST} others, or in itself")
+        if entity.dxf.name not in document.blocks:
+            raise BadGeometry(f"{name}: layer '{layer}': a reference to block '{entity.dxf.name}', which is not there")
+        for one in entity.multi_insert() if entity.mcount > 1 else (entity,):
+            for part in one.virtual_entities():
+                yield from within(part, layer if part.dxf.layer == "0" else part.dxf.layer, depth + 1)
+
+    for entity in document.modelspace():
+        yield from within(entity, entity.dxf.layer, 1)
+
+
+def _take(entity: Any, layer: str, means: Layer, found: _Read, name: str, sagitta: float) -> None:
+    """Sort one entity in; what is no line is counted as left out."""
+    kind = entity.dxftype()
+    if kind not in CURVES:
+        if kind not in LEFT_OUT:
+            handle = f" #{entity.dxf.handle}" if entity.dxf.handle else ""
+            raise BadGeometry(
+                f"{name}: layer '{layer}', {kind}{handle}: is neither line nor arc; explode it, or name the layers to read "
+                "(layers = [...])"
+            )
+        found.left_out[LEFT_OUT[kind]] += 1
+        return
+    if kind == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
+        raise BadGeometry(f"{name}: layer '{layer}', POLYLINE: is a mesh; a section is drawn with lines")
+    points = _flattened(entity, kind, sagitta)
+    if len(points) < 2:
+        return
+    if not np.isfinite(points).all():
+        raise BadGeometry(f"{name}: layer '{layer}', {kind}: a coordinate is not a number")
+    if means.role == "ground":
+        found.ground.append(points)
+    elif means.role == "joints":
+        found.marks.setdefault(layer, []).append(points)
+    elif getattr(entity, "is_closed", False) or _meet(points):
+        found.closed.append((layer, entity.dxf.handle or "", points))
+    else:
+        found.open.append((layer, entity.dxf.handle or "", points))
+
+
+def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
+    """Vertices (n, 2) of a line or curve, its chords within `sagitta` of it. Arcs are followed as arcs: the Bezier
+    curves of ezdxf's paths leave them by 0.3 mm a metre of radius."""
+    if kind == "LINE":
+        places = [entity.dxf.start, entity.dxf.end]
+    elif kind in ("ARC", "CIRCLE", "ELLIPSE", "SPLINE"):
+        places = list(entity.flattening(sagitta))
+    else:
+        if kind == "LWPOLYLINE":
+            rows = np.array(entity.get_points("xyb"), dtype=float).reshape(-1, 3)
+        else:
+            rows = np.array([(*v.dxf.location.vec2, v.dxf.bulge) for v in entity.vertices], dtype=float).reshape(-1, 3)
+        if entity.is_closed and len(rows):
+            rows = np.concatenate([rows, rows[:1]])
+        flat = [rows[:1, :2], *(_bulged(a[:2], b[:2], a[2], sagitta) for a, b in itertools.pairwise(rows))]
+        places = [(x, y, 0.0) for x, y in np.concatenate(flat).tolist()]
+        if kind == "LWPOLYLINE" or entity.is_2d_polyline:
+            places = list(entity.ocs().points_to_wcs(places))
+    return np.array([(p[0], p[1]) for p in places]).reshape(-1, 2)
+
+
+def _bulged(a: np.ndarray, b: np.ndarray, bulge: float, sagitta: float) -> np.ndarray:
+    """Points (n, 2) after a up to b along the arc of a polyline; bulge is the tangent of a quarter of its angle."""
+    chord = b - a
+    if bulge == 0.0 or not chord.any():
+        return b[None]
+    turn = 4.0 * np.arctan(bulge)
+    radius = float(np.hypot(*chord)) / (2.0 * abs(np.sin(0.5 * turn)))
+    step = 2.0 * np.arccos(max(1.0 - sagitta / radius, 0.0))
+    count = int(np.ceil(abs(turn) / step))
+    left = np.array([-chord[1], chord[0]])
+    centre = 0.5 * (a + b) + 0.5 * left / np.tan(0.5 * turn)
+    angle = turn * np.arange(1, count) / count
+    arm, side = a - centre, np.array([-(a - centre)[1], (a - centre)[0]])
+    return np.concatenate([centre + np.cos(angle)[:, None] * arm + np.sin(angle)[:, None] * side, b[None]])
+
+
+def _meet(points: np.ndarray) -> bool:
+    """Whether a line ends where it begins; ezdxf's own test is too coarse for georeferenced coordinates."""
+    return len(points) > 3 and float(np.hypot(*(points[-1] - points[0]))) < 1e-6 * float(np.ptp(points, axis=0).max())
+
+
+def _segments(lines: list[np.ndarray]) -> np.ndarray:
+    pieces = [np.column_stack([line[:-1], line[1:]]) for line in lines]
+    return np.concatenate(pieces) if pieces else np.empty((0, 4))
+
+
+def _drawing(found: _Read, known: Mapping[str, Layer], name: str, scale: float, tolerance: float) -> Drawing:
+    """Blocks with names, joined where they are loose lines."""
+    notes, loose = [], []
+    outlines = [(layer, handle, scale * points) for layer, handle, points in found.closed]
+    if found.open:
+        lines = [scale * points for _, _, points in found.open]
+        pieces = [_segments([line]) for line in lines]
+        rims = [_segments([np.concatenate([points, points[:1]])]) for _, _, points in outlines]
+        if sum(map(len, [*pieces, *rims])) > MOST_LINES:
+            raise BadGeometry(f"{name}: more than {MOST_LINES} pieces of lines")
+        of = np.repeat(np.arange(len(pieces) + len(rims)), [len(p) for p in (*pieces, *rims)])
+        net = net_of(np.concatenate([*pieces, *rims]), tolerance, NEAR, firm=of >= len(pieces))
+        closed = len(outlines)
+        for face, source in zip(net.faces, net.source, strict=True):
+            drawn = of[source]
+            rim = np.hypot(*(np.roll(face, -1, axis=0) - face).T).sum()
+            if 2.0 * signed_area(face) < tolerance * rim:
+                continue  # a sliver between two lines that mean one
+            if (drawn >= len(pieces)).all() or any(holds(outline, face) for _, _, outline in outlines[:closed]):
+                continue  # it lies in an outline that is closed as drawn
+            layer = Counter(found.open[k][0] for k in drawn.tolist() if k < len(pieces)).most_common(1)[0][0]
+            outlines.append((layer, "", face))
+        loose = [(end.place, end.gap) for end in net.loose]
+        notes.append(
+            f"{len(outlines) - closed} blocks joined from {len(lines)} loose lines and arcs, ends within "
+            f"{1e3 * tolerance:g} mm (join_tolerance)"
+        )
+    if not outlines:
+        near = [gap for _, gap in loose if gap is not None]
+        hint = f"; ends of lines are {1e3 * min(near):.3g} mm apart and more (see join_tolerance)" if near else ""
+        raise BadGeometry(f"{name}: no closed polyline and no lines that close an outline on the layers read{hint}")
+    if len(outlines) > MOST_BLOCKS:
+        raise BadGeometry(f"{name}: more than {MOST_BLOCKS} blocks")
+    if found.left_out:
+        told = ", ".join(f"{n} of {what}" for what, n in sorted(found.left_out.items()))
+        notes.append(f"left out, since they are no lines: {told}")
+    if found.other_layers:
+        notes.append(
+            f"left out layers: {', '.join(f'{layer} ({n})' for layer, n in sorted(found.other_layers.items()))}"
+        )
+    polygons, numbers = [], itertools.count(1)
+    taken: Counter[str] = Counter()
+    for layer, handle, points in outlines:
+        title = f"{layer} #{handle}" if handle else f"{layer} {next(numbers)}"
+        taken[title] += 1
+        if taken[title] > 1:  # entities of a block that is referred to several times have one handle
+            title = f"{title} ({taken[title]})"
+        polygons.append(
+            Polygon(
+                title, points, layer=layer, material=known[layer.upper()].material if layer.upper() in known else None
+            )
+        )
+    ground = scale * _segments(found.ground) if found.ground else None
+    marks = {layer: scale * _segments(lines) for layer, lines in found.marks.items()}
+    return Drawing(polygons, ground, marks, tuple(f"{name}: {note}" for note in notes), tuple(loose))

@@ -1,0 +1,171 @@
+"""Closed outlines in loose linework: lines whose ends nearly meet, cross or stand on each other, made one net."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from extrados.building.geometry.contacts import box_pairs
+from extrados.building.geometry.polygons import inside, properties, signed_area
+
+YIELDS = 1e-9  # weight of a line beside a firm one
+
+
+@dataclass(frozen=True)
+class LooseEnd:
+    """A line that ends nowhere: its place [m], and how far [m] the nearest other line is; None where none is near."""
+
+    place: tuple[float, float]
+    gap: float | None
+
+
+@dataclass(frozen=True)
+class Net:
+    """faces: outlines (n, 2) [m], counter-clockwise; source: the line that each edge of them comes from; loose: lines
+    that bound none because they end nowhere."""
+
+    faces: list[np.ndarray]
+    source: list[np.ndarray]
+    loose: list[LooseEnd]
+
+
+def net_of(lines: np.ndarray, tolerance: float, near: float, firm: np.ndarray | None = None) -> Net:
+    """The smallest closed outlines that straight lines (k, 4) x, y, x, y make [m].
+
+    Lines are cut where they cross. Ends within `tolerance` of each other are one point, midway, or where the lines
+    end that are `firm` (k); an end within it of another line lies on that line. Lines that end nowhere bound
+    nothing and are told, with the gap to the nearest other up to `near`.
+    """
+    lines = np.asarray(lines, dtype=float).reshape(-1, 4)
+    weight = np.ones(len(lines)) if firm is None else np.where(firm, 1.0, YIELDS)
+    ends, edges, source = _knotted(lines, weight, tolerance)
+    kept, loose = _pruned(ends, edges, tolerance, near)
+    faces, sides = _faces(ends, edges[kept])
+    return Net(faces, [source[kept][side] for side in sides], loose)
+
+
+def _knotted(lines: np.ndarray, weight: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Points (n, 2), edges (k, 2) between them, and the line that each edge is part of."""
+    begin, end = lines[:, :2], lines[:, 2:]
+    along = end - begin
+    length = np.hypot(*along.T)
+    keep = length > tolerance
+    index = np.flatnonzero(keep)
+    begin, end, along, length = begin[keep], end[keep], along[keep], length[keep]
+    low, high = np.minimum(begin, end) - tolerance, np.maximum(begin, end) + tolerance
+    i, j = box_pairs(low, high)
+    cuts: list[tuple[np.ndarray, np.ndarray]] = [
+        (np.arange(len(begin)), np.zeros(len(begin))), (np.arange(len(begin)), np.ones(len(begin)))
+    ]  # fmt: skip
+    # Ends that stand on another line cut it at their foot.
+    for one, two in ((i, j), (j, i)):
+        for point in (begin, end):
+            share = ((point[one] - begin[two]) * along[two]).sum(axis=1) / length[two] ** 2
+            off = point[one] - begin[two] - share[:, None] * along[two]
+            on = (np.hypot(*off.T) <= tolerance) & (share > 0.0) & (share < 1.0)
+            cuts.append((two[on], share[on]))
+    cross = along[i, 0] * along[j, 1] - along[i, 1] * along[j, 0]
+    flat = np.abs(cross) < 1e-12 * length[i] * length[j]
+    safe = np.where(flat, 1.0, cross)
+    apart = begin[j] - begin[i]
+    at_i = (apart[:, 0] * along[j, 1] - apart[:, 1] * along[j, 0]) / safe
+    at_j = (apart[:, 0] * along[i, 1] - apart[:, 1] * along[i, 0]) / safe
+    met = ~flat & (at_i > 0.0) & (at_i < 1.0) & (at_j > 0.0) & (at_j < 1.0)
+    cuts += [(i[met], at_i[met]), (j[met], at_j[met])]
+    line = np.concatenate([c[0] for c in cuts])
+    share = np.concatenate([c[1] for c in cuts])
+    order = np.lexsort((share, line))
+    line, share = line[order], share[order]
+    points = begin[line] + share[:, None] * along[line]
+    knot, count = _clusters(points, tolerance)
+    own = weight[index[line]]
+    weighed = np.stack([np.bincount(knot, own * x, count) for x in points.T], axis=1)
+    middle = weighed / np.bincount(knot, own, count)[:, None]
+    follows = line[1:] == line[:-1]
+    edges = np.column_stack([knot[:-1], knot[1:]])[follows]
+    source = index[line[:-1][follows]]
+    real = edges[:, 0] != edges[:, 1]
+    edges, source = edges[real], source[real]
+    _, first = np.unique(np.sort(edges, axis=1), axis=0, return_index=True)
+    return middle, edges[first], source[first]
+
+
+def _clusters(points: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
+    """Number of the knot of each point: points within the tolerance of each other, in steps, are one."""
+    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
+    count, knot = connected_components(graph, directed=False)
+    return knot, int(count)
+
+
+def _pruned(ends: np.ndarray, edges: np.ndarray, tolerance: float, near: float) -> tuple[np.ndarray, list[LooseEnd]]:
+    """Edges that remain when those with a free end are taken away, again and again; and the free ends to begin with."""
+    kept = np.ones(len(edges), dtype=bool)
+    degree = np.bincount(edges.ravel(), minlength=len(ends))
+    free = np.flatnonzero(degree == 1)
+    loose = []
+    for k in free.tolist():
+        own = np.flatnonzero((edges == k).any(axis=1))[0]
+        others = np.delete(edges, own, axis=0)
+        a, b = ends[others[:, 0]], ends[others[:, 1]]
+        gap = np.inf
+        if len(others):
+            along = b - a
+            share = np.clip(((ends[k] - a) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+            distance = np.hypot(*(a + share[:, None] * along - ends[k]).T)
+            # A line that shares the other end of this one is near it whatever this end does.
+            distance[(others == edges[own][edges[own] != k]).any(axis=1)] = np.inf
+            gap = float(distance.min())
+        loose.append(LooseEnd((float(ends[k, 0]), float(ends[k, 1])), gap if tolerance < gap <= near else None))
+    while True:
+        degree = np.bincount(edges[kept].ravel(), minlength=len(ends))
+        hanging = kept & (degree[edges] == 1).any(axis=1)
+        if not hanging.any():
+            return kept, loose
+        kept &= ~hanging
+
+
+def _faces(ends: np.ndarray, edges: np.ndarray) -> tuple[list[np.ndarray], list[np.ndarray]]:
+    """Bounded faces of a plane net, counter-clockwise, and the edges along them: always the next edge to the right."""
+    if not len(edges):
+        return [], []
+    start = np.concatenate([edges[:, 0], edges[:, 1]])
+    to = np.concatenate([edges[:, 1], edges[:, 0]])
+    m = len(edges)
+    twin = np.concatenate([np.arange(m) + m, np.arange(m)])
+    angle = np.arctan2(*(ends[to] - ends[start]).T[::-1])
+    order = np.lexsort((angle, start))
+    place = np.empty(2 * m, dtype=int)
+    place[order] = np.arange(2 * m)
+    begin = np.searchsorted(start[order], np.arange(len(ends) + 1))
+    # After an edge comes the one just clockwise of its twin, around the point where it ends.
+    back = place[twin]
+    first = begin[to]
+    follows = order[np.where(back > first, back - 1, begin[to + 1] - 1)]
+    seen = np.zeros(2 * m, dtype=bool)
+    faces, sides = [], []
+    for k in range(2 * m):
+        if seen[k]:
+            continue
+        way = []
+        while not seen[k]:
+            seen[k] = True
+            way.append(k)
+            k = int(follows[k])
+        outline = ends[start[way]]
+        if len(way) > 2 and signed_area(outline) > 0.0:
+            faces.append(outline)
+            sides.append(np.array(way) % m)
+    return faces, sides
+
+
+def holds(outline: np.ndarray, face: np.ndarray) -> bool:
+    """True where the middle of a face, or else a place beside its longest edge, lies in an outline."""
+    middle = properties(face)[1]
+    if not inside(face, middle[None])[0]:
+        along = np.roll(face, -1, axis=0) - face
+        k = int(np.hypot(*along.T).argmax())
+        middle = face[k] + 0.5 * along[k] + 1e-3 * np.array([-along[k, 1], along[k, 0]])
+    return bool(inside(outline, middle[None])[0])

@@ -1,0 +1,93 @@
+"""What `extrados check` looks at beyond the words of a deck: whether the building can be made, and how well it fits."""
+
+import csv
+import io
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from extrados.building.errors import BadGeometry
+from extrados.building.geometry.inspection import Inspection
+from extrados.decks.reader import Deck
+from extrados.plots.geometry import Mark, draw_survey
+
+
+@dataclass(frozen=True)
+class Place:
+    """One row of the list: what is amiss where, how deep [m], and the key with the value that would mend it."""
+
+    what: str
+    status: str
+    between: str
+    depth: float | None
+    place: tuple[float, float]
+    mended_by: str = ""
+
+
+@dataclass(frozen=True)
+class Checked:
+    """complaints: why the deck would be refused; remarks and notes on its geometry; the list of places, the refused
+    first, then the open, then those that the tolerance closes; inspection: None where it is no survey."""
+
+    complaints: list[str] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
+    places: list[Place] = field(default_factory=list)
+    inspection: Inspection | None = None
+
+
+def check_building(deck: Deck) -> Checked:
+    """Make the building as the analyses will, without computing anything."""
+    inspection, complaints = None, []
+    try:
+        if deck.structure is not None:
+            inspection = deck.structure.inspection(deck.folder)
+            complaints = [] if inspection is None else inspection.complaints()
+        if not complaints:
+            for analysis, building in zip(deck.analyses, deck.buildings, strict=True):
+                if analysis.view == "blocks":
+                    building.blocks()
+                    building.friction()
+    except BadGeometry as error:
+        complaints = [str(error)]
+    complaints = [f"{deck.path or 'deck'}: structure: {text}" for text in dict.fromkeys(complaints)]
+    if inspection is None:
+        return Checked(complaints)
+    return Checked(complaints, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
+
+
+def _places(inspection: Inspection) -> list[Place]:
+    rows = []
+    for status in ("overlap", "open", "closed"):
+        for flaw in inspection.of(status):
+            mends = inspection.mends(flaw)
+            cure = "draw anew" if mends is None else f'contact_tolerance = "{1e3 * mends:.3g} mm"'
+            rows.append(Place(flaw.kind, status, inspection.between(flaw), flaw.depth, flaw.place, cure))
+        if status == "open":
+            for place, gap in inspection.drawing.loose:
+                cure = "" if gap is None else f'join_tolerance = "{1e3 * 1.01 * gap:.3g} mm"'
+                rows.append(Place("loose end", "loose end", "line and the next line", gap, place, cure))
+            for block, level in inspection.levels:
+                x = float(inspection.outlines[block][:, 0].mean())
+                name = f"'{inspection.names[block]}' and nothing below"
+                rows.append(Place("sole", "sole", name, None, (x, level), "foundation_levels"))
+    return rows
+
+
+def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
+    """The picture and the list of a survey into a folder: geometry.png (and .svg), geometry.csv."""
+    assert checked.inspection is not None
+    folder.mkdir(parents=True, exist_ok=True)
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["what", "status", "between", "depth_mm", "x_m", "y_m", "mended_by"])
+    for row in checked.places:
+        depth = "" if row.depth is None else f"{1e3 * row.depth:.4g}"
+        writer.writerow([row.what, row.status, row.between, depth, *(f"{v:.4f}" for v in row.place), row.mended_by])
+    table = folder / "geometry.csv"
+    table.write_text(text.getvalue(), encoding="utf-8")
+    inspection = checked.inspection
+    joints = np.column_stack([inspection.contacts.p, inspection.contacts.q])
+    marks = [Mark(row.place, row.depth, row.status, row.between) for row in checked.places]
+    return draw_survey(folder, "geometry", inspection.outlines, joints, inspection.ground, marks), table

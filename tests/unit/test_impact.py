@@ -1,0 +1,111 @@
+"""Impact of arches: the blow at all joints against the thesis' balance and the energy-safe projection; doubts told."""
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.impact import inelastic_impact
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.templates.arch import make_arch
+from extrados.core import mechanism as core_mechanism
+
+
+def deck(thickness: float, embrace: float, duration: float, rule: str | float = "inelastic") -> dict:
+    return {
+        "structure": {"kind": "arch", "radius": 1.0, "thickness": thickness, "embrace": embrace, "voussoirs": 36},
+        "joints": {"restitution": rule},
+        "motion": {"kind": "step-pulse", "amplitude": "-0.8 g", "duration": duration},
+        "analysis": [{"kind": "rocking"}],
+    }
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.15, 0.2, 0.25])
+def test_the_blow_is_safe_and_continuous(ratio: float) -> None:
+    """Between 0 and 1, at least what the mirrored mechanism alone keeps, and without jumps from one embrace to the next."""
+    embraces = np.arange(120.0, 172.0, 4.0)
+    rules = [ArchModel(make_arch(1.0, ratio, e, 30)).impacts for e in embraces]
+    blow = np.array([r.inelastic for r in rules])
+    assert (blow >= 0.0).all() and (blow <= 1.0).all()
+    assert all(r.inelastic >= r.energy_safe - 1e-9 for r in rules)
+    # hinges jump from joint to joint as the embrace grows: the blow hardly feels it
+    assert np.abs(np.diff(blow)).max() < 0.19
+    if ratio == 0.1:
+        thesis = np.array([r.thesis for r in rules])
+        assert np.abs(np.diff(thesis)).max() > 0.2  # what the rule is there to cure
+
+
+def test_the_blow_is_the_nearest_admissible_velocity() -> None:
+    """Optimality of the projection: impulses press, joints part, and never both (complementarity); no joint slides."""
+    m = MechanismModel(make_arch(1.0, 0.12, 170.0, 17))
+    a = m.assembly
+    before = -m.fields[0]
+    after = inelastic_impact(a, before)
+
+    def rate(velocity: np.ndarray, end: np.ndarray, direction: np.ndarray) -> np.ndarray:
+        """Velocity of the first block against the second at the joints."""
+        out = np.zeros(len(a.a))
+        for side, sign in ((a.a, 1.0), (a.b, -1.0)):
+            on = side >= 0
+            v, arm = velocity[side[on]], end[on] - a.centroid[side[on]]
+            at = v[:, :2] + v[:, 2:] * np.stack([-arm[:, 1], arm[:, 0]], axis=1)
+            out[on] += sign * (at * direction[on]).sum(axis=1)
+        return out
+
+    scale = np.abs(before).max()
+    gaps = np.stack([rate(after, end, a.normal) for end in (a.p, a.q)])
+    assert gaps.min() > -1e-8 * scale
+    assert np.abs(rate(after, a.p, a.tangent)).max() < 1e-8 * scale
+    change = np.concatenate([a.mass[:, None], a.mass[:, None], a.inertia[:, None]], axis=1) * (after - before)
+    assert abs((change * after).sum()) < 1e-8 * abs((change * before).sum())  # the impulses do no work on what follows
+    rng = np.random.default_rng(3)
+    for _ in range(20):  # no admissible mixture of the two mechanisms is nearer
+        mixed = sum(w * f for w, f in zip(rng.random(2), m.fields, strict=True))
+        assert (change * mixed).sum() > -1e-8 * abs((change * before).sum())
+
+
+def test_indices_are_checked() -> None:
+    one = np.ones(1)
+    with pytest.raises(ValueError, match="sides"):
+        core_mechanism.inelastic_blow(
+            one, one, [[0, 0]], [[0, 1]], np.zeros((1, 2, 2)), np.zeros((1, 2, 2)), [[0, 0, 1]]
+        )
+
+
+def test_rules_that_differ_are_told_with_their_outcomes() -> None:
+    run = extrados.run(deck(0.1, 157.5, 0.05))
+    told = {one.rule: one for one in run["rocking"].outcomes_by_rule}
+    assert set(told) == {"thesis", "energy-safe", "inelastic"}
+    assert told["thesis"].restitution == 1.0 > told["inelastic"].restitution > told["energy-safe"].restitution
+    assert told["inelastic"].outcome == run["rocking"].outcome
+    assert any("impact rules differ" in text for text in run.results[0].warnings)
+    near = extrados.run(deck(0.2, 157.5, 0.05))
+    assert "outcomes_by_rule" not in near["rocking"]
+    given = extrados.run(deck(0.1, 157.5, 0.05, 0.5))
+    assert "outcomes_by_rule" not in given["rocking"]
+
+
+def test_a_run_on_the_edge_says_so() -> None:
+    """The shortest failing step pulse, by bisection: a millionth of its amplitude decides."""
+    low, high = 0.02, 0.4
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        fell = extrados.run(deck(0.15, 157.5, middle))["rocking"].outcome == "collapse"
+        low, high = (low, middle) if fell else (middle, high)
+    edge = extrados.run(deck(0.15, 157.5, high))
+    assert edge["rocking"].decided_by_last_digits
+    assert any("last digits" in text for text in edge.results[0].warnings)
+    assert not extrados.run(deck(0.15, 157.5, 1.2 * high))["rocking"].decided_by_last_digits
+
+
+def test_assessment_is_held_against_the_run() -> None:
+    """A step pulse is judged as a sine: told; where the criterion and the run disagree, both are told."""
+    base = deck(0.12, 157.5, 0.08)
+    base["analysis"] = [{"kind": "assessment"}]
+    base["motion"] = {"kind": "record", "file": "extrados:el-centro-1940"}
+    run = extrados.run(base)
+    r = run["assessment"]
+    assert r.run_outcome in ("recovery", "collapse", "no-hinging")
+    assert any("replaced by a sine" in text for text in run.results[0].warnings)
+    disagree = (r.verdict == "fails") != (r.run_outcome == "collapse")
+    assert disagree == any("better witness" in text for text in run.results[0].warnings)
