@@ -69,6 +69,12 @@
   ENTRY(2, exponential, "exponential") \
   ENTRY(3, hordijk, "hordijk")
 
+/* How cracked material behaves: fixed orthogonal cracks, cracks that turn with the strain, one damage for all */
+#define EXTRADOS_SLA_CRACKING_LIST(ENTRY) \
+  ENTRY(1, orthotropic, "orthotropic") \
+  ENTRY(2, rotating, "rotating") \
+  ENTRY(3, isotropic, "isotropic")
+
 /* What happens to a point in an event, by direction: n first crack's normal, s across it */
 #define EXTRADOS_SLA_EVENT_LIST(ENTRY) \
   ENTRY(1, tension, "tension n") \
@@ -78,7 +84,11 @@
   ENTRY(5, close, "closing n") \
   ENTRY(6, close_s, "closing s") \
   ENTRY(7, open, "opening n") \
-  ENTRY(8, open_s, "opening s")
+  ENTRY(8, open_s, "opening s") \
+  ENTRY(9, wear, "cohesion") \
+  ENTRY(10, slide, "sliding") \
+  ENTRY(11, follow, "friction follows") \
+  ENTRY(12, stick, "sticking")
 
 /* Why a run of events ended */
 #define EXTRADOS_SLA_STOP_LIST(ENTRY) \
@@ -88,7 +98,8 @@
   ENTRY(3, all_empty, "all intervals are empty") \
   ENTRY(4, displacement, "target displacement") \
   ENTRY(5, load, "target load") \
-  ENTRY(6, fraction, "load fell below the fraction of its peak")
+  ENTRY(6, fraction, "load fell below the fraction of its peak") \
+  ENTRY(7, lost, "no equilibrium is found any more")
 
 /* Envelopes of generated motions (c/quake/envelope.c) */
 #define EXTRADOS_ENVELOPE_LIST(ENTRY) \
@@ -119,6 +130,7 @@
   LIST(dem_energy, EXTRADOS_DEM_ENERGY_LIST) \
   LIST(sla_element, EXTRADOS_SLA_ELEMENT_LIST) \
   LIST(sla_law, EXTRADOS_SLA_LAW_LIST) \
+  LIST(sla_cracking, EXTRADOS_SLA_CRACKING_LIST) \
   LIST(sla_event, EXTRADOS_SLA_EVENT_LIST) \
   LIST(sla_stop, EXTRADOS_SLA_STOP_LIST) \
   LIST(envelope, EXTRADOS_ENVELOPE_LIST) \

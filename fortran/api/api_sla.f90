@@ -206,7 +206,7 @@ contains
       integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(in) :: lambda
       integer(c_int), intent(in) :: points
-      real(c_double), intent(out) :: values(18, points)
+      real(c_double), intent(out) :: values(19, points)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       real(c_double), allocatable :: ua(:), ub(:)

@@ -35,7 +35,7 @@ contains
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held
-   subroutine create(nodes, xy, equation, factor, isotropic, retention, closure, most_changes, floor, handle, status)
+   subroutine create(nodes, xy, equation, factor, cracking, retention, closure, most_changes, floor, handle, status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register
@@ -44,7 +44,7 @@ contains
       real(c_double), intent(in) :: xy(2, nodes)          !! [m]
       integer(c_int), intent(in) :: equation(2, nodes)
       real(c_double), intent(in) :: factor(2, nodes)
-      integer(c_int), intent(in) :: isotropic             !! 1: one damage for all directions
+      integer(c_int), intent(in) :: cracking              !! of the list sla_cracking
       real(c_double), intent(in) :: retention             !! negative: thesis Eq. 4.11
       integer(c_int), intent(in) :: closure               !! 1: closed cracks regain their stiffness
       integer(c_int), intent(in) :: most_changes
@@ -58,7 +58,7 @@ contains
       allocate (model, stat=info)
       status = status_out_of_memory
       if (info /= 0) return
-      options%isotropic = isotropic /= 0
+      options%cracking = cracking
       options%retention = retention
       options%closure = closure /= 0
       options%most_changes = int(most_changes)
@@ -105,10 +105,11 @@ contains
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: connect(per, elements)
       !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
-      !> angle of the only crack normal allowed [rad]
-      real(c_double), intent(in) :: property(5, elements)
-      !> Table of tension teeth, of compression teeth (0 none); 1: the crack normal is given, 2: also the shear is kept
-      integer(c_int), intent(in) :: choice(3, elements)
+      !> angle of the only crack normal allowed [rad], growth of the compressive strength per lateral pressure
+      real(c_double), intent(in) :: property(6, elements)
+      !> Table of tension teeth, of compression teeth (0 none); 1: the crack normal is given, 2: also the shear is kept;
+      !> first and last table of tension teeth where the crack band follows the crack's direction (0 it does not)
+      integer(c_int), intent(in) :: choice(5, elements)
       integer(c_int), intent(out) :: bad                      !! inverted element
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
@@ -135,15 +136,17 @@ contains
          call check_nodes(model, connect, 1_c_int, fate)
          if (fate /= status_ok) return
          fate = status_bad_index
-         if (any(choice < 0) .or. any(choice(1:2, :) > model%teeth%tables())) return
+         if (any(choice < 0) .or. any(choice([1, 2, 4, 5], :) > model%teeth%tables())) return
          fate = status_invalid_argument
+         if (any(choice(4, :) > choice(5, :))) return
          if (per /= kind) return   ! the number of a kind is that of its nodes
          fate = status_out_of_memory
          allocate (new_plane, stat=info)
          if (info /= 0) return
          call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
-            property(3, :), choice(1, :), choice(2, :), property(4, :), choice(3, :), property(5, :), model%teeth, &
-            model%options, new_plane, bad, fate)
+            property(3, :), choice([1, 4, 5], :), choice(2, :), property(4, :), property(6, :), &
+            choice(3, :), property(5, :), &
+            model%teeth, model%options, new_plane, bad, fate)
          if (fate /= status_ok) return
          call move_alloc(new_plane, group)
          call both_directions(connect, node, direction, fate)

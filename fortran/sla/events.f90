@@ -6,15 +6,17 @@
 module sla_events
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
-   use common_lists, only : stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
+   use common_lists, only : code_stick => sla_event_stick, &
+      stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
       stop_unbounded => sla_stop_unbounded, stop_all_empty => sla_stop_all_empty, &
-      stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction
+      stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction, &
+      stop_lost => sla_stop_lost
    use common_status, only : status_ok, status_cancelled, status_out_of_memory, status_not_positive_definite, &
       status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change, extrados_sparse_solve
    use sla_group, only : below, bound, event_vectors, point_group, scan_result, unbounded, most_entries, most_rank
-   use sla_model, only : element_model, model_factor, model_settled, model_solve
+   use sla_model, only : element_model, model_factor, model_settled, model_solve, held_work
    use sla_regions, only : levels, regions_bring, regions_calm, regions_home, regions_margins, regions_window
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -24,6 +26,8 @@ module sla_events
    integer, parameter :: log_reals = 10, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    integer, parameter :: few = 100                    !! regions that are looked at sooner by one thread
+   !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
+   real(wp), parameter :: farthest = 1.0e3_wp
    integer, parameter :: guard_every = 500
    real(wp), parameter :: most_residual = 1.0e-8_wp
 
@@ -133,7 +137,15 @@ contains
                 model%lambda < rules%fraction * model%peak .and. &
                 (log%monitors(1, log%count) - model%peak_displacement) * model%slope > 0.0_wp) reason = stop_fraction
          end if
-         if (model%work(3) > rules%compliance * model%first_compliance) reason = stop_mechanism
+         ! Where no multiplier brings a state back, limits run away
+         if (model%peak > 0.0_wp .and. .not. equilibrium) then
+            if (.not. abs(model%lambda) <= farthest * model%peak) reason = stop_lost
+         end if
+         ! Friction makes the structure unsymmetric: beyond its limit it may answer the load the other way; but what
+         ! slides back sticks at once
+         if (.not. abs(model%work(3)) <= rules%compliance * model%first_compliance) then
+            if (model%pending(3) /= code_stick) reason = stop_mechanism
+         end if
          if (reason /= stop_none) return
       end do
    end subroutine run_events
@@ -504,7 +516,7 @@ contains
          do i = 1, event%rank
             before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
                dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
-            model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i))
+            model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i)) - event%origin(i)
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -516,7 +528,9 @@ contains
             end if
             return
          end if
-         ! (K - W S W') du = W S W' u. Stiffening first: no way-station is less definite than the ends.
+         model%origin_energy = model%origin_energy + event%shift
+         ! (K - W S W') du = W S (W' u - origin - hold). Stiffening first: no way-station is less definite than the
+         ! ends.
          changes = 0
          b = 0.0_wp
          do pass = 1, 2
@@ -525,8 +539,14 @@ contains
                w(changes * n + 1:changes * n + n) = event%w(1:n, i)
                changes = changes + 1
                sense(changes) = int(-sign(1.0_wp, event%sign(i)), c_int)
-               b(1:n) = b(1:n) + event%sign(i) * before(1, i) * event%w(1:n, i)
-               b(n + 1:2 * n) = b(n + 1:2 * n) + event%sign(i) * before(2, i) * event%w(1:n, i)
+               b(1:n) = b(1:n) + event%sign(i) * (before(1, i) - event%origin(i) - event%hold(1, i)) * event%w(1:n, i)
+               b(n + 1:2 * n) = b(n + 1:2 * n) + event%sign(i) * (before(2, i) - event%hold(2, i)) * event%w(1:n, i)
+               model%fo(event%index(1:n)) = model%fo(event%index(1:n)) - &
+                  event%sign(i) * event%origin(i) * event%w(1:n, i)
+               model%fh(event%index(1:n), 1) = model%fh(event%index(1:n), 1) - &
+                  event%sign(i) * event%hold(1, i) * event%w(1:n, i)
+               model%fh(event%index(1:n), 2) = model%fh(event%index(1:n), 2) - &
+                  event%sign(i) * event%hold(2, i) * event%w(1:n, i)
             end do
          end do
          path = 0
@@ -550,7 +570,7 @@ contains
             call regions_bring(tree, model%list(i), model%handle, .true., model%ua, model%ub, model%z, status)
             if (status /= status_ok) return
          end do
-         do i = 1, event%rank
+         do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
             after = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
                dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
             model%work_now = model%work_now + event%sign(i) * &
@@ -606,8 +626,8 @@ contains
             if (k == 1) call model%holders(g)%group%force(ua, model%force)
             if (k == 2) call model%holders(g)%group%force(ub, model%force)
          end do
-         if (k == 1) model%z(:, k) = model%fa(1:n) - model%force(1:n)
-         if (k == 2) model%z(:, k) = model%fb(1:n) - model%force(1:n)
+         if (k == 1) model%z(:, k) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1) - model%force(1:n)
+         if (k == 2) model%z(:, k) = model%fb(1:n) + model%fh(1:n, 2) - model%force(1:n)
          load = merge(norm2(model%fa), norm2(model%fb), k == 1)
          if (load > 0.0_wp) model%residual = max(model%residual, norm2(model%z(:, k)) / load)
       end do
@@ -618,36 +638,53 @@ contains
    subroutine account(model, lambda)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: lambda
-      real(wp) :: now(3), after, was, s, t
+      real(wp) :: now(3), held(2), after, was, s, t, change, cross
       integer :: i
 
-      now = model%work_now
       was = model%lambda_recorded
       s = model%scale
       t = model%scale_recorded
+      if (model%slides) then
+         held = held_work(model, lambda)
+         now = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), dot_product(model%fb, model%ub)]
+         cross = dot_product(model%fb, model%ua)   ! fa.ub too, but for friction that slides
+      else
+         held = 0.0_wp
+         now = model%work_now
+         cross = now(2)
+      end if
+      change = 0.0_wp
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
-         if (.not. model%carried) model%external = model%external + 0.5_wp * now(1)
-         model%work = now
-         was = 0.0_wp
-         t = 1.0_wp
+         if (model%carried) model%external = model%external - 0.5_wp * now(1)
+         model%external = model%external + 0.5_wp * s**2 * (now(1) + lambda * (now(2) + cross + lambda * now(3)))
          model%recorded = .true.
       else
          associate (event => model%event)
             do i = 1, event%rank
-               after = s * dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
-                  lambda * model%ub(event%index(1:event%entries)))
-               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i) * after
+               after = s * along(event, i, model%ua, model%ub, lambda) - event%origin(i)
+               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * (model%before(i) * after - &
+                  event%origin(i)**2)
+               ! What the change of the held forces did at the old and at the new displacements
+               change = change + event%sign(i) * ( &
+                  (event%hold(1, i) + was * event%hold(2, i)) * (after + event%origin(i)) &
+                  + (event%hold(1, i) + lambda * event%hold(2, i)) * (model%before(i) + event%origin(i)))
             end do
+            model%dissipated = model%dissipated - event%shift
          end associate
+         ! Work of the held forces, (fh_old + fh_new) . (u_new - u_old) / 2
+         model%dissipated = model%dissipated - 0.5_wp * (2.0_wp * held(1) + (lambda + was) * held(2) &
+            - 2.0_wp * model%held(1) - (lambda + was) * model%held(2) + change)
+         ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub)
+         model%external = model%external + 0.5_wp * ( &
+            s * (s + t) * now(1) + s * (s + t) * lambda * now(2) &
+            + s * (s * lambda + t * was) * (cross + lambda * now(3)) &
+            - t * (s + t) * model%work(1) - t * (s + t) * was * model%work(2) &
+            - t * (s * lambda + t * was) * (model%cross + was * model%work(3)))
       end if
-      ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub)
-      model%external = model%external + 0.5_wp * ( &
-         s * (s + t) * now(1) + s * (2.0_wp * s * lambda + t * (lambda + was)) * now(2) &
-         + s * lambda * (s * lambda + t * was) * now(3) &
-         - t * (s + t) * model%work(1) - t * (2.0_wp * t * was + s * (lambda + was)) * model%work(2) &
-         - t * was * (t * was + s * lambda) * model%work(3))
       model%event%rank = 0
+      model%held = held
+      model%cross = cross
       model%work = now
       model%lambda_recorded = lambda
       model%scale_recorded = s
@@ -669,7 +706,10 @@ contains
 
       log%count = log%count + 1
       stored = 0.5_wp * model%scale**2 * &
-         (model%work(1) + model%lambda * (2.0_wp * model%work(2) + model%lambda * model%work(3)))
+         (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
+      ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
+      if (model%slides) stored = stored + model%origin_energy + 0.5_wp * (model%held(1) + &
+         model%lambda * model%held(2) - dot_product(model%fo, model%ua + model%lambda * model%ub))
       log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored, model%external, &
          model%dissipated, model%cracked, model%work(3), model%residual, model%scale]
       offset = 0
@@ -684,7 +724,7 @@ contains
       do k = 1, size(log%monitors, 1)
          if (abs(ratio(k)) > 0.0_wp) then
             slope = ratio(k) * model%work(3)
-            log%monitors(k, log%count) = ratio(k) * model%work(2) + model%lambda * slope
+            log%monitors(k, log%count) = ratio(k) * model%cross + model%lambda * slope
          else
             log%monitors(k, log%count) = 0.0_wp
             slope = 0.0_wp
@@ -698,5 +738,21 @@ contains
          if (k == 1) model%slope = slope
       end do
    end subroutine record
+
+   !> w_i . (x + lambda y) over the entries of an event: dot_product would gather them in memory that it does not ask
+   !> for
+   pure function along(event, i, x, y, lambda) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp), intent(in) :: y(0:)
+      real(wp), intent(in) :: lambda
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * (x(event%index(k)) + lambda * y(event%index(k)))
+      end do
+   end function along
 
 end module sla_events

@@ -5,6 +5,7 @@
 !> gets back the vectors by which the stiffness changes. New elements and materials are new groups.
 module sla_group
    use common_kinds, only : wp
+   use common_lists, only : orthotropic => sla_cracking_orthotropic
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -15,7 +16,7 @@ module sla_group
    real(wp), parameter :: unbounded = huge(1.0_wp)
    integer, parameter :: most_entries = 24, most_rank = 4
    !> Rows of a point's report, see plane and bar
-   integer, parameter :: report_rows = 18
+   integer, parameter :: report_rows = 19
 
    !> A limit of the load multiplier and the point that sets it
    type :: bound
@@ -40,11 +41,14 @@ module sla_group
       integer(c_int) :: index(most_entries) = 0      !! equations, 1-based
       real(wp) :: w(most_entries, most_rank) = 0.0_wp
       real(wp) :: sign(most_rank) = 0.0_wp           !! +1 softens, -1 stiffens
+      real(wp) :: origin(most_rank) = 0.0_wp         !! value of w.u at which the part that changes carries nothing
+      real(wp) :: hold(2, most_rank) = 0.0_wp        !! change of a held force along w, constant and per multiplier
+      real(wp) :: shift = 0.0_wp                     !! change of the energy of `origins` [J]
    end type event_vectors
 
    !> How cracked material behaves, the same for the whole model
    type :: material_options
-      logical :: isotropic = .false.       !! one damage for all directions
+      integer(c_int) :: cracking = orthotropic   !! of the list sla_cracking
       real(wp) :: retention = -1.0_wp      !! constant shear retention, negative: thesis Eq. 4.11
       logical :: closure = .false.         !! closed cracks regain their stiffness
       integer :: most_changes = 10         !! openings and closings of a crack before it is left open
@@ -70,6 +74,7 @@ module sla_group
       integer :: points = 0                !! of the group
       integer :: offset = 0                !! points of the groups before it
       integer :: directions = 2            !! crack directions of a point; a bar has one
+      logical :: slides = .false.          !! it has forces beside its stiffness, see origins
       type(material_options) :: options
    contains
       procedure(scan_interface), deferred :: scan
@@ -77,14 +82,15 @@ module sla_group
       procedure(report_interface), deferred :: report
       procedure(state_interface), deferred :: state
       procedure :: margin
+      procedure :: origins
    end type point_group
 
    type :: group_holder
       class(element_group), allocatable :: group
    end type group_holder
 
-   !> Rows of a point's stored damage: cosine, sine, cracked, tension teeth (2), compression teeth (2),
-   !> shut (2), changes (2)
+   !> Rows of a point's stored damage: cosine, sine, cracked (and which crack band, see sla_plane), tension teeth (2),
+   !> compression teeth (2), shut (2), changes (2)
    integer, parameter :: state_rows = 11
 
    abstract interface
@@ -177,6 +183,16 @@ contains
       end associate
       least = -1.0_wp
    end subroutine margin
+
+   !> Points whose stress is k d - k0 + h: add the forces of k0 and of -h, and the energy that k0 alone leaves
+   pure subroutine origins(group, springs, held, energy)
+      class(point_group), intent(in) :: group
+      real(wp), intent(inout) :: springs(0:)    !! [N]
+      real(wp), intent(inout) :: held(0:, :)    !! (0:, 2) constant and per unit multiplier [N]
+      real(wp), intent(inout) :: energy         !! [J]
+      associate (none => group, same => springs, likewise => held, unchanged => energy)   ! most groups have none
+      end associate
+   end subroutine origins
 
    !> Displacements of an element's own freedoms
    pure subroutine gather(group, element, u, local)

@@ -4,18 +4,34 @@
 !> modulus follows the smaller of the two (Eq. 4.11) or keeps a constant part. One tooth changes one
 !> diagonal term of the compliance and the shear modulus: the stiffness changes by rank two.
 !>
+!> Rotating cracks (Cope and others 1980; Rots 1988) turn with the principal strain, at each tooth of the point. Fixed
+!> ones keep the direction of their first tooth, which is seldom that of the crack that opens later: the stress along
+!> them then carries load across it ("stress locking", Rots 1988; Jirasek and Zimmermann 1998). What is left of it in
+!> elements that the crack crosses askew goes where the stiffness along an opening crack is bounded by a multiple of
+!> that across it, which in the end makes the damage a scalar one, as Jirasek and Zimmermann propose.
+!>
+!> The teeth of a point follow from the width of the crack band: given, or that of the element across the crack
+!> that opens. Cracks follow a row of quadrilaterals, whose mean width is the area over the mean projection of both
+!> diagonals onto the crack (Oliver 1989); they cross triangles wherever they meet them, and a straight line through a
+!> mesh meets each as often as its extent across the line is wide: the extent then makes the energy right on average.
+!>
+!> Crushing of confined masonry: -s2 <= fc - k s1, so that pressure across the greatest one helps and tension hurts
+!> (Richart and others 1928 found k = 4.1 for concrete).
+!>
 !> The damage of a point is kept per direction: tension tooth, compression tooth, crack shut or open.
 module sla_plane
    use common_kinds, only : wp
    ! The code of an event is one of these + 0 for the first, + 1 for the second crack direction.
+   use common_lists, only : isotropic => sla_cracking_isotropic, rotating => sla_cracking_rotating
    use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression, &
-      code_close => sla_event_close, code_open => sla_event_open, element_q4 => sla_element_q4
+      code_close => sla_event_close, code_open => sla_event_open, element_q4 => sla_element_q4, &
+      element_t3 => sla_element_t3, element_t6 => sla_element_t6
    use common_status, only : status_ok, status_out_of_memory, status_invalid_argument
    use sla_element, only : element_rule, element_rule_new, element_gradients, most_nodes, most_points
    use sla_group, only : point_group, scan_result, event_vectors, material_options, unbounded, &
       offer_hi, offer_lo, offer_empty, linear_bound
    use sla_interval, only : cone_interval, overload
-   use sla_tables, only : tooth_tables
+   use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -24,6 +40,12 @@ module sla_plane
    !> Cracks choose their direction; or they have a given one and keep the shear stiffness: a joint that opens and
    !> closes but does not slide
    integer(c_int), parameter :: axis_free = 0, axis_joint = 2
+
+   !> A crack that lies nearer to the principal strain than this stays where it is: one vector less in an event [rad]
+   real(wp), parameter :: least_turn = 0.01_wp
+
+   !> Stiffness along a rotating crack over that across it, at most; not where it is pressed by more than its strength
+   real(wp), parameter :: most_contrast = 10.0_wp
 
    type, extends(point_group) :: plane_group
       type(element_rule) :: rule
@@ -34,13 +56,16 @@ module sla_plane
       real(wp), allocatable :: young(:)                  !! (elements) [Pa]
       real(wp), allocatable :: nu(:)
       integer(c_int), allocatable :: table(:)            !! tension teeth, 0 none
+      integer(c_int), allocatable :: ladder(:, :)        !! (2, elements) tables of narrowest and widest band, 0 none
+      real(wp), allocatable :: diagonal(:, :, :)         !! (2, 2, elements), two sides of triangles [m]
       integer(c_int), allocatable :: crush_table(:)      !! compression teeth, 0 none
       real(wp), allocatable :: lateral(:)                !! compressive strength that reduces ft, 0 none [Pa]
+      real(wp), allocatable :: confinement(:)            !! growth of the compressive strength per lateral pressure
       type(tooth_tables) :: teeth
       integer(c_int), allocatable :: axis(:)             !! axis_free, 1 one crack direction given, axis_joint
       ! The damage: everything else below follows from it.
       real(wp), allocatable :: turn(:, :)                !! (2, points) cosine and sine of the crack normal
-      integer(c_int), allocatable :: cracked(:)          !! 1 once the crack axes are fixed
+      integer(c_int), allocatable :: cracked(:)          !! 0 without crack axes, else 1 + step on the ladder
       integer(c_int), allocatable :: tooth(:, :)         !! (2, points), 1 virgin
       integer(c_int), allocatable :: crush(:, :)         !! (2, points), 1 virgin
       integer(c_int), allocatable :: shut(:, :)          !! (2, points), 1 closed
@@ -56,13 +81,14 @@ module sla_plane
       procedure :: state
       procedure :: margin
       procedure :: refresh
+      procedure :: table_of
    end type plane_group
 
 contains
 
    !> A group of one element kind; the damage is set to none
-   subroutine plane_group_new(kind, nx, ny, selective, xy, connect, thickness, young, nu, table, crush_table, &
-                              lateral, axis, axis_angle, teeth, options, group, bad, status)
+   subroutine plane_group_new(kind, nx, ny, selective, xy, connect, thickness, young, nu, tables, crush_table, &
+                              lateral, confinement, axis, axis_angle, teeth, options, group, bad, status)
       integer(c_int), intent(in) :: kind            !! of the list sla_element
       integer(c_int), intent(in) :: nx              !! Gauss points of quadrilaterals
       integer(c_int), intent(in) :: ny
@@ -72,9 +98,10 @@ contains
       real(wp), intent(in) :: thickness(:)          !! [m]
       real(wp), intent(in) :: young(:)              !! [Pa]
       real(wp), intent(in) :: nu(:)
-      integer(c_int), intent(in) :: table(:)
+      integer(c_int), intent(in) :: tables(:, :)    !! (3, elements) of uncracked points, of narrowest and widest band
       integer(c_int), intent(in) :: crush_table(:)
       real(wp), intent(in) :: lateral(:)            !! [Pa]
+      real(wp), intent(in) :: confinement(:)
       integer(c_int), intent(in) :: axis(:)         !! 0 cracks choose, 1 one normal given, 2 also the shear is kept
       real(wp), intent(in) :: axis_angle(:)         !! of the crack normal [rad]
       type(tooth_tables), intent(in) :: teeth
@@ -99,10 +126,12 @@ contains
       group%freedoms = 2 * group%rule%nodes
       group%selective = selective
       group%options = options
-      group%teeth = teeth
+      call tooth_tables_copy(teeth, group%teeth, status)
+      if (status /= status_ok) return
       allocate (group%gradient(2, group%rule%nodes, group%points), group%weight(group%points), &
          group%shear_gradient(2, group%rule%nodes, merge(ne, 0, selective)), &
          group%young(ne), group%nu(ne), group%table(ne), group%crush_table(ne), group%lateral(ne), group%axis(ne), &
+         group%ladder(2, ne), group%diagonal(2, 2, ne), group%confinement(ne), &
          group%turn(2, group%points), group%cracked(group%points), group%tooth(2, group%points), &
          group%crush(2, group%points), group%shut(2, group%points), group%changes(2, group%points), &
          group%stiff(4, group%points), group%limit(4, group%points), stat=info)
@@ -112,9 +141,11 @@ contains
       end if
       group%young(:) = young
       group%nu(:) = nu
-      group%table(:) = table
+      group%table(:) = tables(1, :)
+      group%ladder(:, :) = tables(2:3, :)
       group%crush_table(:) = crush_table
       group%lateral(:) = lateral
+      group%confinement(:) = confinement
       group%axis(:) = axis
       do e = 1, ne
          p = per * (e - 1)
@@ -125,6 +156,9 @@ contains
             return
          end if
          if (selective) group%shear_gradient(:, :, e) = middle(:, 1:group%rule%nodes)
+         group%diagonal(:, 1, e) = xy(:, connect(3, e)) - xy(:, connect(1, e))
+         group%diagonal(:, 2, e) = xy(:, connect(2, e)) - xy(:, connect(1, e))
+         if (.not. is_triangle(group)) group%diagonal(:, 2, e) = xy(:, connect(4, e)) - xy(:, connect(2, e))
          group%weight(p + 1:p + per) = area(1:per) * thickness(e)
          do k = p + 1, p + per
             group%turn(:, k) = [1.0_wp, 0.0_wp]
@@ -153,19 +187,19 @@ contains
       nu = group%nu(e)
       group%limit(:, p) = unbounded
       do k = 1, 2
-         tension = group%teeth%modulus_of(group%table(e), group%tooth(k, p), e0, group%options%floor)
+         tension = group%teeth%modulus_of(group%table_of(e, p), group%tooth(k, p), e0, group%options%floor)
          compression = group%teeth%modulus_of(group%crush_table(e), group%crush(k, p), e0, group%options%floor)
          modulus(k) = min(tension, compression)
          if (group%shut(k, p) /= 0) modulus(k) = compression
          ! A tooth ends at its strain: where the other sign's damage governs, the stress is less.
          if (group%shut(k, p) == 0) group%limit(k, p) = &
-            group%teeth%strength_of(group%table(e), group%tooth(k, p), modulus(k) / tension)
+            group%teeth%strength_of(group%table_of(e, p), group%tooth(k, p), modulus(k) / tension)
          group%limit(k + 2, p) = group%teeth%strength_of(group%crush_table(e), group%crush(k, p), &
             modulus(k) / compression)
       end do
-      if (group%options%isotropic) modulus(2) = modulus(1)
+      if (group%options%cracking == isotropic) modulus(2) = modulus(1)
       ratio = 1.0_wp / (1.0_wp - nu**2 * modulus(1) * modulus(2) / e0**2)
-      if (group%options%isotropic) then
+      if (group%options%cracking == isotropic) then
          ratio = 1.0_wp / (1.0_wp - nu**2)
          group%stiff(:, p) = modulus(1) * [ratio, nu * ratio, ratio, 0.5_wp / (1.0_wp + nu)]
          return
@@ -345,10 +379,10 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
-      real(wp) :: f, fc, gain
+      real(wp) :: f, fc, gain, more
       integer :: k
 
-      if (group%cracked(p) == 0 .or. (group%options%isotropic .and. group%axis(e) == axis_free)) then
+      if (group%cracked(p) == 0 .or. (group%options%cracking == isotropic .and. group%axis(e) == axis_free)) then
          f = group%limit(1, p)
          if (f < unbounded) then
             call cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
@@ -357,7 +391,9 @@ contains
                code_tension, found)
          end if
          f = group%limit(3, p)
-         if (f < unbounded) call cone(f, -1.0_wp, sa, sb, lambda, noise, p, code_compression + 1, found)
+         more = group%confinement(e)
+         if (f < unbounded) call cone(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, lambda, noise, &
+            p, code_compression + 1, found)
          return
       end if
       do k = 1, merge(1, 2, group%axis(e) /= axis_free)
@@ -365,10 +401,12 @@ contains
          if (f < unbounded) call linear_bound(sa(k), sb(k), f, f, lambda, noise, p, code_tension + k - 1, found)
          fc = group%limit(k + 2, p)
          if (fc < unbounded) then
-           call linear_bound(-sa(k), -sb(k), fc, fc, lambda, noise, p, code_compression + k - 1, found)
+            more = group%confinement(e)
+            call linear_bound(more * sa(3 - k) - sa(k), more * sb(3 - k) - sb(k), fc, fc, lambda, noise, p, &
+               code_compression + k - 1, found)
          end if
          if (.not. group%options%closure .or. group%tooth(k, p) == 1) cycle
-         f = group%teeth%strength_of(group%table(e), 1_c_int, 1.0_wp)
+         f = group%teeth%strength_of(group%table_of(e, p), 1_c_int, 1.0_wp)
          if (group%shut(k, p) /= 0) then
             call linear_bound(sa(k), sb(k), 0.0_wp, f, lambda, noise, p, code_open + k - 1, found)
          else if (group%changes(k, p) < group%options%most_changes) then
@@ -394,12 +432,17 @@ contains
 
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
+         if (group%confinement(e) > 0.0_wp) then   ! crushing depends on both principal stresses
+            least = -1.0_wp
+            return
+         end if
          call group%gather(e, ua, la)
          call group%gather(e, ub, lb)
          do p = (e - 1) * group%rule%points + 1, e * group%rule%points
             sa = stress_at(group, p, strain_at(group, e, p, la))
             sb = stress_at(group, p, strain_at(group, e, p, lb))
-            if (group%cracked(p) == 0 .or. (group%options%isotropic .and. group%axis(e) == axis_free)) then
+            if (group%cracked(p) == 0 .or. (group%options%cracking == isotropic .and. &
+                group%axis(e) == axis_free)) then
                share = sqrt(group%weight(p) / group%stiff(1, p))
                f = group%limit(1, p)
                if (f < unbounded) then
@@ -489,24 +532,41 @@ contains
       real(wp), intent(in) :: ub(0:)
       type(event_vectors), intent(out) :: event
       integer, intent(out) :: tooth
-      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), s(3), v(3), old(4), phi
+      real(wp), parameter :: right_angle = 0.5_wp * acos(-1.0_wp)
+      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), s(3), v(3), old(4), phi, delta, pressed
       real(wp) :: before, after, alpha, change
-      integer :: e, k, p
+      logical :: turns, follows
+      integer :: e, k, p, sense
 
       p = point
       e = (p - 1) / group%rule%points + 1
+      k = 1 + mod(code - 1, 2)
+      sense = code - k + 1
+      turns = sense == code_tension .and. group%options%cracking == rotating .and. group%axis(e) == axis_free
+      call group%gather(e, ua, la)
+      call group%gather(e, ub, lb)
+      la(1:group%freedoms) = la(1:group%freedoms) + lambda * lb(1:group%freedoms)
+      delta = 0.0_wp
       if (group%cracked(p) == 0) then
-         call group%gather(e, ua, la)
-         call group%gather(e, ub, lb)
-         s = stress_at(group, p, strain_at(group, e, p, la + lambda * lb))
+         s = stress_at(group, p, strain_at(group, e, p, la))
          phi = 0.5_wp * atan2(2.0_wp * s(3), s(1) - s(2))     ! thesis Eq. 4.7
          group%turn(:, p) = [cos(phi), sin(phi)]
          group%cracked(p) = 1
+         call set_band(group, e, p)
+      else if (turns) then
+         s = strain_at(group, e, p, la)
+         delta = 0.5_wp * atan2(s(3), s(1) - s(2))
+         delta = delta - right_angle * anint(delta / right_angle)   ! to the nearer of both principal directions
+         if (abs(delta) < least_turn) delta = 0.0_wp
       end if
-      k = 1 + mod(code - 1, 2)
       old = group%stiff(:, p)
       before = direction_modulus(group, e, p, k)
-      select case (code - k + 1)
+      if (delta /= 0.0_wp) then
+         group%turn(:, p) = [cos(delta) * group%turn(1, p) - sin(delta) * group%turn(2, p), &
+            sin(delta) * group%turn(1, p) + cos(delta) * group%turn(2, p)]
+         call set_band(group, e, p)
+      end if
+      select case (sense)
       case (code_tension)
          group%tooth(k, p) = group%tooth(k, p) + 1_c_int
       case (code_compression)
@@ -518,35 +578,189 @@ contains
          group%shut(k, p) = 0
          group%changes(k, p) = group%changes(k, p) + 1_c_int
       end select
-      tooth = int(merge(group%crush(k, p), group%tooth(k, p), code - k + 1 == code_compression))
-      if (group%options%isotropic) then
+      tooth = int(merge(group%crush(k, p), group%tooth(k, p), sense == code_compression))
+      if (group%options%cracking == isotropic) then
          group%tooth(2, p) = group%tooth(1, p)
          group%crush(1, p) = maxval(group%crush(:, p))
          group%crush(2, p) = group%crush(1, p)
       end if
+      follows = .false.
+      if (turns) then
+         call group%refresh(p)
+         s = stress_at(group, p, strain_at(group, e, p, la))
+         pressed = 0.0_wp
+         if (.not. group%options%closure) pressed = group%teeth%strength_of(group%table_of(e, p), 1_c_int, 1.0_wp)
+         if (s(3 - k) > -pressed) call follow(group, e, p, k, follows)
+      end if
       after = direction_modulus(group, e, p, k)
       call group%refresh(p)
 
-      if (group%options%isotropic) then
+      if (group%options%cracking == isotropic) then
          ! All of D changes in proportion: the Cholesky factor of the change, three vectors.
          change = (1.0_wp - after / before) * group%weight(p)
          v = [sqrt(old(1)), old(2) / sqrt(old(1)), 0.0_wp]
          call add_vector(group, e, p, v, change, event)
          call add_vector(group, e, p, [0.0_wp, sqrt(old(3) - v(2)**2), 0.0_wp], change, event)
          call add_vector(group, e, p, [0.0_wp, 0.0_wp, sqrt(old(4))], change, event)
-         return
-      end if
-      if (before /= after) then
-         alpha = 1.0_wp / (1.0_wp / (1.0_wp / after - 1.0_wp / before) + merge(old(1), old(3), k == 1))
-         v = [merge(old(1), old(2), k == 1), merge(old(2), old(3), k == 1), 0.0_wp]
-         call add_vector(group, e, p, v, alpha * group%weight(p), event)
-      end if
-      change = old(4) - group%stiff(4, p)
-      if (abs(change) > 1.0e-14_wp * old(4)) then
-        call add_vector(group, e, p, [0.0_wp, 0.0_wp, 1.0_wp], change * group%weight(p), event)
+      else if (delta /= 0.0_wp .or. follows) then
+         call add_change(group, e, p, old, delta, event)
+      else
+         if (before /= after) then
+            alpha = 1.0_wp / (1.0_wp / (1.0_wp / after - 1.0_wp / before) + merge(old(1), old(3), k == 1))
+            v = [merge(old(1), old(2), k == 1), merge(old(2), old(3), k == 1), 0.0_wp]
+            call add_vector(group, e, p, v, alpha * group%weight(p), event)
+         end if
+         change = old(4) - group%stiff(4, p)
+         if (abs(change) > 1.0e-14_wp * old(4)) then
+            call add_vector(group, e, p, [0.0_wp, 0.0_wp, 1.0_wp], change * group%weight(p), event)
+         end if
       end if
 
    end subroutine damage
+
+   !> The crack band across the crack axes; teeth that were passed become those of as much stiffness
+   pure subroutine set_band(group, e, p)
+      class(plane_group), intent(inout) :: group
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp) :: modulus
+      integer(c_int) :: old, new
+      integer :: k
+      if (group%ladder(1, e) == 0) return
+      old = group%table_of(e, p)
+      new = group%teeth%nearest_band(group%ladder(1, e), group%ladder(2, e), width_across(group, e, group%turn(:, p)))
+      group%cracked(p) = 1_c_int + new - group%ladder(1, e)
+      if (new == old) return
+      do k = 1, 2
+         if (group%tooth(k, p) == 1) cycle
+         modulus = group%teeth%modulus_of(old, group%tooth(k, p), group%young(e), group%options%floor)
+         group%tooth(k, p) = group%teeth%tooth_of(new, modulus)
+      end do
+   end subroutine set_band
+
+   !> Teeth of the other direction, so that it is not much stiffer than that of crack k
+   pure subroutine follow(group, e, p, k, follows)
+      class(plane_group), intent(inout) :: group
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      integer, intent(in) :: k
+      logical, intent(out) :: follows      !! the other direction has lost teeth
+      real(wp) :: most
+      integer :: other
+      other = 3 - k
+      most = most_contrast * direction_modulus(group, e, p, k)
+      follows = .false.
+      do while (group%tooth(other, p) < group%tooth(k, p))
+         if (direction_modulus(group, e, p, other) <= most) exit
+         group%tooth(other, p) = group%tooth(other, p) + 1_c_int
+         follows = .true.
+      end do
+   end subroutine follow
+
+   !> The vectors of a change of the stiffness and of the axes, up to three, some of which may stiffen
+   pure subroutine add_change(group, e, p, old, delta, event)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp), intent(in) :: old(4)       !! stiffness in the old axes [Pa]
+      real(wp), intent(in) :: delta        !! angle from the old axes to the new ones [rad]
+      type(event_vectors), intent(inout) :: event
+      real(wp) :: c, s, r(3, 3), d(3, 3), vectors(3, 3), least
+      integer :: i
+
+      c = cos(delta)
+      s = -sin(delta)
+      r(1, :) = [c**2, s**2, c * s]
+      r(2, :) = [s**2, c**2, -c * s]
+      r(3, :) = [-2.0_wp * c * s, 2.0_wp * c * s, c**2 - s**2]
+      d = stiffness_matrix(old)
+      d = matmul(d, r)
+      d = matmul(transpose(r), d)
+      d = d - stiffness_matrix(group%stiff(:, p))
+      call principal(d, vectors)
+      least = 1.0e-14_wp * maxval(old)
+      do i = 1, 3    ! stiffening first: the small system of the event then has no small pivot, see sla_events
+         if (d(i, i) < -least) call add_vector(group, e, p, vectors(:, i), d(i, i) * group%weight(p), event)
+      end do
+      do i = 1, 3
+         if (d(i, i) > least) call add_vector(group, e, p, vectors(:, i), d(i, i) * group%weight(p), event)
+      end do
+   end subroutine add_change
+
+   !> Dnn, Dns, Dss, G as a matrix
+   pure function stiffness_matrix(stiff) result(d)
+      real(wp), intent(in) :: stiff(4)
+      real(wp) :: d(3, 3)
+      d = 0.0_wp
+      d(1:2, 1) = stiff(1:2)
+      d(1:2, 2) = stiff(2:3)
+      d(3, 3) = stiff(4)
+   end function stiffness_matrix
+
+   !> Eigenvalues, left on the diagonal, and eigenvectors of a symmetric matrix by Jacobi's rotations
+   pure subroutine principal(d, vectors)
+      real(wp), intent(inout) :: d(3, 3)
+      real(wp), intent(out) :: vectors(3, 3)   !! columns of unit length
+      real(wp) :: size, theta, t, c, s, row(3)
+      integer :: sweep, i, j
+      vectors = reshape([1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp, 0.0_wp, 0.0_wp, 0.0_wp, 1.0_wp], [3, 3])
+      size = maxval(abs(d))
+      do sweep = 1, 20    ! converges quadratically: five are enough
+         do i = 1, 2
+            do j = i + 1, 3
+               if (abs(d(i, j)) <= 1.0e-16_wp * size) cycle
+               theta = (d(j, j) - d(i, i)) / (2.0_wp * d(i, j))
+               t = sign(1.0_wp, theta) / (abs(theta) + sqrt(theta**2 + 1.0_wp))
+               c = 1.0_wp / sqrt(t**2 + 1.0_wp)
+               s = t * c
+               row = d(i, :)
+               d(i, :) = c * row - s * d(j, :)
+               d(j, :) = s * row + c * d(j, :)
+               row = d(:, i)
+               d(:, i) = c * row - s * d(:, j)
+               d(:, j) = s * row + c * d(:, j)
+               row = vectors(:, i)
+               vectors(:, i) = c * row - s * vectors(:, j)
+               vectors(:, j) = s * row + c * vectors(:, j)
+            end do
+         end do
+         if (max(abs(d(1, 2)), abs(d(1, 3)), abs(d(2, 3))) <= 1.0e-15_wp * size) exit
+      end do
+   end subroutine principal
+
+   !> Table of a point's tension teeth: of its element's until it cracks, then of its crack band
+   pure function table_of(group, e, p) result(table)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      integer(c_int) :: table
+      table = group%table(e)
+      if (group%ladder(1, e) /= 0 .and. group%cracked(p) > 0) table = &
+         min(group%ladder(1, e) + group%cracked(p) - 1_c_int, group%ladder(2, e))
+   end function table_of
+
+   !> Width of an element across a crack of the normal n, see the head of this module [m]
+   pure function width_across(group, e, n) result(width)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: n(2)
+      real(wp) :: width, a(2), b(2), along(2), across(2)
+      a = group%diagonal(:, 1, e)
+      b = group%diagonal(:, 2, e)
+      along = [a(2) * n(1) - a(1) * n(2), b(2) * n(1) - b(1) * n(2)]
+      if (is_triangle(group)) then
+         across = [dot_product(a, n), dot_product(b, n)]
+         width = max(0.0_wp, maxval(across)) - min(0.0_wp, minval(across))
+      else
+         width = abs(a(1) * b(2) - a(2) * b(1)) / sum(abs(along))
+      end if
+   end function width_across
+
+   pure function is_triangle(group) result(yes)
+      class(plane_group), intent(in) :: group
+      logical :: yes
+      yes = group%rule%kind == element_t3 .or. group%rule%kind == element_t6
+   end function is_triangle
 
    !> One more vector sqrt(|size|) B' R' v, softening where size > 0
    pure subroutine add_vector(group, e, p, v, size, event)
@@ -595,12 +809,13 @@ contains
       real(wp) :: modulus
       modulus = group%teeth%modulus_of(group%crush_table(e), group%crush(k, p), group%young(e), group%options%floor)
       if (group%shut(k, p) == 0) modulus = min(modulus, &
-         group%teeth%modulus_of(group%table(e), group%tooth(k, p), group%young(e), group%options%floor))
+         group%teeth%modulus_of(group%table_of(e, p), group%tooth(k, p), group%young(e), group%options%floor))
    end function direction_modulus
 
    !> Rows: 1-3 strain and 4-6 stress in the crack axes, 7-8 cosine and sine of the first crack's normal,
    !> 9-10 moduli over the initial one, 11-12 tension teeth, 13-14 admitted range of lambda, 15 volume,
-   !> 16-17 compression teeth, 18 shut (1 first, 2 second direction, 3 both)
+   !> 16-17 compression teeth, 18 shut (1 first, 2 second direction, 3 both),
+   !> 19 crack band [m]
    pure subroutine report(group, ua, ub, lambda, noise, values)
       class(plane_group), intent(in) :: group
       real(wp), intent(in) :: ua(0:)
@@ -610,7 +825,7 @@ contains
       real(wp), intent(out) :: values(:, :)     !! (report_rows, points)
       real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), ea(3), eb(3)
       type(scan_result) :: found
-      integer :: e, p
+      integer :: e, p, k
 
       do e = 1, group%elements
          call group%gather(e, ua, la)
@@ -622,7 +837,8 @@ contains
             values(4:6, p) = stress_at(group, p, ea + lambda * eb)
             values(7:8, p) = group%turn(:, p)
             values(9, p) = direction_modulus(group, e, p, 1) / group%young(e)
-            values(10, p) = direction_modulus(group, e, p, merge(1, 2, group%options%isotropic)) / group%young(e)
+            k = merge(1, 2, group%options%cracking == isotropic)
+            values(10, p) = direction_modulus(group, e, p, k) / group%young(e)
             values(11:12, p) = real(group%tooth(:, p), wp)
             found = scan_result()
             call scan_point(group, e, p, stress_at(group, p, ea), stress_at(group, p, eb), lambda, noise, found)
@@ -631,6 +847,8 @@ contains
             values(15, p) = group%weight(p)
             values(16:17, p) = real(group%crush(:, p), wp)
             values(18, p) = real(group%shut(1, p) + 2 * group%shut(2, p), wp)
+            values(19, p) = 0.0_wp
+            if (group%table(e) /= 0) values(19, p) = group%teeth%band(group%table_of(e, p))
          end do
       end do
    end subroutine report

@@ -6,16 +6,19 @@ module sla_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: tooth_tables, tooth_tables_new
+   public :: tooth_tables, tooth_tables_new, tooth_tables_copy
 
    type :: tooth_tables
       integer, allocatable :: first(:)       !! (tables + 1) first tooth of each
       real(wp), allocatable :: modulus(:)    !! [Pa]
       real(wp), allocatable :: strength(:)   !! [Pa]
+      real(wp), allocatable :: band(:)       !! (tables) crack band [m]
    contains
       procedure :: tables
       procedure :: modulus_of
       procedure :: strength_of
+      procedure :: tooth_of
+      procedure :: nearest_band
    end type tooth_tables
 
    integer, parameter :: most_teeth = 4096
@@ -34,7 +37,7 @@ contains
 
       bad = 0
       status = status_ok
-      allocate (teeth%first(size(rows, 2) + 1), modulus(most_teeth), strength(most_teeth), &
+      allocate (teeth%first(size(rows, 2) + 1), teeth%band(size(rows, 2)), modulus(most_teeth), strength(most_teeth), &
          all_moduli(64 * (size(rows, 2) + 64)), all_strengths(64 * (size(rows, 2) + 64)), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
@@ -42,6 +45,7 @@ contains
       end if
       used = 0
       teeth%first(1) = 1
+      teeth%band(:) = rows(5, :)
       do k = 1, size(rows, 2)
          call make_teeth(nint(rows(1, k), c_int), rows(2, k), rows(3, k), rows(4, k), rows(5, k), rows(6, k), &
             rows(7, k) > 0.5_wp, rows(8, k) > 0.5_wp, n, modulus, strength, status)
@@ -72,6 +76,26 @@ contains
       teeth%modulus(:) = all_moduli(1:used)
       teeth%strength(:) = all_strengths(1:used)
    end subroutine tooth_tables_new
+
+   !> The tables again; an assignment would not tell where there is no memory for it
+   subroutine tooth_tables_copy(teeth, copy, status)
+      type(tooth_tables), intent(in) :: teeth
+      type(tooth_tables), intent(out) :: copy
+      integer(c_int), intent(out) :: status
+      integer :: info
+      status = status_ok
+      if (.not. allocated(teeth%first)) return
+      allocate (copy%first(size(teeth%first)), copy%modulus(size(teeth%modulus)), &
+         copy%strength(size(teeth%strength)), copy%band(size(teeth%band)), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      copy%first(:) = teeth%first
+      copy%modulus(:) = teeth%modulus
+      copy%strength(:) = teeth%strength
+      copy%band(:) = teeth%band
+   end subroutine tooth_tables_copy
 
    !> How many there are
    pure function tables(teeth) result(count)
@@ -111,5 +135,30 @@ contains
         strength = share * teeth%strength(teeth%first(table) + tooth - 1)
       end if
    end function strength_of
+
+   !> The stiffest tooth of a table that is no stiffer than `modulus`, one after the last where there is none
+   pure function tooth_of(teeth, table, modulus) result(tooth)
+      class(tooth_tables), intent(in) :: teeth
+      integer(c_int), intent(in) :: table
+      real(wp), intent(in) :: modulus         !! [Pa]
+      integer(c_int) :: tooth
+      do tooth = 1, int(teeth%first(table + 1) - teeth%first(table), c_int)
+         if (teeth%modulus(teeth%first(table) + tooth - 1) <= modulus) return
+      end do
+   end function tooth_of
+
+   !> Of the tables of one law for bands that grow from `first` to `last`, the one nearest to `band` by ratio
+   pure function nearest_band(teeth, first, last, band) result(table)
+      class(tooth_tables), intent(in) :: teeth
+      integer(c_int), intent(in) :: first
+      integer(c_int), intent(in) :: last
+      real(wp), intent(in) :: band            !! [m]
+      integer(c_int) :: table
+      table = first
+      do while (table < last)
+         if (band**2 <= teeth%band(table) * teeth%band(table + 1)) exit
+         table = table + 1_c_int
+      end do
+   end function nearest_band
 
 end module sla_tables

@@ -36,6 +36,7 @@ contains
       real(wp) :: xy(2, (nx + 1) * (ny + 1)), factor(2, (nx + 1) * (ny + 1)), load(2, (nx + 1) * (ny + 1))
       integer(c_int) :: equation(2, (nx + 1) * (ny + 1)), connect(4, nx * ny), bad, row, node, direction, reason
       integer(c_int), allocatable :: nodes(:, :), directions(:, :)
+      integer(c_int), parameter :: one_table(3) = [1_c_int, 0_c_int, 0_c_int]
       real(wp) :: each(nx * ny), ratio, gap
       integer :: i, j, k, e
 
@@ -66,8 +67,8 @@ contains
       each = 1.0_wp
       allocate (plane)
       call plane_group_new(element_q4, 2_c_int, 2_c_int, .false., xy, connect, 0.21_wp * each, 7.0e9_wp * each, &
-         0.19_wp * each, nint(each, c_int), 0 * nint(each, c_int), 0.0_wp * each, 0 * nint(each, c_int), &
-         0.0_wp * each, teeth, options, plane, bad, status)
+         0.19_wp * each, spread(one_table, 2, size(each)), 0 * nint(each, c_int), 0.0_wp * each, &
+         0.0_wp * each, 0 * nint(each, c_int), 0.0_wp * each, teeth, options, plane, bad, status)
       if (status /= status_ok) error stop 'no elements'
       call move_alloc(plane, group)
       call both_directions(connect, nodes, directions, status)

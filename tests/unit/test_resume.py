@@ -102,7 +102,7 @@ tilt_accuracy = 0.05
     + """
 directions = ["+", "-"]
 events = 2150
-mechanism_ratio = 1e8
+mechanism_ratio = 1e5
 mesh.size = "0.1 m"
 """,
     "sla seeds": WALL

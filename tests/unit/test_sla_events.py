@@ -153,10 +153,12 @@ CRUSHING = {"compressive_strength": 1e6, "crushing_energy": 2e3}
         ({}, {"mesh": {"size": 0.2, "element": "T6"}}),
         ({}, {"mesh": {"size": 0.2, "element": "Q8"}}),
         ({}, {"mesh": {"size": 0.1, "selective": True}}),
+        ({}, {"mesh": {"size": 0.1}, "cracking": "orthotropic"}),
         ({}, {"mesh": {"size": 0.1}, "cracking": "isotropic"}),
         ({}, {"mesh": {"size": 0.1}, "crack_closure": True, "target_displacement": 0.1}),
         (CRUSHING, {"mesh": {"size": 0.1}}),
         (CRUSHING | {"lateral_reduction": True}, {"mesh": {"size": 0.1}}),
+        (CRUSHING | {"confinement": 4.0}, {"mesh": {"size": 0.15}}),
         ({}, {"mesh": {"size": 0.1}, "reference": [
             {"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}, {"y": 1.5, "ratio": 0.6}]}]}),
         ({}, {"mesh": {"size": 0.1}, "control": [{"x": 3.0, "y": 3.0}, {"x": 3.0, "y": 1.5, "direction": "y"}]}),
@@ -274,12 +276,12 @@ def test_the_residual_is_measured_in_short_runs_too() -> None:
 
 
 def test_going_on_from_a_stored_event() -> None:
-    _, (whole,) = curves(wall(events=260))
+    _, (whole,) = curves(wall(events=260, cracking="orthotropic"))
     event = 140
     damage = damage_before(
         whole.damage_start, whole.damage_end, whole.events.point[: event - 1], whole.events.code[: event - 1]
     )
-    deck = make_deck(wall(events=120))
+    deck = make_deck(wall(events=120, cracking="orthotropic"))
     model = build(Context(deck).building.mesh(deck.analyses[0].mesh), deck.analyses[0])
     (rest,) = run_curves(model, deck.analyses[0], 1, lambda *_: None, damage)
     np.testing.assert_allclose(rest.events.load, whole.events.load[event - 1 : event + 119], rtol=1e-9)
@@ -469,11 +471,11 @@ def test_a_load_that_still_rises_has_no_peak() -> None:
 
 
 def test_the_floor_of_the_stiffness_is_no_peak() -> None:
-    """What a millionth of the stiffness carries at kilometres of displacement is no capacity, however late the run is
-    told to end."""
-    early, late = (run_deck(wall(0.3, events=4000, mechanism_ratio=ratio)) for ratio in (1e4, 1e12))
+    """What a millionth of the stiffness carries far out is no capacity, however late the run is told to end."""
+    early, late = (run_deck(wall(0.3, events=4000, mechanism_ratio=ratio)) for ratio in (1e4, 1e5))
     assert late.results["events"] > early.results["events"]
-    assert late["event_load"][late["event_equilibrium"] > 0].max() > late.results["greatest_load_N"]
+    reached = early["event_displacement"].max()
+    assert late["envelope_displacement"].max() <= reached < late["event_displacement"].max()
     assert late.results["greatest_load_N"] == early.results["greatest_load_N"]
     assert late["envelope_load"].max() == late.results["peak_load_N"]
 

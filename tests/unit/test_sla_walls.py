@@ -123,7 +123,7 @@ def test_strength_field_has_its_mean_and_scatter() -> None:
 
 def test_results_fields_and_figures(tmp_path) -> None:
     """A run as a user makes it: CSV, VTU in a PVD series, figures, report; and going on from it."""
-    data = wall(events=90, directions=["+", "-"], states=[20], section_x=[0.5])
+    data = wall(events=90, directions=["+", "-"], states=[20, 71], section_x=[0.5])
     run = run_to(Context(make_deck(data)), tmp_path / "run")
     out, result = run.folder, run.results[0]
     stored = read(out)
@@ -156,8 +156,10 @@ def test_a_run_to_minus_alone_is_read_back(tmp_path) -> None:
     assert (result.results["sense"], "minus" in result.results) == ("-", False)
     assert len((out / "load_displacement.csv").read_text().splitlines()) == 31
     assert (out / "figures" / "sla-curve.png").exists() or (out / "figures" / "sla-curve.svg").exists()
-    rest = run_deck(wall(events=5, directions=["-"], resume_from=str(out), resume_event=26))
-    np.testing.assert_allclose(rest["event_load"], result["event_load"][25:30], rtol=1e-9)
+    rest = run_deck(wall(events=1, directions=["-"], resume_from=str(out)))
+    np.testing.assert_allclose(rest["event_load"], result["event_load"][29:], rtol=1e-9)
+    refused = run_deck(wall(events=5, directions=["-"], resume_from=str(out), resume_event=26))
+    assert "the damage before event 26 was not kept" in refused.reason
 
 
 def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
@@ -204,7 +206,7 @@ def test_interrupt_keeps_the_events_so_far() -> None:
             timers.append(threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)))
             timers[0].start()
 
-    data = wall(0.03, events=1_000_000, mechanism_ratio=1e12)
+    data = wall(0.03, events=1_000_000, mechanism_ratio=1e5)
     result = run_analyses(Context(make_deck(data), progress=progress))[0]
     timers[0].join()
     assert result.status == "interrupted"
@@ -236,3 +238,85 @@ def test_the_starter_deck_runs(tmp_path) -> None:
     assert result.status == "ok", result.reason
     assert result.results["stop"] == "target displacement"
     assert read_text(starter("mesh").encode()).structure.file == "extrados:example-wall"
+
+
+def test_a_force_between_nodes_is_shared() -> None:
+    """The resultant and its moment are those of the force; at a node it is that node's alone."""
+    from extrados.analyses.sla.model import nodal_forces
+    from extrados.analyses.sla.tables import Load
+
+    deck = make_deck(wall(events=5))
+    mesh = Context(deck).building.mesh(deck.analyses[0].mesh)
+    corner = mesh.xy.max(axis=0)
+    place = corner - [0.37 * mesh.size, 0.0]
+    force = nodal_forces(mesh, [Load(kind="point", x=place[0], y=place[1], fy=-1.0)], "reference")
+    assert np.count_nonzero(force) == 2
+    assert force.sum(axis=0) == pytest.approx([0.0, -1.0])
+    assert (mesh.xy[:, 0] * force[:, 1]).sum() == pytest.approx(-place[0])
+    alone = nodal_forces(mesh, [Load(kind="point", x=corner[0], y=corner[1], fy=-1.0)], "reference")
+    assert np.count_nonzero(alone) == 1
+
+
+def test_a_node_that_is_not_where_it_was_asked_for_is_told() -> None:
+    data = wall(events=5, control=[{"x": 0.0123, "y": 0.0, "direction": "x"}])
+    assert any("no node lies at x 0.0123 m" in w for w in run_deck(data).warnings)
+
+
+def test_what_cracks_keep_is_never_the_peak() -> None:
+    reason = run_deck(wall(events=5, mechanism_ratio=1e8)).reason
+    assert "what they keep would carry the load; at most 100000" in reason
+
+
+def test_nodes_that_stand_twice_are_named(tmp_path) -> None:
+    """Two halves of a wall that only touch: the lower one is held, the upper one flies."""
+    meshio = pytest.importorskip("meshio")
+    x, y = np.meshgrid([0.0, 400.0, 800.0], [0.0, 300.0], indexing="ij")
+    below = np.column_stack([x.ravel(), y.ravel(), np.zeros(6)])
+    quads = np.array([[0, 2, 3, 1], [2, 4, 5, 3]])
+    points = np.concatenate([below, below + np.array([0.0, 300.0, 0.0])])
+    meshio.write(tmp_path / "halves.vtu", meshio.Mesh(points, [("quad", np.concatenate([quads, quads + 6]))]))
+    reason = from_file("halves.vtu", tmp_path).reason
+    assert "lie at the same place" in reason
+    assert "(3 such pairs)" in reason
+
+
+TEST = "# somebody (1999)\ndisplacement (mm),least (kN),greatest (kN)\n0.01,1,3\n0.1,18,22\n0.3,9,11\n0.5,4,6\n"
+
+
+def with_test(tmp_path, text: str, **more):
+    (tmp_path / "test.csv").write_text(text)
+    return run_analyses(Context(make_deck(wall(events=60, measured="test.csv", **more), tmp_path)))[0]
+
+
+def test_a_measured_curve_is_compared() -> None:
+    """Mean 3, 20, 10, 5 kN at 0.01, 0.1, 0.3, 0.5 mm against a curve of 30 kN at 0.1 mm that stays there."""
+    from extrados.analyses.sla.measured import Measured, compare
+
+    test = Measured(np.array([1e-5, 1e-4, 3e-4, 5e-4]), *(1e3 * np.array(x) for x in ([1, 18, 9, 4], [5, 22, 11, 6])))
+    found = compare(test, np.array([0.0, 1e-4, 4e-4]), np.array([0.0, 30e3, 30e3]))
+    assert found.peak_ratio == pytest.approx(1.5)
+    assert found.tail_ratios == [pytest.approx(30 / 15), pytest.approx(30 / 10), None]
+    assert found.inside_ratio == pytest.approx(1 / 3)  # 3 kN at the first point alone
+    assert found.half_band_ratio == pytest.approx((2 / 3 + 0.1 + 0.1) / 3)
+
+
+def test_a_measured_curve_is_drawn(tmp_path) -> None:
+    (tmp_path / "test.csv").write_text(TEST)
+    run = run_to(Context(make_deck(wall(events=60, measured="test.csv"), tmp_path)), tmp_path / "run")
+    assert run.results[0].results["measured"]["peak_ratio"] > 0.0
+    assert read(run.folder).array("sla", "measured_greatest").max() == 22e3
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        (TEST.replace("0.3,9,11", "0.05,9,11"), "must rise"),
+        (TEST.replace("(kN)", "(psi)"), "expected a unit"),
+        (TEST.replace("least", "lowest"), "expected displacement with load"),
+        (TEST.replace("9,11", "9,eleven"), "test.csv:5: expected 3 numbers"),
+        (TEST.replace("18,22", "22,18"), "least load is above"),
+        ("", "at least two of numbers"),
+    ],
+)
+def test_bad_measured_curves(tmp_path, text, complaint) -> None:
+    assert complaint in with_test(tmp_path, text).reason

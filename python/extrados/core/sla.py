@@ -11,6 +11,7 @@ from extrados.core.calls import indices, integers, long_call, real, room_for, th
 from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
+    CRACKING,
     ELEMENTS,
     EVENT,
     EVENTS,
@@ -20,6 +21,7 @@ from extrados.core.sla_parts import (
     Behaviour,
     Events,
     Freedoms,
+    Joints,
     Monitor,
     Plane,
     Softening,
@@ -28,6 +30,7 @@ from extrados.core.sla_parts import (
 )  # fmt: skip
 
 __all__ = [
+    "CRACKING",
     "ELEMENTS",
     "EVENT",
     "EVENTS",
@@ -40,6 +43,7 @@ __all__ = [
     "Events",
     "FreeNode",
     "Freedoms",
+    "Joints",
     "Model",
     "Monitor",
     "Plane",
@@ -55,9 +59,14 @@ __all__ = [
 
 REPORT = (
     "strain_n", "strain_s", "strain_ns", "stress_n", "stress_s", "stress_ns", "cos", "sin", "ratio_n", "ratio_s",
-    "tooth_n", "tooth_s", "lambda_lo", "lambda_hi", "volume", "crush_n", "crush_s", "shut",
+    "tooth_n", "tooth_s", "lambda_lo", "lambda_hi", "volume", "crush_n", "crush_s", "shut", "band",
 )  # fmt: skip
 MOST_TEETH = 4096
+#: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
+#: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
+HELD, HELD_RATE, MARK, MODE = 1, 6, 8, 10
+#: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
+BAND_STEP = 1.02
 
 
 class FreeNode(ValueError):
@@ -134,7 +143,7 @@ class Model(Owner):
         self,
         xy: npt.ArrayLike,
         freedoms: Freedoms,
-        groups: Sequence[Plane | Bars | Springs],
+        groups: Sequence[Plane | Joints | Bars | Springs],
         behaviour: Behaviour | None = None,
         *,
         algorithm: str = "update",
@@ -145,7 +154,7 @@ class Model(Owner):
         if algorithm not in ("update", "refactor"):
             raise ValueError(f"algorithm is {algorithm!r}, expected 'update' or 'refactor'")
         self.behaviour = behaviour = behaviour or Behaviour()
-        self.plane_points: list[tuple[Plane, int, int]] = []  # group, first point, points per element
+        self.plane_points: list[tuple[Plane | Joints, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
         place = real("xy", np.transpose(xy), (2, None))
         self.nodes = place.shape[1]
@@ -159,7 +168,7 @@ class Model(Owner):
             place,
             indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1),
             real("factor", np.transpose(freedoms.factor), (2, self.nodes)),
-            int(behaviour.isotropic), retention, int(behaviour.closure), int(behaviour.most_changes),
+            CRACKING[behaviour.cracking], retention, int(behaviour.closure), int(behaviour.most_changes),
             float(behaviour.floor),
         )  # fmt: skip
         check(status, "model")
@@ -185,28 +194,28 @@ class Model(Owner):
             self.close()
             raise
 
-    def _tables(self, count: int, group: Plane | Bars) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Hand over the tooth tables of a group; Young's modulus and, for tension and compression, the table of
-        each element (1-based, 0 none)."""
+    def _tables(self, count: int, group: Plane | Joints | Bars) -> tuple[list[np.ndarray], np.ndarray]:
+        """Hand over the tooth tables of a group; for tension, compression and of joints cohesion, the table of each
+        element (1-based, 0 none), and (2, elements) those of its narrowest and widest tension band."""
         young, band = _each("young", group.young, count), _each("band", group.band, count)
-        found: dict[tuple[float, ...], int] = {}
-        numbers = []
-        for law in (group.tension, group.compression):
-            one_for_all = law is None or isinstance(law, Softening)
-            each = [law] * count if one_for_all else list(law)  # type: ignore[arg-type]
-            if len(each) != count:
-                raise ValueError(f"{len(each)} softening laws for {count} elements")
-            number = np.zeros(count, dtype=np.int32)
-            for k, softening in enumerate(each):
-                if isinstance(softening, Softening):
-                    row = tuple(softening.row(float(young[k]), float(band[k])))
-                    number[k] = found.setdefault(row, len(found) + 1)
-            numbers.append(number)
-        if found:
-            rows = real("softening", np.transpose(list(found)), (8, None))
-            bad, status = _core.api_sla_model.tables(self.handle, rows)
+        reach = group.reach if isinstance(group, Plane) else None
+        rows: list[tuple[float, ...]] = []
+        tension = _softenings(group.tension, count)
+        if reach is None:
+            numbers = [_one_band(tension, young, band, rows)]
+            ladder = np.zeros((2, count), dtype=np.int32)
+        else:
+            number, ladder = _many_bands(tension, young, band, real("reach", reach, (count, 2)), rows)
+            numbers = [number]
+        numbers.append(_one_band(_softenings(group.compression, count), young, band, rows))
+        if isinstance(group, Joints):
+            slip = _each("shear stiffness", group.shear_stiffness, count)
+            numbers.append(_one_band(_softenings(group.cohesion, count), slip, band, rows))
+        if rows:
+            table = real("softening", np.transpose(rows), (8, None))
+            bad, status = _core.api_sla_model.tables(self.handle, table)
             if bad:
-                kind, modulus, strength, energy, width = rows[:5, bad - 1]
+                kind, modulus, strength, energy, width = table[:5, bad - 1]
                 name = next(word for word, number in LAWS.items() if number == int(kind))
                 largest = largest_band(Softening(strength, energy, name), modulus)
                 check(
@@ -215,38 +224,55 @@ class Model(Owner):
                     f"band {width:g} m, the largest is {largest:g} m",
                 )
             check(status, "softening laws")
-        return young, numbers[0], numbers[1]
+        return numbers, ladder
 
-    def _add(self, group: Plane | Bars | Springs) -> None:
+    def _add(self, group: Plane | Joints | Bars | Springs) -> None:
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        per = 2 if isinstance(group, Bars) else ELEMENTS[group.kind]
+        per = 2 if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
-        young, tension, compression = self._tables(count, group)
+        young = _each("young", group.young, count)
+        tables, ladder = self._tables(count, group)
         if isinstance(group, Bars):
             bad, status = _core.api_sla_model.bars(
-                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(tension, compression)
+                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(*tables)
             )
             what = "bar"
+        elif isinstance(group, Joints):
+            bad, status = self._add_joints(group, connect, tables)
+            what = "joint element"
         else:
             axis = np.broadcast_to(np.asarray(group.axis, dtype=float), (count,))
             given = np.isfinite(axis)
             properties = _rows(
                 _each("thickness", group.thickness, count), young, _each("nu", group.nu, count),
                 _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
+                _each("confinement", group.confinement, count),
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(tension, compression, (1 + int(group.joint)) * given.astype(np.int32)),
+                properties, _rows(*tables, (1 + int(group.joint)) * given.astype(np.int32), *ladder),
             )  # fmt: skip
             what = "element"
+        if not isinstance(group, Bars):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
             self.plane_points.append((group, first, group.points_each))
         if bad:
             raise BadElement(int(bad) - 1, what)
         check(status, f"{what}s")
+
+    def _add_joints(self, group: Joints, connect: np.ndarray, tables: list[np.ndarray]) -> tuple[int, int]:
+        count = connect.shape[1]
+        friction = np.broadcast_to(np.asarray(group.friction, dtype=float), (count,))
+        properties = _rows(
+            *real("area", np.transpose(group.area), (2, count)), _each("normal stiffness", group.normal_stiffness, count),
+            _each("shear stiffness", group.shear_stiffness, count), np.where(np.isnan(friction), -1.0, friction),
+            _each("small", group.small, count), *real("normal", np.transpose(group.normal), (2, count)),
+        )  # fmt: skip
+        dry = np.broadcast_to(np.asarray(group.dry, dtype=np.int32), (count,))
+        return _core.api_sla_joints.joints(self.handle, connect, properties, _rows(*tables, dry), float(group.ripple))
 
     def _add_springs(self, group: Springs) -> None:
         count = len(group.stiffness)
@@ -362,11 +388,29 @@ class Model(Owner):
         check(status, "stored damage")
         self.factorise()
 
+    def end_stage(self, load: float) -> None:
+        """Before other loads: friction that slides sticks where it is at the multiplier reached, with the force it has."""
+        damage, report = self.damage(), self.report(load)
+        for group, first, per in self.plane_points:
+            if not isinstance(group, Joints):
+                continue
+            at = first + np.flatnonzero(damage[MODE, first : first + per * len(group.connect)] % 4)
+            slip = (damage[HELD, at] + load * damage[HELD_RATE, at]) / (1.0 - report["ratio_s"][at])
+            damage[MARK, at] = report["strain_ns"][at] - slip
+            damage[HELD, at] = damage[HELD_RATE, at] = damage[MODE, at] = 0.0
+        self.set_damage(damage)
+
     def standing(self) -> np.ndarray:
         """Where the loop stands between two calls of `run`, beside loads and damage."""
         values, status = _core.api_sla.standing(self.handle)
         check(status, "where the events stand")
         return np.array(values)
+
+    def standing_at(self, load: float) -> np.ndarray:
+        """Where the loop stands at the start of a stage, but at a multiplier."""
+        standing = self.standing()
+        standing[3] = load
+        return standing
 
     def renew(self, damage: npt.ArrayLike, standing: npt.ArrayLike) -> None:
         """Go on from a damage and where the loop stood, under the loads of the stage, with a new factor.
@@ -375,6 +419,51 @@ class Model(Owner):
         """
         self.set_damage(damage)
         check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (30,))), "stored events")
+
+
+def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:
+    """The law of each element."""
+    each = [law] * count if law is None or isinstance(law, Softening) else list(law)
+    if len(each) != count:
+        raise ValueError(f"{len(each)} softening laws for {count} elements")
+    return each
+
+
+def _one_band(laws: list[Softening | None], young: np.ndarray, band: np.ndarray, rows: list) -> np.ndarray:
+    """The table of each element (1-based, 0 none), one for each law and band; the tables go to `rows`."""
+    found = {row: k + 1 for k, row in enumerate(rows)}
+    number = np.zeros(len(laws), dtype=np.int32)
+    for k, law in enumerate(laws):
+        if law is not None:
+            row = tuple(law.row(float(young[k]), float(band[k])))
+            if row not in found:
+                rows.append(row)
+                found[row] = len(rows)
+            number[k] = found[row]
+    return number
+
+
+def _many_bands(
+    laws: list[Softening | None], young: np.ndarray, band: np.ndarray, reach: np.ndarray, rows: list
+) -> tuple[np.ndarray, np.ndarray]:
+    """As `_one_band`, for bands between the two of `reach` (elements, 2): every law has tables for bands that grow by
+    BAND_STEP. The table of each element at its `band`, and (2, elements) those at both ends of its reach."""
+    members: dict[tuple[Softening, float], list[int]] = {}
+    for k, law in enumerate(laws):
+        if law is not None:
+            members.setdefault((law, float(young[k])), []).append(k)
+    number = np.zeros(len(laws), dtype=np.int32)
+    ladder = np.zeros((2, len(laws)), dtype=np.int32)
+    for (law, modulus), mine in members.items():
+        low, high = float(reach[mine, 0].min()), float(reach[mine, 1].max())
+        steps = max(1, int(np.ceil(np.log(high / low) / np.log(BAND_STEP))))
+        step = np.log(high / low) / steps
+        first = len(rows) + 1
+        rows += [tuple(law.row(modulus, low * float(np.exp(i * step)))) for i in range(steps + 1)]
+        for target, wanted in ((number, band), (ladder[0], reach[:, 0]), (ladder[1], reach[:, 1])):
+            at = np.rint(np.log(wanted[mine] / low) / step) if step > 0.0 else np.zeros(len(mine))
+            target[mine] = first + np.clip(at, 0, steps).astype(np.int32)
+    return number, ladder
 
 
 def _each(name: str, value: npt.ArrayLike, count: int) -> np.ndarray:

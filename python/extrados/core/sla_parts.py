@@ -9,6 +9,7 @@ from extrados.core import lists
 
 LAWS = lists.numbers("sla_law")
 ELEMENTS = lists.numbers("sla_element")
+CRACKING = lists.numbers("sla_cracking")
 EVENTS = lists.words("sla_event")
 #: Name of an event -> its number
 EVENT = {entry.name: entry.number for entry in lists.entries("sla_event")}
@@ -68,9 +69,10 @@ class Stop:
 class Plane:
     """Plane-stress elements of one kind, all arrays by element (or one value for all).
 
-    connect (elements, nodes) 0-based; thickness [m], young [Pa], nu, band [m]; tension and compression
+    connect (elements, nodes) 0-based; thickness [m], young [Pa], nu, band [m], `reach` (elements, 2) narrowest and
+    widest tension band where it follows from the direction of the crack, None where it is `band`; tension and compression
     softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
-    strength that reduces the tensile one (0 none); `axis` angle of the only crack normal allowed [rad], NaN
+    strength that reduces the tensile one (0 none); `confinement` growth of the compressive strength per lateral pressure; `axis` angle of the only crack normal allowed [rad], NaN
     where cracks choose theirs; `joint`: cracks there keep the shear stiffness, so that the joint opens but does not
     slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
     """
@@ -88,6 +90,8 @@ class Plane:
     points: tuple[int, int] = (2, 2)
     selective: bool = False
     joint: bool = False
+    reach: np.ndarray | None = None
+    confinement: float | np.ndarray = 0.0
 
     @property
     def points_each(self) -> int:
@@ -108,6 +112,43 @@ class Bars:
 
 
 @dataclass(frozen=True)
+class Joints:
+    """Joints of no thickness that open, slide and crush; all arrays by element, or one value for all.
+
+    connect (elements, 4) 0-based, along the lower side and back along the upper one; normal (elements, 2) unit vectors
+    from the lower to the upper side; area (elements, 2) of its two points [m^2], 0 where a neighbour has it; normal and shear stiffness [Pa/m]; friction coefficient,
+    NaN where nothing slides. tension, compression and cohesion soften as in Plane, their strain the jump [m] and their
+    band 1 m; None where there is no limit, or no cohesion. `dry` True where nothing holds in tension; `small` stress
+    [Pa] that counts as none; `ripple` half-width of the steps of friction over the friction.
+    """
+
+    connect: np.ndarray
+    normal: np.ndarray
+    area: np.ndarray
+    normal_stiffness: float | np.ndarray
+    shear_stiffness: float | np.ndarray
+    friction: float | np.ndarray = np.nan
+    tension: Softening | Sequence[Softening | None] | None = None
+    compression: Softening | Sequence[Softening | None] | None = None
+    cohesion: Softening | Sequence[Softening | None] | None = None
+    dry: bool | np.ndarray = False
+    small: float | np.ndarray = 1.0
+    ripple: float = 0.02
+    points_each = 2  # at the ends of each element
+    reach = None
+
+    @property
+    def young(self) -> np.ndarray:
+        """By element what the strain of its tooth tables, the opening, gives a stress with [Pa/m]."""
+        return np.broadcast_to(np.asarray(self.normal_stiffness, dtype=float), (len(self.connect),))
+
+    @property
+    def band(self) -> np.ndarray:
+        """1 m by element."""
+        return np.ones(len(self.connect))
+
+
+@dataclass(frozen=True)
 class Springs:
     """Linear springs between freedoms: node (springs, 2) 0-based, -1 the ground; direction 0 x, 1 y;
     stiffness [N/m]."""
@@ -119,10 +160,10 @@ class Springs:
 
 @dataclass(frozen=True)
 class Behaviour:
-    """Of cracked material: `isotropic` damage; shear `retention` constant, None for thesis Eq. 4.11; `closure`
+    """Of cracked material: `cracking` orthotropic (fixed), rotating or isotropic; shear `retention` constant, None for thesis Eq. 4.11; `closure`
     with at most `most_changes` openings and closings of a crack; stiffness `floor` left after the last tooth."""
 
-    isotropic: bool = False
+    cracking: str = "orthotropic"
     retention: float | None = None
     closure: bool = False
     most_changes: int = 10

@@ -5,13 +5,15 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
-from matplotlib.colors import Normalize
+from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from extrados.plots import style
 from extrados.results.model import Array
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 
+#: Of crack widths: its lightest colour stands out from white
+CRACKS = LinearSegmentedColormap.from_list("cracks", ["#f4a261", "#d1495b", "#7b2d8b", "#10002b"])
 LOST, ENVELOPE = "#d9822b", "#1f4e79"
 CORNERS = {3: 3, 6: 3, 4: 4, 8: 4}
 #: What the names of the figures of each sense of the load have in them
@@ -40,6 +42,18 @@ def _wall(ax: Axes, polygons: list[np.ndarray], **options) -> PolyCollection:
     return drawn
 
 
+def _outline(run: Stored, name: str) -> np.ndarray:
+    """Edges (edges, 2) of the outline and of openings, by nodes: those of one element alone."""
+    sides = []
+    for array in run.series(name, "elements"):
+        corners = array.data[:, : CORNERS[array.data.shape[1]]]
+        sides += [
+            np.stack([corners[:, k], np.roll(corners, -1, axis=1)[:, k]], axis=1) for k in range(corners.shape[1])
+        ]
+    edges, count = np.unique(np.sort(np.concatenate(sides), axis=1), axis=0, return_counts=True)
+    return edges[count == 1]
+
+
 def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
     figures = [_curve(run, name, folder)]
@@ -63,6 +77,18 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             at, load = (run.array(other, f"event_{n}") for n in ("displacement", "load"))
             ax.plot(at * 1e3, load / 1e3, "o-", color="#8a8a8a", markersize=3, linewidth=0.8,
                     label=f"incremental, {run[other].stop}")  # fmt: skip
+        if "measured_displacement" in run.arrays[name]:
+            test = get("measured_displacement") * 1e3
+            least, greatest = get("measured_least") / 1e3, get("measured_greatest") / 1e3
+            if (greatest > least).any():
+                ax.fill_between(test, least, greatest, color="#d9d9d9", linewidth=0, label="tests, least to greatest")
+            ax.plot(
+                test,
+                0.5 * (least + greatest),
+                color="#8c8c8c",
+                linewidth=1.2,
+                label="tests, mean" if (greatest > least).any() else "test",
+            )
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
             if numbers is None:
                 continue
@@ -70,7 +96,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             fine = get(f"{prefix}event_equilibrium") > 0
             color = style.THRUST if not prefix else style.SAFE
             begin = 1e3 * numbers.displacement_of_constant_loads_m
-            ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.35, alpha=0.55)
+            ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.25, alpha=0.4)
             if (~fine).any():
                 ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
@@ -89,6 +115,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
         ax.set_xlim(1.05e3 * min(far.min(), 0.0), 1.05e3 * max(far.max(), 1e-12))
         if len(loads):
+            if "measured_greatest" in run.arrays[name]:
+                loads = np.append(loads, get("measured_greatest"))
             low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
             ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
         ax.axhline(0.0, color="#999", linewidth=0.5)
@@ -126,16 +154,21 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
     xy, at, reach = (run.array(name, n) for n in ("node", "point_xy", reach))
     states = _peak_state(run, name, prefix)
     span = np.ptp(xy, axis=0)
+    # One magnification and one scale of widths for the series
+    all_moved = run.array(name, f"{prefix}state_displacement")[states]
+    factor = _scale(span, all_moved.reshape(-1, 2))
+    most = max(float(run.array(name, f"{prefix}state_width_{d}")[states].max()) for d in "ns")
+    edges = _outline(run, name)
     with _panels(span, len(states)) as (fig, axes):
         for ax, s in zip(axes, states, strict=True):
             moved = run.array(name, f"{prefix}state_displacement")[s]
             event = run.array(name, f"{prefix}state_event")[s]
             load = run.array(name, f"{prefix}state_load")[s]
-            factor = _scale(span, moved)
-            _wall(ax, _polygons(run, name, xy + factor * moved), facecolors="#f6f2ea")
+            shape = xy + factor * moved
+            _wall(ax, _polygons(run, name, shape), facecolors="white", edgecolors="#e4e4e4")
+            ax.add_collection(LineCollection(shape[edges], colors=style.EDGE, linewidths=0.7))
             angle = run.array(name, f"{prefix}state_angle")[s]
             widths = [run.array(name, f"{prefix}state_width_{d}")[s] for d in "ns"]
-            most = max(w.max() for w in widths)
             place = at + factor * _at_points(run, name, moved)
             for width, turn in zip(widths, (0.5 * np.pi, 0.0), strict=True):
                 # A crack runs across its normal; those too fine to matter are left out
@@ -145,13 +178,13 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
                 along = angle[shown] + turn
                 half = 0.42 * reach[shown][:, None] * np.column_stack([np.cos(along), np.sin(along)])
                 lines = LineCollection(
-                    np.stack([place[shown] - half, place[shown] + half], axis=1), cmap="inferno_r",
+                    np.stack([place[shown] - half, place[shown] + half], axis=1), cmap=CRACKS,
                     norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * width[shown] / most,
                 )  # fmt: skip
                 lines.set_array(1e3 * width[shown])
                 ax.add_collection(lines)
                 drawn = lines
-            if most > 1e-9:
+            if most > 1e-9 and len(ax.collections) > 2:
                 fig.colorbar(drawn, ax=ax, shrink=0.7, label="crack width [mm]")
             style.section_axes(ax)
             ax.set_title(f"event {event}, {load / 1e3:.4g} kN, displacements x {factor:g}")

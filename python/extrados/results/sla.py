@@ -87,10 +87,24 @@ class Scatter(ResultModel):
     highest_N: float = fact("the highest", "N")
 
 
+class Comparison(ResultModel):
+    """The envelope over the mean of a measured curve."""
+
+    peak_ratio: float = fact("greatest load over the measured one")
+    tail_ratios: list[float | None] = fact(
+        "load over the measured one where that has fallen to 75, 50, 25 % of its peak; null where either ends before"
+    )
+    inside_ratio: float | None = fact(
+        "part of the measured points between whose least and greatest load the envelope lies"
+    )
+    half_band_ratio: float = fact("mean half width of the measured band over its mean load")
+
+
 class Sla(SlaCurve, KindResults):
     """sla: cracks event by event under constant loads and growing ones; the curve of the first sense, and of both."""
 
     reference_load_N: float = fact("the reference loads, to which the multiplier 1 belongs", "N")
+    cracking: Literal["rotating", "orthotropic", "isotropic"] = fact("how cracked material behaved")
     teeth: list[int] = fact("least and greatest number of teeth of the saw-tooth laws")
     nodes: int = fact("nodes of the mesh")
     elements: int = fact("elements of the mesh")
@@ -98,6 +112,7 @@ class Sla(SlaCurve, KindResults):
     points: int = fact("integration points, those of bars too")
     makeup: Makeup = maybe("what resume_from compares")
     minus: SlaCurve = maybe("the curve of the second sense")
+    measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
     hinges: list[str] = maybe("of stones: joints that are open but for an edge at the peak")
 

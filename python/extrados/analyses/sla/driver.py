@@ -5,6 +5,7 @@ from typing import Any
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Context
 from extrados.analyses.sla.events import Curve, run_curves
+from extrados.analyses.sla.measured import arrays, compare, read_measured
 from extrados.analyses.sla.measures import joint_openings, numbers_of, tooth_counts
 from extrados.analyses.sla.model import SlaModel, build, strength_factors
 from extrados.analyses.sla.repetitions import repeat
@@ -26,9 +27,10 @@ def run(context: Context, options: Sla) -> Result:
 
 def _run(context: Context, options: Sla) -> Result:
     mesh = context.building.mesh(options.mesh)
+    measured = read_measured(context, options.measured) if options.measured is not None else None
     result = Result("sla")
-    context.warnings += mesh.warnings
     model = build(mesh, options, strength_factors(mesh, options, options.strength_seed))
+    context.warnings += mesh.warnings
     damage, earlier = start_of(context, options, model)
 
     def chain(sign: int) -> Chain:
@@ -39,6 +41,9 @@ def _run(context: Context, options: Sla) -> Result:
     for curve in curves:
         carry_on(curve, earlier, model.unit)
     numbers = _describe(result, model, options, curves)
+    if measured is not None:
+        numbers["measured"] = compare(measured, *curves[0].envelope(model.unit))
+        result.arrays |= arrays(measured)
     if options.seeds and not curves[-1].events.interrupted:
         numbers |= repeat(context, options, result)
     result.results = out.Sla(**numbers)
@@ -54,6 +59,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     numbers = {
         **numbers_of(model, options, first),
         "reference_load_N": model.unit,
+        "cracking": options.cracking,
         "teeth": tooth_counts(model),
         "nodes": len(model.mesh.xy),
         "elements": model.mesh.elements(),
@@ -83,7 +89,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     field_files(result, model, curves)
     if model.mesh.has_joints:
         numbers["hinges"] = joint_openings(result, model, first)
-        result.answer = answer_of_stones(numbers, len(curves) > 1)
+        result.answer = answer_of_stones(numbers, len(curves) > 1, model.slides)
     else:
         result.answer = answer_of_wall(numbers, len(curves) > 1, "event" if options.solution == "events" else "step")
     return numbers

@@ -28,6 +28,8 @@ BATCH_SECONDS = 0.7
 KEPT = 1000
 #: The peak's state is run again from the damage at the multiple of this number before it.
 GRID = 100
+#: Events beyond the peak's number among which its load is looked for, where it comes in another order
+MORE = 30
 NOTHING = np.zeros(0)
 STRAINS_AND_STRESSES = core.REPORT[:6]
 #: How a run ends whose load fell below `stop_fraction` of its peak, further on than there
@@ -93,9 +95,14 @@ def run_curves(
     chain: where the states of the curve of a sense, +1 or -1, are kept on its way, and of 0, of the constant loads;
     none are without it.
     """
+    if model.slides and (options.solution == "incremental" or options.without_equilibrium == "proportional"):
+        raise Refused(
+            "joints that slide keep forces that neither an incremental solution nor loads that go down together can "
+            'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload'
+        )
     curves = []
     with model.open(options, threads) as core_model:
-        stage_a, warnings = None, []
+        stage_a, warnings, rubs = None, [], False
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
@@ -103,7 +110,7 @@ def run_curves(
                 )
             core_model.set_damage(damage)
         else:
-            stage_a = _start(core_model, model, options, progress, chain and chain(0))
+            stage_a, rubs = _start(core_model, model, options, progress, warnings, chain and chain(0))
         start = core_model.damage()
         ledger, events = _totals(stage_a)
         for number, sense in enumerate(options.directions):
@@ -119,8 +126,8 @@ def run_curves(
                 curve = _incremental_stage(core_model, model, options, sign, progress)
             else:
                 curve = _reference_stage(
-                    core_model, model, options, sign, progress, bool(stage_a is None and damage is None),
-                    chain and chain(sign),
+                    core_model, model, options, sign, progress,
+                    bool(stage_a is None and damage is None and not rubs), chain and chain(sign),
                 )  # fmt: skip
             curve.stage_a, curve.before = stage_a, before
             curve.damage_start = start
@@ -142,25 +149,31 @@ def _start(
     model: SlaModel,
     options: Sla,
     progress: Callable[[float, float, str], None],
+    warnings: list[str],
     chain: Chain | None,
-) -> core.Events | None:
-    """The constant loads are on: which dry joints touch, and the events until then; None where none are asked for."""
+) -> tuple[core.Events | None, bool]:
+    """The constant loads are on: which dry joints touch and slide, and the events until then, None where there are none.
+
+    True where joints can slide: their friction was found under the whole of A and does not hold under a part of it.
+    """
     kept = None if chain is None or chain.state is None else chain.state[1]
     if kept is None:
-        settle(core_model, model)
-    if not options.constant_damage or not np.any(model.constant):
-        return None
+        rubs = settle(core_model, model, options, warnings)
+        if rubs or not options.constant_damage or not np.any(model.constant):
+            return None, rubs
     way = UnderWay((core_model.damage(), 0)) if kept is None else UnderWay.of(kept)
     if kept is not None and not len(kept["standing"]):  # they were on already
         core_model.set_damage(kept["damage"])
-        return core.Events.join(way.parts)
+        return core.Events.join(way.parts), False
     core_model.loads(np.zeros_like(model.constant), model.constant)
     if kept is not None:
         core_model.renew(kept["damage"], kept["standing"])
     events = _constant_stage(core_model, model, options, progress, way, chain)
+    if len(events):
+        core_model.end_stage(float(events.load[-1]))
     if chain is not None and not events.interrupted:
         chain.keep(len(events), way.arrays(core_model.damage(), NOTHING))
-    return events
+    return events, False
 
 
 def _constant_stage(
@@ -260,6 +273,8 @@ def _reference_stage(
         if len(part):
             most = floor * way.parts[0].compliance[0]
             load = np.where(part.equilibrium & (part.compliance <= most), part.load, -np.inf)
+            if part.reason == "mechanism" and model.mesh.has_joints:
+                load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
         done += len(part)
@@ -326,7 +341,7 @@ def _state(core_model: core.Model, event: int, events: core.Events) -> State:
     report = core_model.report(load)
     if scale < 1.0:
         report |= {name: scale * report[name] for name in STRAINS_AND_STRESSES}
-    return State(event, load, scale * core_model.displacement(load), report)
+    return State(event, load, scale * core_model.displacement(load), report, core_model.damage())
 
 
 def _replay(
@@ -340,28 +355,42 @@ def _replay(
 ) -> State | None:
     """The state of an event that has passed, run again from the damage kept before it."""
     damage, first = before
-    core_model.set_damage(damage)
-    core_model.loads(model.constant, sign * model.reference)
+
+    def begin() -> None:
+        core_model.set_damage(damage)
+        core_model.loads(model.constant, sign * model.reference)
+        if first:  # friction that slides looks on from the multiplier reached
+            core_model.renew(damage, core_model.standing_at(float(events.load[first - 1])))
+
+    begin()
     again = core_model.run(event - first + 1, [model.control], core.Stop(), proportional=proportional)
-    # Near a mechanism of stiff stones the last digits of the load depend on the way there
+    # Near a mechanism of stiff stones the last digits of the load, and so the order of events, depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
-    if len(again) != event - first + 1 or abs(again.load[-1] - events.load[event]) > tolerance * abs(
-        events.load[event]
-    ):
+    away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
+    if not len(again) or ((away[-1] or len(again) != event - first + 1) and not model.mesh.has_joints):
         return None
+    if away[-1]:
+        begin()
+        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop(), proportional=proportional)
+        away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
+        near = np.flatnonzero(~away & again.equilibrium)
+        if not len(near):
+            return None
+        begin()
+        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop(), proportional=proportional)
     return _state(core_model, event, again)
 
 
 def damage_before(start: np.ndarray, end: np.ndarray, point: np.ndarray, code: np.ndarray) -> np.ndarray:
     """The damage after the events (point, code), from the damage before the first and one after the last.
 
-    Crack directions never change once they are fixed, so they are taken from `end`.
+    For cracks that stay as they are once they are fixed: their directions are taken from `end`.
     """
     damage = start.copy()
     for p, c in zip(point.tolist(), code.tolist(), strict=True):
         k = (c - EVENT["tension"]) % 2  # 0 across the first crack, 1 across the second
         if not damage[2, p]:
-            damage[:2, p], damage[2, p] = end[:2, p], 1.0
+            damage[:3, p] = end[:3, p]
         if c <= EVENT["tension_s"]:
             damage[3 + k, p] += 1.0
         elif c <= EVENT["compression_s"]:

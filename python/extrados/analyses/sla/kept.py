@@ -14,12 +14,13 @@ ONE_PER_EVENT = [
 @dataclass
 class State:
     """The wall at one event: event number (0-based, of stage B), multiplier, displacements (nodes, 2) [m], and the
-    report of all points."""
+    report of all points, and the damage before the event's own."""
 
     event: int
     load: float
     displacement: np.ndarray
     report: dict[str, np.ndarray]
+    damage: np.ndarray
 
 
 @dataclass
@@ -50,6 +51,7 @@ class UnderWay:
             found[f"state_{k}"] = np.array([state.event, state.load])
             found[f"state_{k}_displacement"] = state.displacement
             found[f"state_{k}_report"] = np.stack([state.report[name] for name in core.REPORT])
+            found[f"state_{k}_damage"] = state.damage
         return found
 
     @staticmethod
@@ -63,7 +65,8 @@ class UnderWay:
         while f"state_{k}" in found:
             event, load = found[f"state_{k}"]
             report = dict(zip(core.REPORT, found[f"state_{k}_report"], strict=True))
-            states.append(State(int(event), float(load), found[f"state_{k}_displacement"], report))
+            displacement, damage = found[f"state_{k}_displacement"], found[f"state_{k}_damage"]
+            states.append(State(int(event), float(load), displacement, report, damage))
             k += 1
         best = (found["best_damage"], int(found["best_first"]))
         return UnderWay(best, [events], states, float(found["best"]), float(found["seconds"]))

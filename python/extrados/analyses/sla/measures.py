@@ -14,7 +14,7 @@ from extrados.results.model import Result, TableData
 from extrados.schema.constants import GRAVITY
 
 #: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
-HINGE, WIDE = 0.95, 0.1
+HINGE, WIDE = 0.9, 0.1
 
 
 def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
@@ -102,9 +102,9 @@ def tooth_counts(model: SlaModel) -> list[int]:
         if group.tension is not None:
             for k, law in enumerate(group.tension):
                 if law is not None and (meshed.dry is None or not meshed.dry[k]):
-                    band = float(group.band[k])
-                    low, high = laws.get((law, float(group.young[k])), (band, band))
-                    laws[law, float(group.young[k])] = (min(low, band), max(high, band))
+                    narrow, wide = (group.band[k], group.band[k]) if group.reach is None else group.reach[k]
+                    low, high = laws.get((law, float(group.young[k])), (np.inf, 0.0))
+                    laws[law, float(group.young[k])] = (min(low, float(narrow)), max(high, float(wide)))
     counts = [len(teeth(law, young, h)[0]) for (law, young), ends in list(laws.items())[:50] for h in ends]
     return [min(counts), max(counts)] if counts else [0, 0]
 
@@ -117,14 +117,18 @@ def joint_openings(result: Result, model: SlaModel, curve: Curve) -> list[str]:
     groups = zip(model.mesh.groups, points_of_groups(model, len(model.point_xy)), strict=True)
     joint_of, rows = next((group.joint, points) for group, points in groups if group.joint is not None)
     joint = np.repeat(joint_of, len(rows) // len(joint_of))
-    width = point_fields(model, state, result.arrays["point_band"].data)["width_n"][rows]
+    width = point_fields(model, state)["width_n"][rows]
     area = state.report["volume"][rows]
     count = len(model.mesh.joint_names)
     share = np.bincount(joint, np.where(width > 0.0, area, 0.0), count) / np.bincount(joint, area, count)
     most = np.zeros(count)
     np.maximum.at(most, joint, width)
-    result.tables["joints"] = TableData(
-        {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}, {"greatest_opening": "m"}
-    )
+    columns = {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}
+    units = {"greatest_opening": "m"}
+    if model.slides:
+        slip = np.zeros(count)
+        np.maximum.at(slip, joint, np.abs(state.report["strain_ns"][rows]))
+        columns["greatest_slip"], units["greatest_slip"] = slip, "m"
+    result.tables["joints"] = TableData(columns, units)
     hinges = np.flatnonzero((share > HINGE) & (most > WIDE * most.max()))
     return [model.mesh.joint_names[j] for j in hinges]

@@ -17,6 +17,8 @@ AXES = {"x": 0, "y": 1}
 POINTS_PER_THREAD = 20_000
 #: Growth of the compliance that counts as a mechanism: of walls, and of stones, which may be slender
 MECHANISM, MECHANISM_OF_STONES = 1e4, 1e5
+#: Growth of the compliance times the stiffness left in cracks, at most: beyond, that stiffness would carry a load
+MOST_OF_FLOOR = 0.1
 #: Openings and closings of a joint's point before it is left open: they change no stress, so that many do no harm
 MOST_CHANGES_OF_JOINTS = 1000
 #: Stiffness left in an open joint: its row is so thin that the millionth left in a cracked wall would hold the stones
@@ -36,15 +38,20 @@ class SlaModel:
     reference: np.ndarray
     unit: float
     control: core.Monitor
-    bands: list[np.ndarray]  # crack band of the elements of each plane group [m]
+    bands: list[np.ndarray]  # crack band of the elements of each plane group before they crack [m]
     point_xy: np.ndarray  # (points, 2) of the plane groups [m]
     mechanism_ratio: float  # growth of the compliance that ends a run
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
 
     @property
-    def planes(self) -> list[core.Plane]:
-        """The groups of plane elements, in the order of the mesh."""
-        return [group for group in self.groups if isinstance(group, core.Plane)]
+    def planes(self) -> list[core.Plane | core.Joints]:
+        """The groups of plane elements and joints, in the order of the mesh."""
+        return [group for group in self.groups if isinstance(group, core.Plane | core.Joints)]
+
+    @property
+    def slides(self) -> bool:
+        """True where a joint has a coefficient of friction."""
+        return any(isinstance(g, core.Joints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
 
     def open(self, options: Sla, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
@@ -58,10 +65,25 @@ class SlaModel:
             x, y = self.mesh.xy[error.node]
             raise Refused(
                 f"the wall is a mechanism: node {error.node + 1} at x {x:g} m, y {y:g} m is free to move in "
-                f"{error.direction}; add supports"
+                f"{error.direction}; {_coincident(self.mesh) or 'add supports'}"
             ) from None
         except core.BadElement as error:
             raise Refused(str(error)) from None
+
+
+def _coincident(mesh: Mesh) -> str:
+    """Names two nodes at one place, at which the mesh falls apart; empty where there are none."""
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(mesh.xy).query_pairs(1e-6 * mesh.size, output_type="ndarray")
+    if not len(pairs):
+        return ""
+    one, two = pairs[np.lexsort(pairs.T[::-1])[0]]
+    x, y = mesh.xy[one]
+    return (
+        f"nodes {one + 1} and {two + 1} lie at the same place, x {x:g} m, y {y:g} m ({len(pairs)} such pairs), and the "
+        "mesh is in pieces there: merge them"
+    )
 
 
 def build(mesh: Mesh, options: Sla, strength: np.ndarray | None = None) -> SlaModel:
@@ -120,8 +142,11 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         count = len(group.connect)
         factors = np.ones(count) if strength is None else strength[start : start + count]
         start += count
-        band = crack_band(mesh, group, options)
-        groups.append(_plane(mesh, group, band, factors, options))
+        band, reach = crack_bands(mesh, group, options)
+        joints = group.law is not None
+        groups.append(
+            _joints(group, factors, options) if joints else _plane(mesh, group, band, reach, factors, options)
+        )
         bands.append(band)
         points.append(point_positions(mesh.xy, group))
     for bar in mesh.bars:
@@ -153,18 +178,25 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
     closure = mesh.has_joints if options.crack_closure is None else options.crack_closure
     if mesh.has_joints and not closure:
         raise BadGeometry("joints between stones open and close: crack_closure = false is for walls without stones")
+    floor = FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor
+    ratio = options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM)
+    if ratio > MOST_OF_FLOOR / floor:
+        raise BadGeometry(
+            f"mechanism_ratio: {ratio:g} is beyond what cracks that keep {floor:g} of their stiffness can show: what they "
+            f"keep would carry the load; at most {MOST_OF_FLOOR / floor:g}"
+        )
     acceleration = None
     if all(load.kind == "gravity" for load in reference_loads):
         acceleration = float(np.hypot(*np.sum([[load.ax, load.ay] for load in reference_loads], axis=0)))
     return SlaModel(
         mesh, freedoms, groups,
         core.Behaviour(
-            options.cracking == "isotropic", options.shear_retention, closure,
+            options.cracking, options.shear_retention, closure,
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
-            FLOOR_OF_JOINTS if mesh.has_joints else core.Behaviour.floor,
+            floor,
         ),
         constant, reference, unit, _control(mesh, options, reference, unit), bands, np.concatenate(points),
-        options.mechanism_ratio or (MECHANISM_OF_STONES if mesh.has_joints else MECHANISM), acceleration,
+        ratio, acceleration,
     )  # fmt: skip
 
 
@@ -176,15 +208,29 @@ def loads_of(mesh: Mesh, options: Sla) -> tuple[list[Load], list[Load]]:
     return constant, [Load(kind="gravity", ax="1 g", ay="0 g")] if reference is None else reference
 
 
-def crack_band(mesh: Mesh, group: ElementGroup, options: Sla) -> np.ndarray:
-    """h of each element [m]: the thickness of a row along a joint, or given, or sqrt(2 A) of linear and sqrt(A) of
-    quadratic elements."""
+def crack_bands(mesh: Mesh, group: ElementGroup, options: Sla) -> tuple[np.ndarray, np.ndarray | None]:
+    """h of each element [m], and (elements, 2) its least and greatest where it follows from the crack's direction.
+
+    The thickness of a row along a joint; or given; or the width of a linear element across the crack
+    (fortran/sla/plane.f90), that of a mean direction for what crushes; or by the area: sqrt(2 A) of linear elements,
+    sqrt(A) of quadratic ones, in which cracks keep to a part of the element.
+    """
     if group.band is not None:
-        return np.full(len(group.connect), group.band)
+        return np.full(len(group.connect), group.band), None
     if options.crack_band is not None:
-        return np.full(len(group.connect), options.crack_band)
+        return np.full(len(group.connect), options.crack_band), None
     area = element_areas(mesh.xy, group.kind, group.connect)
-    return np.sqrt(area if group.kind in ("T6", "Q8") else 2.0 * area)
+    if group.kind in ("T6", "Q8"):
+        return np.sqrt(area), None
+    if options.crack_band_rule == "area":
+        return np.sqrt(2.0 * area), None
+    c = mesh.xy[group.connect[:, : corner_count(group.kind)]]
+    if group.kind == "T3":
+        longest = np.hypot(*np.moveaxis(np.roll(c, -1, axis=1) - c, 2, 0)).max(axis=1)
+        return np.sqrt(2.0 * area), np.column_stack([2.0 * area / longest, longest])
+    one, two = c[:, 2] - c[:, 0], c[:, 3] - c[:, 1]
+    across = np.maximum(np.hypot(*(one + two).T), np.hypot(*(one - two).T))
+    return np.sqrt(area), np.column_stack([2.0 * area / across, np.maximum(np.hypot(*one.T), np.hypot(*two.T))])
 
 
 def _softening(material: Material, options: Sla, factor: float = 1.0) -> core.Softening | None:
@@ -205,22 +251,23 @@ def _crushing(material: Material, options: Sla) -> core.Softening | None:
     )  # fmt: skip
 
 
-def _plane(mesh: Mesh, group: ElementGroup, band: np.ndarray, factors: np.ndarray, options: Sla) -> core.Plane:
+def _plane(
+    mesh: Mesh, group: ElementGroup, band: np.ndarray, reach: np.ndarray | None, factors: np.ndarray, options: Sla
+) -> core.Plane:
     materials = [mesh.materials[m] for m in group.material]
     crushing = [None if s else _crushing(m, options) for m, s in zip(materials, group.linear, strict=True)]
     tension = [
         None if s else _softening(m, options, float(f))
         for m, s, f in zip(materials, group.linear, factors, strict=True)
     ]
-    for law in ("tension", "crushing"):
-        rows = tension if law == "tension" else crushing
-        for k in np.argsort(-band):
+    widest = band if reach is None else reach[:, 1]
+    for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):
+        for k in np.argsort(-widths):
             if rows[k] is not None:
                 limit = core.largest_band(rows[k], materials[k].young)
-                if band[k] >= limit:
-                    energy = "fracture_energy" if law == "tension" else "crushing_energy"
+                if widths[k] >= limit:
                     raise BadGeometry(
-                        f"{energy} is too small for the elements: a crack band of {band[k]:.4g} m snaps back, the "
+                        f"{energy} is too small for the elements: a crack band of {widths[k]:.4g} m snaps back, the "
                         f"largest is {limit:.4g} m; use smaller elements"
                     )
     return core.Plane(
@@ -229,8 +276,53 @@ def _plane(mesh: Mesh, group: ElementGroup, band: np.ndarray, factors: np.ndarra
         tension if any(t is not None for t in tension) else None,
         crushing if any(c is not None for c in crushing) else None,
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
-        group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None,
+        group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None, reach,
+        np.array([m.confinement for m in materials]),
     )  # fmt: skip
+
+
+def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Joints:
+    """Joints of no thickness; `factors` of their tensile strength and cohesion."""
+    law = group.law
+
+    def softenings(strength: np.ndarray, energy: np.ndarray) -> list[core.Softening | None] | None:
+        made: dict[tuple[float, float], core.Softening] = {}
+        rows = []
+        for pair in zip(strength.tolist(), energy.tolist(), strict=True):
+            if pair[0] > 0.0 and pair not in made:
+                made[pair] = core.Softening(
+                    *pair, law.softening, options.ripple, options.teeth == "exact", options.overshoot
+                )
+            rows.append(made.get(pair))
+        return rows if made else None
+
+    tension = softenings(law.tension * factors, law.fracture_energy)
+    crushing = softenings(law.compressive_strength, law.crushing_energy)
+    cohesion = softenings(law.cohesion * factors, law.shear_energy)
+    for name, rows, stiffness in (
+        ("fracture_energy", tension, law.normal_stiffness), ("crushing_energy", crushing, law.normal_stiffness),
+        ("shear_energy", cohesion, law.shear_stiffness),
+    ):  # fmt: skip
+        for row, k in zip(rows or [], stiffness.tolist(), strict=False):
+            if row is not None and core.largest_band(row, k) <= 1.0:
+                raise BadGeometry(
+                    f"joints.{name} is too small for joints of {k:.4g} Pa/m, which would snap back: it must be above "
+                    f"{row.energy / core.largest_band(row, k):.4g} N/m"
+                )
+    return core.Joints(
+        group.connect,
+        law.normal,
+        law.area,
+        law.normal_stiffness,
+        law.shear_stiffness,
+        law.friction,
+        tension,
+        crushing,
+        cohesion,
+        group.dry,
+        law.small,
+        options.friction_ripple,
+    )
 
 
 def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
@@ -248,6 +340,8 @@ def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
 def point_positions(xy: np.ndarray, group: ElementGroup) -> np.ndarray:
     """Integration points (points, 2) [m], as the core orders them; sides are straight."""
     corners = xy[group.connect[:, : corner_count(group.kind)]]
+    if group.law is not None:
+        return xy[group.connect[:, :2]].reshape(-1, 2)
     if group.kind == "T3":
         share = np.full((1, 3), 1.0 / 3.0)
     elif group.kind == "T6":
@@ -276,8 +370,8 @@ def nodal_forces(mesh: Mesh, loads: Sequence[Load], word: str) -> np.ndarray:
             if not heavy:
                 raise BadGeometry(f"{what}: gravity without weight: give the material a density")
         elif load.kind == "point":
-            nodes = mesh.nodes_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
-            force[nodes] += np.array([load.fx, load.fy]) / len(nodes)
+            nodes, share = mesh.shares_at(Placed(edge=load.edge, x=load.x, y=load.y), what)
+            force[nodes] += share[:, None] * [load.fx, load.fy]
         elif load.kind != "displacement":
             force += _edge_load(mesh, load, what)
     return force

@@ -3,6 +3,7 @@
 A damage counts teeth: it says something of the laws, bands and stiffnesses alone that it was found with.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,22 +37,37 @@ def makeup(model: SlaModel) -> Makeup:
     """Fingerprints of what the damage of this wall rests on."""
     stiffness: list = []
     laws: dict[str, list] = {"tension": [], "compression": []}
+    fixed: list = []
     for group in model.groups:
         if isinstance(group, core.Springs):
+            continue
+        if isinstance(group, core.Joints):
+            stiffness.append(["Joints", group.area, group.normal_stiffness, group.shear_stiffness])
+            for name, found in laws.items():
+                found.append(_law(getattr(group, name)))
+            laws["tension"].append(_law(group.cohesion))  # the teeth of sliding go with those of parting
+            fixed.append(["Joints", group.normal, group.friction, group.dry, group.small, group.ripple])
             continue
         size = group.area if isinstance(group, core.Bars) else [group.thickness, group.nu, group.kind, group.points]
         stiffness.append([type(group).__name__, size, group.young])
         for sense, found in laws.items():
-            law = getattr(group, sense)
-            each = list(law) if isinstance(law, list | tuple) else [law]
-            kinds = list(dict.fromkeys(each))  # a wall of a hundred thousand elements has a few laws
-            number = {kind: k for k, kind in enumerate(kinds)}
-            found.append([kinds, np.array([number[kind] for kind in each]), group.band])
-    fixed = [[g.axis, g.joint, g.lateral, g.selective] for g in model.planes]
+            found.append([*_law(getattr(group, sense)), group.band])
+        if isinstance(group, core.Plane):
+            laws["tension"].append(group.reach)
+            laws["compression"].append(group.confinement)
+            fixed.append([group.axis, group.joint, group.lateral, group.selective])
     return Makeup(
         stiffness=fingerprint(stiffness)[:16], tension=fingerprint(laws["tension"])[:16],
         compression=fingerprint(laws["compression"])[:16], cracking=fingerprint([model.behaviour, fixed])[:16],
     )  # fmt: skip
+
+
+def _law(law: core.Softening | Sequence[core.Softening | None] | None) -> list:
+    """The kinds of laws, and which of them each element has: a wall of a hundred thousand elements has a few."""
+    each = list(law) if isinstance(law, list | tuple) else [law]
+    kinds = list(dict.fromkeys(each))
+    number = {kind: k for k, kind in enumerate(kinds)}
+    return [kinds, np.array([number[kind] for kind in each])]
 
 
 def _refuse_other(there: Makeup | None, here: Makeup) -> None:
@@ -103,12 +119,31 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
                 int(get["event_point"][event - 1]),
                 totals,
             )
-        damage = damage_before(
-            get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
-        )
-        return damage, earlier
+        lost = "joints that slide" if model.slides else "cracks that turn"
+        by_events = not model.slides and stored["sla"].get("cracking") != "rotating"
+        return _damage_at(event, get, None if by_events else lost), earlier
     except (StoreError, BadFile, KeyError) as error:
         raise Refused(f"resume_from: {error}") from None
+
+
+def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) -> np.ndarray:
+    """The damage before an event: kept at the last one and at those of a state, else found by the events that were.
+
+    traceless: what changes without a trace in the events, if anything does.
+    """
+    kept = get["state_event"].tolist() if "state_event" in get else []
+    if event in kept:
+        return get["state_damage"][kept.index(event)].T
+    if event == len(get["event_point"]):
+        return get["damage_end"].T
+    if traceless is not None:
+        raise Refused(
+            f"resume_event: the damage before event {event} was not kept, and {traceless} leave no trace of it; kept "
+            f"were events {', '.join(str(e) for e in kept)}: name others in states of that run"
+        )
+    return damage_before(
+        get["damage_start"].T, get["damage_end"].T, get["event_point"][: event - 1], get["event_code"][: event - 1]
+    )
 
 
 def carry_on(curve: Curve, earlier: Earlier | None, unit: float) -> None:

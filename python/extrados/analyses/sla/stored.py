@@ -27,7 +27,7 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
     band = np.concatenate([np.repeat(h, n) for h, n in zip(model.bands, per, strict=True)])
     owner = np.repeat(np.arange(model.mesh.elements()), np.repeat(per, [len(g.connect) for g in model.mesh.groups]))
     arrays["point_element"] = Array(owner, ("points",), "", "element of the point, from 0, group after group")
-    arrays["point_band"] = Array(band, ("points",), "m", "crack band width")
+    arrays["point_band"] = Array(band, ("points",), "m", "crack band width before the point cracks")
     if model.mesh.has_joints:
         reach = [
             h if g.joint is None else np.hypot(*(model.mesh.xy[g.connect[:, 1]] - model.mesh.xy[g.connect[:, 0]]).T) / g.gauss[0]
@@ -84,28 +84,31 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
     if curve.states:
         states = curve.states
         dims = (f"{prefix}states",)
-        n = len(model.point_xy)
         result.arrays[f"{prefix}state_event"] = Array(
             np.array([s.event + 1 for s in states]), dims, "", "event, from 1"
         )
+        if not prefix:
+            result.arrays["state_damage"] = Array(
+                np.stack([s.damage.T for s in states]), (*dims, "all_points", "damage_row"), "",
+                "damage before the event, to go on from",
+            )  # fmt: skip
         result.arrays[f"{prefix}state_load"] = Array(np.array([s.load for s in states]) * unit, dims, "N", "load")
         result.arrays[f"{prefix}state_displacement"] = Array(
             np.stack([s.displacement for s in states]), (*dims, "nodes", "axis"), "m", "displacements of the nodes"
         )
-        band = result.arrays["point_band"].data
         for field, (u, about) in {
             "width_n": ("m", "width of the first crack"), "width_s": ("m", "width of the second crack"),
             "angle": ("rad", "direction of the first crack's normal"), "stress_1": ("Pa", "greater principal stress"),
             "stress_2": ("Pa", "lesser principal stress"), "ratio_n": ("", "stiffness left across the first crack"),
             "ratio_s": ("", "stiffness left across the second crack"), "stress_angle": ("rad", "of stress_1"),
         }.items():  # fmt: skip
-            data = np.stack([point_fields(model, s, band)[field][:n] for s in states])
+            data = np.stack([point_fields(model, s)[field] for s in states])
             result.arrays[f"{prefix}state_{field}"] = Array(data, (*dims, "points"), u, about)
 
 
-def point_fields(model: SlaModel, state: State, band: np.ndarray) -> dict[str, np.ndarray]:
+def point_fields(model: SlaModel, state: State) -> dict[str, np.ndarray]:
     """Crack widths [m] and directions, principal stresses [Pa] at the plane points of a state."""
-    n = len(band)
+    n = len(model.point_xy)
     r = {k: v[:n] for k, v in state.report.items()}
     young = np.concatenate(
         [
@@ -120,7 +123,7 @@ def point_fields(model: SlaModel, state: State, band: np.ndarray) -> dict[str, n
 
     def width(strain: np.ndarray, stress: np.ndarray, ratio: np.ndarray) -> np.ndarray:
         # The strain that the crack adds to the elastic one, over the band
-        return np.where(ratio < 1.0, np.maximum(strain - stress / young, 0.0) * band, 0.0)
+        return np.where(ratio < 1.0, np.maximum(strain - stress / young, 0.0) * r["band"], 0.0)
 
     return {
         "width_n": width(r["strain_n"], r["stress_n"], r["ratio_n"]),
@@ -166,18 +169,17 @@ def sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> Non
 def field_files(result: Result, model: SlaModel, curves: list[Curve]) -> None:
     """The states as VTU, their series as PVD."""
     cells = [(b.kind, b.connect) for b in model.mesh.groups]
-    band = result.arrays["point_band"].data
     for curve, name in zip(curves, ("fields", "fields_minus"), strict=False):
         series = []
         for state in curve.states:
-            fields = point_fields(model, state, band)
+            fields = point_fields(model, state)
             by_element = {
                 key: np.concatenate(
                     [
                         fields[key][p].reshape(len(b.connect), -1).max(axis=1)
                         if key.startswith("width")
                         else fields[key][p].reshape(len(b.connect), -1).mean(axis=1)
-                        for b, p in zip(model.mesh.groups, points_of_groups(model, len(band)), strict=True)
+                        for b, p in zip(model.mesh.groups, points_of_groups(model, len(model.point_xy)), strict=True)
                     ]
                 )
                 for key in ("width_n", "width_s", "stress_1", "stress_2", "ratio_n", "ratio_s")

@@ -90,9 +90,13 @@ class Sla(BuildingAnalysis):
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
-        """Also, of stones, that their joints do not slide."""
+        """Also, of stones, their friction and cohesion; or, of joints as rows of elements, that they do not slide."""
         found = super().rests_on(building)
-        return {**found, "joints.friction": NO_SLIDING} if building.meshed_by_stones else found
+        if self.mesh.joints == "rows":
+            return {**found, "joints.friction": NO_SLIDING}
+        if building.meshed_by_stones or self.mesh.joints == "interfaces":
+            return {**found, "joints.friction": None, "joints.cohesion": None}
+        return found
 
     constant: list[Load] | None = key(
         None,
@@ -122,12 +126,32 @@ class Sla(BuildingAnalysis):
         None, "stop where the compliance has grown by this factor; default 1e4, of stones 1e5"
     )
     teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
-    ripple: float = key(0.1, "half-width p of the teeth over the strength", source="thesis 4.2", ge=0.005, le=0.5)
-    overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
-    crack_band: Length | None = key(
-        None, "crack band width h; default sqrt(2 A) of linear and sqrt(A) of quadratic elements", gt=0
+    ripple: float = key(
+        0.05,
+        "half-width p of the teeth over the strength: the load is up to about p/2 too high; the thesis has 0.1 and 0.2",
+        source="thesis 4.2",
+        ge=0.005,
+        le=0.5,
     )
-    cracking: Literal["orthotropic", "isotropic"] = key("orthotropic", "fixed cracks, or one damage", source="Eq. 4.10")
+    friction_ripple: float = key(
+        0.02,
+        "half-width of the steps by which friction follows the normal stress of joints, over the friction",
+        ge=0.001,
+        le=0.1,
+    )
+    overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
+    crack_band: Length | None = key(None, "crack band width h; default by crack_band_rule", gt=0)
+    crack_band_rule: Literal["projected", "area"] = key(
+        "projected",
+        "crack band from the element's width across its crack, or as in the thesis: sqrt(2 A) of linear and sqrt(A) of "
+        "quadratic elements",
+    )
+    cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
+        "rotating",
+        "cracks that turn with the principal strain, cracks fixed at their first tooth as in the thesis (they carry too "
+        "much: see docs/sla.md), or one damage for all directions",
+        source="Eq. 4.10",
+    )
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
         None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
     )
@@ -150,6 +174,11 @@ class Sla(BuildingAnalysis):
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
     )
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
+    measured: str | None = key(
+        None,
+        "CSV of a test to draw behind the curve and to compare with: columns 'displacement (mm)' and 'load (N)', or "
+        "'least (N)' and 'greatest (N)' of several tests; lines that begin with # are its source",
+    )
     section_x: list[Length] = key([], "draw the ranges of lambda along these vertical sections", max_length=10)
     seeds: list[int] = key([], "repeat with these seeds of random mesh and strength: a scatter band", max_length=200)
     strength_variation: float = key(0.0, "coefficient of variation of the tensile strength (lognormal)", ge=0, le=1)

@@ -18,6 +18,25 @@ EDGES = {"T3": (0, 1, 2), "T6": (0, 1, 2), "Q4": (0, 1, 2, 3), "Q8": (0, 1, 2, 3
 
 
 @dataclass(frozen=True)
+class JointLaw:
+    """What joints of no thickness are made of, each (elements); NaN where there is none."""
+
+    normal: np.ndarray  # (elements, 2) from the lower to the upper side
+    area: np.ndarray  # (elements, 2) of the pairs of nodes [m^2], 0 where the element before has it
+    normal_stiffness: np.ndarray  # [Pa/m]
+    shear_stiffness: np.ndarray  # [Pa/m]
+    friction: np.ndarray  # NaN: no sliding
+    cohesion: np.ndarray  # [Pa], 0 where there is none
+    shear_energy: np.ndarray  # [N/m]
+    tension: np.ndarray  # [Pa], 0 where there is none
+    fracture_energy: np.ndarray  # [N/m]
+    compressive_strength: np.ndarray  # [Pa]
+    crushing_energy: np.ndarray  # [N/m]
+    small: float  # stress by which overloads of dry joints are measured [Pa]
+    softening: str
+
+
+@dataclass(frozen=True)
 class ElementGroup:
     """Elements of one kind and one integration rule."""
 
@@ -30,7 +49,8 @@ class ElementGroup:
     axis: np.ndarray  # (elements) [rad], NaN where cracks choose
     band: float | None = None  # crack band [m]; None where the analysis sets it
     joint: np.ndarray | None = None  # (elements) the joint that a row of elements stands for
-    dry: np.ndarray | None = None  # (elements) bool, of rows: the joint has no tensile strength
+    dry: np.ndarray | None = None  # (elements) bool, of joints: no tensile strength
+    law: JointLaw | None = None  # of joints of no thickness, whose elements are stretches: two nodes below, two above
 
 
 @dataclass(frozen=True)
@@ -86,6 +106,11 @@ class Mesh:
                     f"{what}: no node near x {point[0]:g} m, y {point[1]:g} m; the nearest is at "
                     f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
                 )
+            if distance[nearest] > 1e-3 * self.size:
+                self.tell(
+                    f"{what}: no node lies at x {point[0]:g} m, y {point[1]:g} m; the nearest is taken, at "
+                    f"{self.xy[nearest, 0]:g}, {self.xy[nearest, 1]:g}"
+                )
             return np.array([nearest])
         for axis, ends in enumerate((place.x, place.y)):
             if ends is not None:
@@ -96,6 +121,23 @@ class Mesh:
                 f"{what}: no node lies on edge {place.edge}, x {place.x}, y {place.y}; a mesh line is missing"
             )
         return found
+
+    def tell(self, warning: str) -> None:
+        """A warning, once."""
+        if warning not in self.warnings:
+            self.warnings.append(warning)
+
+    def shares_at(self, place: Placed, what: str) -> tuple[np.ndarray, np.ndarray]:
+        """Nodes and shares (summing to 1) of a force on a place: equal ones of the nodes there; of a point between nodes
+        those of the element it lies in, with the same resultant and moment."""
+        point = [r[0] for r in (place.x, place.y) if r is not None and r[0] == r[1]]
+        if len(point) == 2 and place.edge is None and np.hypot(*(self.xy - point).T).min() > 1e-6 * self.size:
+            for group in self.groups:
+                found = _within(self.xy, group, np.array(point))
+                if found is not None:
+                    return found
+        nodes = self.nodes_at(place, what)
+        return nodes, np.full(len(nodes), 1.0 / len(nodes))
 
     def boundary(self) -> tuple[np.ndarray, np.ndarray]:
         """Boundary edges (edges, 3): from, to, middle node or -1, counter-clockwise; and their thickness [m]."""
@@ -114,6 +156,26 @@ class Mesh:
 
     def elements(self) -> int:
         return sum(len(b.connect) for b in self.groups)
+
+
+def _within(xy: np.ndarray, group: ElementGroup, point: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """The triangle of an element's corners that a point lies in, and its area coordinates; None where it lies in none."""
+    corners = group.connect[:, : corner_count(group.kind)]
+    halves = [[0, 1, 2]] if corners.shape[1] == 3 else [[0, 1, 2], [0, 2, 3]]
+    for half in halves:
+        nodes = corners[:, half]
+        a, b, c = (xy[nodes[:, k]] for k in range(3))
+        one, two, to = b - a, c - a, point - a
+        twice = one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0]
+        s = (to[:, 0] * two[:, 1] - to[:, 1] * two[:, 0]) / twice
+        t = (one[:, 0] * to[:, 1] - one[:, 1] * to[:, 0]) / twice
+        inside = np.flatnonzero((s > -1e-9) & (t > -1e-9) & (s + t < 1.0 + 1e-9))
+        if len(inside):
+            k = int(inside[0])
+            share = np.clip([1.0 - s[k] - t[k], s[k], t[k]], 0.0, 1.0)
+            kept = share > 1e-9
+            return nodes[k][kept], share[kept] / share.sum()
+    return None
 
 
 def corner_count(kind: str) -> int:
@@ -145,6 +207,8 @@ def build_mesh(
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
         raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: leave joint_thickness out")
+    if options.joints is not None:
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no stones: leave joints out")
     if not len(connect):
         raise BadGeometry("the mesh has no elements")
     used, renumbered = np.unique(connect, return_inverse=True)
