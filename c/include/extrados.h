@@ -57,11 +57,18 @@ EXTRADOS_API void extrados_sparse_free(void **handle);
  * that is not positive). */
 EXTRADOS_API int extrados_sparse_factor(void *handle, const double *value, double *ratio, int64_t *weakest);
 EXTRADOS_API int extrados_sparse_solve(void *handle, int vectors, double *z);
-/* z = K^-1 w for up to 4 vectors with `count` entries each at `index` (0-based, of one element). */
-EXTRADOS_API int extrados_sparse_event(void *handle, int vectors, int count, const int *index, const double *w,
-                                       double *z);
-/* K + sign w w': after not_positive_definite the factor must be made anew. */
-EXTRADOS_API int extrados_sparse_rank1(void *handle, int sign, int count, const int *index, const double *w);
+/* K + sum sign(k) w(k) w(k)' for up to 4 changes with `count` entries each at `index` (0-based, of one element), in
+ * one walk up the elimination tree. On its way right-hand sides b with entries at the same places go forward through
+ * the new factor: z gets them over D at the equations of the path. `least`: smallest det(K + w w') / det(K) of the
+ * changes. After not_positive_definite the factor must be made anew. */
+EXTRADOS_API int extrados_sparse_change(void *handle, int changes, const int *sign, int count, const int *index,
+                                        const double *w, int vectors, const double *b, double *z, double *least);
+/* Backward through the supernodes last to first: z holds what is known above them, and theirs over D. */
+EXTRADOS_API int extrados_sparse_backward(void *handle, int64_t first, int64_t last, int vectors, double *z);
+/* The supernodes: columns column[s] to column[s + 1] of s, which are its first rows; its rows are
+ * row[start[s]] to row[start[s + 1]]. All belong to the handle. */
+EXTRADOS_API void extrados_sparse_tree(void *handle, int64_t *blocks, const int64_t **column, const int64_t **start,
+                                       const int64_t **row);
 /* Factorise and solve by CHOLMOD alone: the algorithm the updates are compared with. */
 EXTRADOS_API int extrados_sparse_plain(void *handle, const double *value, int vectors, double *z);
 

@@ -2,8 +2,8 @@
  *
  * CHOLMOD orders, analyses and factorises (supernodal LL'); the dense blocks of its factor are then
  * rescaled in place to unit-triangular LDL' and belong to this file: rank-1 changes walk up the tree of
- * supernodes (Gill, Golub, Murray, Saunders 1974, method C1), solves with an event's sparse vectors go
- * forward along that path alone and backward through the whole factor.
+ * supernodes (Gill, Golub, Murray, Saunders 1974, method C1) and carry sparse right-hand sides forward on their
+ * way; the caller says through which supernodes the solution goes backward.
  *
  * The equations come in factor order: the caller renumbers them once by extrados_sparse_order.
  */
@@ -14,7 +14,7 @@
 
 #include "extrados.h"
 
-enum { most_vectors = 4, most_ahead = 16384 /* bytes */ };
+enum { most_vectors = 4, most_changes = 4, most_ahead = 16384 /* bytes */ };
 
 struct extrados_sparse {
   cholmod_common common;
@@ -22,8 +22,8 @@ struct extrados_sparse {
   cholmod_sparse matrix; /* over the caller's pattern, with values given at each factorisation */
   int64_t n, blocks, longest;
   int64_t *block_of;         /* column -> its supernode */
-  double *d, *column;        /* D; a dense column in factor order, zero between calls */
-  double *buffer;            /* most_vectors rows of one supernode */
+  double *d, *column;        /* D; most_changes dense columns in factor order, zero between calls */
+  double *buffer;            /* most_changes + most_vectors rows of one supernode */
   cholmod_dense *y, *e, *answer; /* workspace of the plain solves of the refactorising algorithm */
 };
 
@@ -103,8 +103,8 @@ int extrados_sparse_new(int64_t n, const int64_t *start, const int64_t *row, voi
     if (pi[s + 1] - pi[s] > self->longest) self->longest = pi[s + 1] - pi[s];
   self->block_of = malloc((size_t)n * sizeof *self->block_of);
   self->d = malloc((size_t)n * sizeof *self->d);
-  self->column = calloc((size_t)n, sizeof *self->column);
-  self->buffer = malloc((size_t)(most_vectors * self->longest) * sizeof *self->buffer);
+  self->column = calloc((size_t)(most_changes * n), sizeof *self->column);
+  self->buffer = malloc((size_t)((most_changes + most_vectors) * self->longest) * sizeof *self->buffer);
   if (!self->block_of || !self->d || !self->column || !self->buffer) return EXTRADOS_out_of_memory;
   for (int64_t s = 0; s < self->blocks; s++)
     for (int64_t j = super[s]; j < super[s + 1]; j++) self->block_of[j] = s;
@@ -259,8 +259,8 @@ __attribute__((always_inline)) static inline void backward_block(const struct ex
 }
 
 FOR_EACH_PROCESSOR
-static void backward(const struct extrados_sparse *self, int vectors, double *z) {
-  for (int64_t s = self->blocks - 1; s >= 0; s--) switch (vectors) {
+static void backward(const struct extrados_sparse *self, int64_t first, int64_t last, int vectors, double *z) {
+  for (int64_t s = last; s >= first; s--) switch (vectors) {
       case 1: backward_block(self, s, 1, z); break;
       case 2: backward_block(self, s, 2, z); break;
       case 3: backward_block(self, s, 3, z); break;
@@ -289,71 +289,133 @@ int extrados_sparse_solve(void *handle, int vectors, double *z) {
   for (int64_t s = 0; s < self->blocks; s++) forward_block(self, s, vectors, z);
   for (int v = 0; v < vectors; v++)
     for (int64_t i = 0; i < self->n; i++) z[v * self->n + i] /= self->d[i];
-  backward(self, vectors, z);
+  backward(self, 0, self->blocks - 1, vectors, z);
   return EXTRADOS_ok;
 }
 
-int extrados_sparse_event(void *handle, int vectors, int count, const int *index, const double *w, double *z) {
+int extrados_sparse_backward(void *handle, int64_t first, int64_t last, int vectors, double *z) {
   const struct extrados_sparse *self = handle;
-  if (vectors < 1 || vectors > most_vectors || count < 1) return EXTRADOS_invalid_argument;
-  memset(z, 0, (size_t)(self->n * vectors) * sizeof *z);
-  for (int v = 0; v < vectors; v++)
-    for (int i = 0; i < count; i++) z[v * self->n + index[i]] = w[v * count + i];
-  const int64_t *super = self->factor->super;
-  for (int64_t s = first_block(self, count, index); s >= 0; s = parent(self, s)) {
-    forward_block(self, s, vectors, z);
-    for (int v = 0; v < vectors; v++)
-      for (int64_t j = super[s]; j < super[s + 1]; j++) z[v * self->n + j] /= self->d[j];
-  }
-  backward(self, vectors, z);
+  if (vectors < 1 || vectors > most_vectors || first < 0 || last >= self->blocks) return EXTRADOS_invalid_argument;
+  backward(self, first, last, vectors, z);
   return EXTRADOS_ok;
 }
 
-/* One column of the rank-1 change: w -= wj l, then l += g w. */
-FOR_EACH_PROCESSOR
-static void change_column(int64_t count, double wj, double g, double *restrict l, double *restrict w) {
+void extrados_sparse_tree(void *handle, int64_t *blocks, const int64_t **column, const int64_t **start,
+                          const int64_t **row) {
+  const struct extrados_sparse *self = handle;
+  *blocks = self->blocks;
+  *column = self->factor->super;
+  *start = self->factor->pi;
+  *row = self->factor->s;
+}
+
+/* One column: for each change w -= wj l, then l += g w; then right-hand sides t -= tj l with the new l.
+ * `changes` and `vectors` are constants at each call; the rows of w and t lie `stride` apart. */
+__attribute__((always_inline)) static inline void change_column(int64_t count, int64_t stride, const int changes, const int vectors,
+                                 const double *wj, const double *g, const double *tj, double *restrict l,
+                                 double *restrict w, double *restrict t) {
   int64_t i = 0;
   for (; i + 4 <= count; i += 4) {
-    four column = *(four *)(l + i), vector = *(four *)(w + i) - wj * column;
-    *(four *)(w + i) = vector;
-    *(four *)(l + i) = column + g * vector;
+    four column = *(four *)(l + i);
+    for (int k = 0; k < changes; k++) {
+      four part = *(four *)(w + k * stride + i) - wj[k] * column;
+      *(four *)(w + k * stride + i) = part;
+      column += g[k] * part;
+    }
+    *(four *)(l + i) = column;
+    for (int v = 0; v < vectors; v++) *(four *)(t + v * stride + i) -= tj[v] * column;
   }
   for (; i < count; i++) {
-    w[i] -= wj * l[i];
-    l[i] += g * w[i];
+    for (int k = 0; k < changes; k++) {
+      w[k * stride + i] -= wj[k] * l[i];
+      l[i] += g[k] * w[k * stride + i];
+    }
+    for (int v = 0; v < vectors; v++) t[v * stride + i] -= tj[v] * l[i];
   }
 }
 
-int extrados_sparse_rank1(void *handle, int sign, int count, const int *index, const double *w) {
-  struct extrados_sparse *self = handle;
-  if (count < 1 || (sign != 1 && sign != -1)) return EXTRADOS_invalid_argument;
-  const int64_t *super = self->factor->super, *pi = self->factor->pi, *px = self->factor->px;
-  double *t = self->buffer, a = 1.0;
-  int code = EXTRADOS_ok;
-  for (int i = 0; i < count; i++) self->column[index[i]] = w[i];
-  for (int64_t s = first_block(self, count, index); s >= 0; s = parent(self, s)) {
-    const int64_t *row = (const int64_t *)self->factor->s + pi[s];
-    double *x = (double *)self->factor->x + px[s];
-    int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s];
-    for (int64_t i = 0; i < rows; i++) {
-      t[i] = self->column[row[i]];
-      self->column[row[i]] = 0.0;
+/* One supernode of the changes w and the right-hand sides t, both gathered to its rows; a: product of the pivots'
+ * ratios so far, by change. False where a pivot would not stay positive. */
+__attribute__((always_inline)) static inline int change_block(struct extrados_sparse *self, int64_t s, const int changes, const int *sign,
+                               const int vectors, double *w, double *t, double *a) {
+  const int64_t *super = self->factor->super, *pi = self->factor->pi;
+  double *x = (double *)self->factor->x + ((const int64_t *)self->factor->px)[s];
+  int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s];
+  for (int64_t c = 0; c < columns; c++) {
+    double wj[most_changes], g[most_changes], tj[most_vectors], d = self->d[super[s] + c];
+    int some = 0;
+    for (int v = 0; v < vectors; v++) some |= (tj[v] = t[v * rows + c]) != 0.0;
+    /* A change sees the entry that the changes before it left to it: w of this column is final by now. */
+    for (int k = 0; k < changes; k++) {
+      some |= (wj[k] = w[k * rows + c]) != 0.0;
+      double next = a[k] + sign[k] * wj[k] * wj[k] / d;
+      if (!(next > 0.0)) return 0;
+      g[k] = sign[k] * wj[k] / (d * next);
+      d *= next / a[k];
+      a[k] = next;
     }
-    for (int64_t c = 0; c < columns && code == EXTRADOS_ok; c++) {
-      double wj = t[c], d = self->d[super[s] + c];
-      if (wj == 0.0) continue;
-      double next = a + sign * wj * wj / d;
-      if (!(next > 0.0)) {
-        code = EXTRADOS_not_positive_definite;
-        break;
-      }
-      self->d[super[s] + c] = d * next / a;
-      change_column(rows - c - 1, wj, sign * wj / (d * next), x + c * rows + c + 1, t + c + 1);
-      a = next;
-    }
-    if (code != EXTRADOS_ok) break;
-    for (int64_t i = columns; i < rows; i++) self->column[row[i]] = t[i];
+    self->d[super[s] + c] = d;
+    if (some)
+      change_column(rows - c - 1, rows, changes, vectors, wj, g, tj, x + c * rows + c + 1, w + c + 1, t + c + 1);
   }
+  return 1;
+}
+
+FOR_EACH_PROCESSOR
+static int change_any_block(struct extrados_sparse *self, int64_t s, int changes, const int *sign, int vectors,
+                            double *w, double *t, double *a) {
+  if (vectors == 2) switch (changes) {
+      case 1: return change_block(self, s, 1, sign, 2, w, t, a);
+      case 2: return change_block(self, s, 2, sign, 2, w, t, a);
+      case 3: return change_block(self, s, 3, sign, 2, w, t, a);
+    }
+  return change_block(self, s, changes, sign, vectors, w, t, a);
+}
+
+int extrados_sparse_change(void *handle, int changes, const int *sign, int count, const int *index, const double *w,
+                           int vectors, const double *b, double *z, double *least) {
+  struct extrados_sparse *self = handle;
+  if (count < 1 || changes < 1 || changes > most_changes || vectors < 0 || vectors > most_vectors)
+    return EXTRADOS_invalid_argument;
+  for (int k = 0; k < changes; k++)
+    if (sign[k] != 1 && sign[k] != -1) return EXTRADOS_invalid_argument;
+  const int64_t *super = self->factor->super, *pi = self->factor->pi;
+  double a[most_changes] = {1.0, 1.0, 1.0, 1.0};
+  int code = EXTRADOS_ok;
+  int64_t n = self->n, first = first_block(self, count, index);
+  for (int64_t s = first; s >= 0; s = parent(self, s))
+    for (int v = 0; v < vectors; v++)
+      memset(z + v * n + super[s], 0, (size_t)(super[s + 1] - super[s]) * sizeof *z);
+  for (int i = 0; i < count; i++) {
+    for (int k = 0; k < changes; k++) self->column[k * n + index[i]] = w[k * count + i];
+    for (int v = 0; v < vectors; v++) z[v * n + index[i]] = b[v * count + i];
+  }
+  for (int64_t s = first; s >= 0; s = parent(self, s)) {
+    const int64_t *row = (const int64_t *)self->factor->s + pi[s];
+    int64_t rows = pi[s + 1] - pi[s], columns = super[s + 1] - super[s];
+    double *wt = self->buffer, *t = self->buffer + changes * rows;
+    for (int k = 0; k < changes; k++)
+      for (int64_t i = 0; i < rows; i++) {
+        wt[k * rows + i] = self->column[k * n + row[i]];
+        self->column[k * n + row[i]] = 0.0;
+      }
+    if (code != EXTRADOS_ok) continue; /* what is left is only cleared */
+    for (int v = 0; v < vectors; v++)
+      for (int64_t i = 0; i < rows; i++) t[v * rows + i] = z[v * n + row[i]];
+    if (!change_any_block(self, s, changes, sign, vectors, wt, t, a)) {
+      code = EXTRADOS_not_positive_definite;
+      continue;
+    }
+    for (int k = 0; k < changes; k++)
+      for (int64_t i = columns; i < rows; i++) self->column[k * n + row[i]] = wt[k * rows + i];
+    for (int v = 0; v < vectors; v++) {
+      for (int64_t i = 0; i < columns; i++) t[v * rows + i] /= self->d[super[s] + i];
+      for (int64_t i = 0; i < rows; i++) z[v * n + row[i]] = t[v * rows + i];
+    }
+  }
+  *least = 1.0;
+  for (int k = 0; k < changes; k++)
+    if (a[k] < *least) *least = a[k];
   return code;
 }
 

@@ -5,7 +5,7 @@ module api_sla
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: loads, run, displacement, measure, report, damage, set_damage, standing, resume
+   public :: loads, run, relax, displacement, measure, report, damage, set_damage, standing, resume
 
 contains
 
@@ -41,7 +41,7 @@ contains
    end subroutine loads
 
    !> A batch of events
-   subroutine run(handle, room, limits, refuse_overload, monitors, entries, first, freedom, share, &
+   subroutine run(handle, room, limits, refuse_overload, proportional, monitors, entries, first, freedom, share, &
                   counts, reals, integers, monitored, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
@@ -52,6 +52,7 @@ contains
       !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first; see stop_rules
       real(c_double), intent(in) :: limits(4)
       integer(c_int), intent(in) :: refuse_overload
+      integer(c_int), intent(in) :: proportional        !! 1: without equilibrium all loads go down together
       integer(c_int), intent(in) :: monitors
       integer(c_int), intent(in) :: entries
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
@@ -59,7 +60,7 @@ contains
       real(c_double), intent(in) :: share(entries)
       !> Events, residual checks, re-solutions, new factors, reason (list sla_stop)
       integer(c_int), intent(out) :: counts(5)
-      real(c_double), intent(out) :: reals(9, room)      !! see sla_events
+      real(c_double), intent(out) :: reals(10, room)      !! see sla_events
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
@@ -94,9 +95,10 @@ contains
          fate = status_bad_index
          if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > 2)) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
-         rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0)
+         rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0, &
+            proportional /= 0)
          fate = status_out_of_memory
-         allocate (equation(entries), weight(entries), log%reals(9, room), log%integers(4, room), &
+         allocate (equation(entries), weight(entries), log%reals(10, room), log%integers(4, room), &
             log%monitors(monitors, room), stat=info)
          if (info /= 0) return
          do k = 1, entries
@@ -113,18 +115,44 @@ contains
 
    end subroutine run
 
+   !> One iteration of an incremental analysis at a multiplier, see damage_overloaded
+   subroutine relax(handle, lambda, damaged, cracked, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use sla_events, only : damage_overloaded
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      real(c_double), intent(in) :: lambda
+      integer(c_int), intent(out) :: damaged             !! points that lost a tooth
+      real(c_double), intent(out) :: cracked             !! crack energy so far [J]
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      integer :: count
+      !f2py threadsafe
+      damaged = 0
+      cracked = 0.0_c_double
+      call model_take(handle, stage_loaded, stage_loaded, model, status)
+      if (status /= status_ok) return
+      call damage_overloaded(model, lambda, count, status)
+      damaged = int(count, c_int)
+      cracked = model%cracked
+      call handle_leave(handle)
+   end subroutine relax
+
    !> Displacements of the nodes under A and under B
    subroutine displacement(handle, nodes, ua, ub, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_invalid_argument
       use sla_handle, only : model_take, stage_prepared, stage_loaded
-      use sla_model, only : element_model
+      use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: nodes
       real(c_double), intent(out) :: ua(2, nodes)     !! [m]
       real(c_double), intent(out) :: ub(2, nodes)     !! [m]
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      real(c_double), allocatable :: all_a(:), all_b(:)
       integer :: i, k
       ua = 0.0_c_double
       ub = 0.0_c_double
@@ -133,13 +161,14 @@ contains
       if (nodes /= model%nodes) then
          status = status_invalid_argument
       else
-         do i = 1, nodes
-            do k = 1, 2
-               ua(k, i) = model%factor(k, i) * model%ua(model%equation(k, i))
-               ub(k, i) = model%factor(k, i) * model%ub(model%equation(k, i))
-            end do
-         end do
+         call model_displacements(model, all_a, all_b, status)
       end if
+      do i = 1, merge(nodes, 0_c_int, status == status_ok)
+         do k = 1, 2
+            ua(k, i) = model%factor(k, i) * all_a(model%equation(k, i))
+            ub(k, i) = model%factor(k, i) * all_b(model%equation(k, i))
+         end do
+      end do
       call handle_leave(handle)
    end subroutine displacement
 
@@ -149,17 +178,21 @@ contains
       use common_status, only : status_ok
       use sla_events, only : residual
       use sla_handle, only : model_take, stage_loaded
-      use sla_model, only : element_model
+      use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(out) :: ratio
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      real(c_double), allocatable :: ua(:), ub(:)
       !f2py threadsafe
       ratio = 0.0_c_double
       call model_take(handle, stage_loaded, stage_loaded, model, status)
       if (status /= status_ok) return
-      call residual(model)
-      ratio = model%residual
+      call model_displacements(model, ua, ub, status)
+      if (status == status_ok) then
+         call residual(model, ua, ub)
+         ratio = model%residual
+      end if
       call handle_leave(handle)
    end subroutine measure
 
@@ -169,13 +202,14 @@ contains
       use common_status, only : status_ok, status_invalid_argument
       use sla_group, only : point_group
       use sla_handle, only : model_take, stage_prepared, stage_loaded
-      use sla_model, only : element_model
+      use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle
       real(c_double), intent(in) :: lambda
       integer(c_int), intent(in) :: points
       real(c_double), intent(out) :: values(19, points)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      real(c_double), allocatable :: ua(:), ub(:)
       integer :: g
       !f2py threadsafe
       values = 0.0_c_double
@@ -184,10 +218,13 @@ contains
       if (points /= model%points) then
          status = status_invalid_argument
       else
+         call model_displacements(model, ua, ub, status)
+      end if
+      if (status == status_ok) then
          do g = 1, size(model%holders)
             select type (group => model%holders(g)%group)
             class is (point_group)
-               call group%report(model%ua, model%ub, lambda, model%noise, &
+               call group%report(ua, ub, lambda, model%noise, &
                   values(:, group%offset + 1:group%offset + group%points))
             end select
          end do
@@ -252,7 +289,7 @@ contains
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model, model_standing
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(out) :: values(27)
+      real(c_double), intent(out) :: values(30)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       values = 0.0_c_double
@@ -269,7 +306,7 @@ contains
       use sla_handle, only : model_take, stage_factored, stage_loaded
       use sla_model, only : element_model, model_resume
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(in) :: values(27)
+      real(c_double), intent(in) :: values(30)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       !f2py threadsafe

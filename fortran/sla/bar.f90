@@ -28,6 +28,7 @@ module sla_bar
       procedure :: damage => bar_damage
       procedure :: report => bar_report
       procedure :: state => bar_state
+      procedure :: margin => bar_margin
    end type bar_group
 
    !> Springs between two freedoms, or one and the ground; they have no integration points
@@ -151,6 +152,30 @@ contains
          end if
       end do
    end subroutine bar_scan
+
+   !> See point_group
+   pure subroutine bar_margin(group, first, last, ua, ub, lambda, least)
+      class(bar_group), intent(in) :: group
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda(:)
+      real(wp), intent(inout) :: least(:)
+      real(wp) :: la(4), lb(4), stress(size(lambda)), limit(2), share
+      integer :: e
+      do e = first, last
+         if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         stress = group%modulus(e) * (dot_product(group%gradient(:, e), la) + &
+            lambda * dot_product(group%gradient(:, e), lb))
+         share = sqrt(group%volume(e) / group%modulus(e))
+         limit = bar_limits(group, e)
+         if (limit(1) < unbounded) least = min(least, share * (limit(1) - stress))
+         if (limit(2) < unbounded) least = min(least, share * (limit(2) + stress))
+      end do
+   end subroutine bar_margin
 
    pure subroutine bar_damage(group, point, code, lambda, ua, ub, event, tooth)
       class(bar_group), intent(inout) :: group

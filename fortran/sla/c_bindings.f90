@@ -4,7 +4,8 @@ module sla_c_bindings
    implicit none
    private
    public :: extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, extrados_sparse_factor
-   public :: extrados_sparse_solve, extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_plain
+   public :: extrados_sparse_solve, extrados_sparse_change, extrados_sparse_backward, extrados_sparse_tree
+   public :: extrados_sparse_plain
 
    interface
       function extrados_sparse_order(n, start, row, ordering, order) bind(c) result(status)
@@ -52,26 +53,36 @@ module sla_c_bindings
          integer(c_int) :: status
       end function extrados_sparse_solve
 
-      function extrados_sparse_event(handle, vectors, count, index, w, z) bind(c) result(status)
+      function extrados_sparse_change(handle, changes, sign, count, index, w, vectors, b, z, least) bind(c) &
+         result(status)
          import :: c_int, c_double, c_ptr
          implicit none (type, external)
          type(c_ptr), value, intent(in) :: handle
-         integer(c_int), value, intent(in) :: vectors, count
-         integer(c_int), intent(in) :: index(*)
-         real(c_double), intent(in) :: w(*)
+         integer(c_int), value, intent(in) :: changes, count, vectors
+         integer(c_int), intent(in) :: sign(*), index(*)
+         real(c_double), intent(in) :: w(*), b(*)
+         real(c_double), intent(inout) :: z(*)
+         real(c_double), intent(out) :: least
+         integer(c_int) :: status
+      end function extrados_sparse_change
+
+      function extrados_sparse_backward(handle, first, last, vectors, z) bind(c) result(status)
+         import :: c_int, c_int64_t, c_double, c_ptr
+         implicit none (type, external)
+         type(c_ptr), value, intent(in) :: handle
+         integer(c_int64_t), value, intent(in) :: first, last
+         integer(c_int), value, intent(in) :: vectors
          real(c_double), intent(inout) :: z(*)
          integer(c_int) :: status
-      end function extrados_sparse_event
+      end function extrados_sparse_backward
 
-      function extrados_sparse_rank1(handle, sign, count, index, w) bind(c) result(status)
-         import :: c_int, c_double, c_ptr
+      subroutine extrados_sparse_tree(handle, blocks, column, start, row) bind(c)
+         import :: c_int64_t, c_ptr
          implicit none (type, external)
          type(c_ptr), value, intent(in) :: handle
-         integer(c_int), value, intent(in) :: sign, count
-         integer(c_int), intent(in) :: index(*)
-         real(c_double), intent(in) :: w(*)
-         integer(c_int) :: status
-      end function extrados_sparse_rank1
+         integer(c_int64_t), intent(out) :: blocks
+         type(c_ptr), intent(out) :: column, start, row
+      end subroutine extrados_sparse_tree
 
       function extrados_sparse_plain(handle, value, vectors, z) bind(c) result(status)
          import :: c_int, c_double, c_ptr

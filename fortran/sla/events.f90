@@ -1,8 +1,8 @@
 !> The event loop of sequentially linear analysis under loads A + lambda B (thesis 4.3.1).
 !>
-!> Each event: apply the last damage (one solve with its vectors, Sherman-Morrison-Woodbury correction of
-!> both displacements, rank-one changes of the factor), scan all points for the admissible range of lambda,
-!> choose the point that leaves it, record the state. The loop knows groups, not materials.
+!> Each event: apply the last damage (change the factor along the path of its element, bring the displacements up to
+!> date there), look for the admissible range of lambda wherever it can have changed enough (sla_regions), choose
+!> the point that leaves it, record the state. The loop knows groups, not materials.
 module sla_events
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
@@ -11,18 +11,21 @@ module sla_events
       stop_unbounded => sla_stop_unbounded, stop_all_empty => sla_stop_all_empty, &
       stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction, &
       stop_lost => sla_stop_lost
-   use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
+   use common_status, only : status_ok, status_cancelled, status_out_of_memory, status_not_positive_definite, &
+      status_beyond_strength
    use sla_assembly, only : add_event
-   use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
-   use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
-   use sla_model, only : element_model, model_factor, model_solve, held_work
+   use sla_c_bindings, only : extrados_sparse_change, extrados_sparse_solve
+   use sla_group, only : below, bound, event_vectors, point_group, scan_result, unbounded, most_entries, most_rank
+   use sla_model, only : element_model, model_factor, model_settled, model_solve, held_work
+   use sla_regions, only : levels, regions_bring, regions_calm, regions_home, regions_margins, regions_window
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: run_events, residual, scan_model, stop_rules, event_log, log_reals, log_integers
+   public :: run_events, damage_overloaded, residual, scan_model, stop_rules, event_log, log_reals, log_integers
 
-   integer, parameter :: log_reals = 9, log_integers = 4
+   integer, parameter :: log_reals = 10, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
+   integer, parameter :: few = 100                    !! regions that are looked at sooner by one thread
    !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
    real(wp), parameter :: farthest = 1.0e3_wp
    integer, parameter :: guard_every = 500
@@ -34,12 +37,16 @@ module sla_events
       real(wp) :: fraction = -1.0_wp               !! of the peak multiplier, after it; negative: never
       real(wp) :: compliance = 1.0e6_wp            !! fb.ub over its first value: a mechanism
       logical :: refuse_overload = .false.         !! the first state must carry the constant loads
+      !> Where no multiplier suits all points: all loads of the last state in equilibrium are scaled down together
+      !> (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides
+      logical :: proportional = .false.
    end type stop_rules
 
    !> What is recorded; monitors are weighted sums of equations
    type :: event_log
       integer :: count = 0
-      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub, residual
+      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub, residual,
+      !> scale of all loads
       real(wp), allocatable :: reals(:, :)         !! (log_reals, room)
       !> point (1-based), code, tooth reached by it before, 1 in equilibrium
       integer(c_int), allocatable :: integers(:, :)  !! (log_integers, room)
@@ -59,11 +66,14 @@ contains
       integer(c_int), intent(out) :: reason       !! of the list sla_stop
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
+      type(bound) :: scaled
+      real(wp) :: ratio(size(first) - 1)
       logical :: equilibrium
 
       reason = stop_none
       status = status_ok
       log%count = 0
+      call watch(model, first, equation, share, ratio)
       do while (log%count < size(log%reals, 2))
          if (cancel_requested()) then
             status = status_cancelled
@@ -73,7 +83,8 @@ contains
             call apply_event(model, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
-         call scan_model(model, found)
+         call scan_model(model, found, status)
+         if (status /= status_ok) return
          model%hot(:, 1) = [found%hi%group, found%hi%point]
          model%hot(:, 2) = [found%lo%group, found%lo%point]
          equilibrium = found%empty%point == 0 .and. found%hi%value >= found%lo%value
@@ -82,9 +93,17 @@ contains
             return
          end if
          if (.not. found%bounded) reason = stop_unbounded
+         model%scale = 1.0_wp
+         scaled = bound()
+         if (rules%proportional .and. .not. equilibrium .and. found%bounded) call scan_scaled(model, scaled, status)
+         if (status /= status_ok) return
          if (equilibrium .and. rules%lambda < unbounded .and. found%hi%value >= rules%lambda .and. &
              found%lo%value <= rules%lambda) then
             reason = stop_load
+         else if (scaled%point /= 0) then
+            model%scale = scaled%value
+            scaled%value = model%lambda_held
+            call choose(model, scaled)
          else if (found%empty%point /= 0) then
             found%empty%value = model%lambda
             if (found%hi%point == 0 .and. found%lo%point == 0) reason = stop_all_empty
@@ -104,9 +123,10 @@ contains
          else
             call account(model, model%lambda)
          end if
-         call record(model, found, equilibrium, first, equation, share, log)
+         call record(model, found, equilibrium, first, equation, share, ratio, log)
          if (reason /= stop_none) return
          if (equilibrium) then
+            model%lambda_held = model%lambda
             if (model%lambda > model%peak) then
                model%peak = model%lambda
                model%peak_displacement = log%monitors(1, log%count)
@@ -130,51 +150,285 @@ contains
       end do
    end subroutine run_events
 
-   !> Limits over all points, the same for any number of threads: pieces are joined in their order
-   subroutine scan_model(model, found)
+   !> Limits over all points; regions that cannot hold the least ones are left out. The same for any number of
+   !> threads
+   subroutine scan_model(model, found, status)
       type(element_model), intent(inout) :: model
       type(scan_result), intent(out) :: found
-      type(scan_result) :: guess
-      integer :: k
+      integer(c_int), intent(out) :: status
+      integer :: k, near, count
+      logical :: calm
 
-      ! The limits of the point damaged last are near the new ones: loosened, they spare most points the roots.
-      call guess_limits(model, guess)
-      !$omp parallel do schedule(static) default(none) shared(model, guess) private(k) &
-      !$omp num_threads(model%threads) if(model%threads > 1)
-      do k = 1, size(model%piece, 2)
-         model%part(k) = guess
-         select type (group => model%holders(model%piece(1, k))%group)
+      found = scan_result()
+      associate (tree => model%tree)
+         count = size(tree%part)
+         if (tree%settled) then
+            ! First what is surely concerned, which gives limits to ask the others with.
+            do k = 1, size(model%hot, 2)
+               if (model%hot(1, k) > 0) model%wanted(element_region(model, model%hot(:, k))) = .true.
+            end do
+            call bring_wanted(model, near, status)
+            if (status /= status_ok) return
+            call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), 1, near, found)
+            if (found%hi%value < tree%lambda(levels) .and. found%lo%value > tree%lambda(1) .and. &
+                found%hi%value > tree%lambda(1) .and. found%lo%value < tree%lambda(levels)) then
+               count = near
+               k = size(tree%part)
+               do while (k >= 1)
+                  if (tree%part(k)%seen /= tree%now) then
+                     call regions_calm(tree, k, model%ua, model%ub, found%hi%value, found%lo%value, calm)
+                     if (calm) then
+                        k = tree%part(k)%lowest - 1
+                        cycle
+                     end if
+                     call bring(model, k, count, status)
+                     if (status /= status_ok) return
+                  end if
+                  k = k - 1
+               end do
+               call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), near + 1, count, found)
+               call regions_margins(tree, model%holders, model%ua, model%ub)
+               return
+            end if
+         end if
+         ! All are brought up to date and looked at, then may wait again.
+         call bring_all(model, status)
+         if (status /= status_ok) return
+         found = scan_result()
+         do k = 1, count
+            model%list(k) = k
+         end do
+         call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), 1, count, found)
+         tree%settled = tree%measured .and. found%hi%value < unbounded .and. found%lo%value > -unbounded
+         if (.not. tree%settled) return
+         call regions_window(tree, found%hi%value, found%lo%value)
+         call regions_margins(tree, model%holders, model%ua, model%ub)
+      end associate
+   end subroutine scan_model
+
+   !> The region of the first freedom of a point's element
+   pure function element_region(model, place) result(k)
+      type(element_model), intent(in) :: model
+      integer, intent(in) :: place(2)        !! group and point
+      integer :: k
+      k = size(model%tree%part)
+      select type (group => model%holders(place(1))%group)
+      class is (point_group)
+         k = regions_home(model%tree, group%equation(:, 1 + (place(2) - 1) / (group%points / group%elements)))
+      end select
+   end function element_region
+
+   !> Bring the wanted regions and those above them up to date, unless they are; all that are go to the list
+   subroutine bring_wanted(model, count, status)
+      type(element_model), intent(inout) :: model
+      integer, intent(out) :: count
+      integer(c_int), intent(out) :: status
+      integer :: k
+      status = status_ok
+      count = 0
+      associate (tree => model%tree)
+         do k = 1, size(tree%part)
+            if (.not. model%wanted(k) .and. tree%part(k)%seen /= tree%now) cycle
+            if (tree%part(k)%parent > 0) model%wanted(tree%part(k)%parent) = .true.
+         end do
+         do k = size(tree%part), 1, -1
+            if (tree%part(k)%seen == tree%now) then
+               count = count + 1
+               model%list(count) = k
+            else if (model%wanted(k)) then
+               call bring(model, k, count, status)
+               if (status /= status_ok) return
+            end if
+         end do
+         model%wanted(:) = model%watched
+      end associate
+   end subroutine bring_wanted
+
+   !> Bring one region up to date and put it on the list
+   subroutine bring(model, k, count, status)
+      type(element_model), intent(inout) :: model
+      integer, intent(in) :: k
+      integer, intent(inout) :: count
+      integer(c_int), intent(out) :: status
+      call regions_bring(model%tree, k, model%handle, .false., model%ua, model%ub, model%z, status)
+      count = count + 1
+      model%list(count) = k
+   end subroutine bring
+
+   !> Bring all regions up to date
+   subroutine bring_all(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer :: k, count
+      status = status_ok
+      count = 0
+      do k = size(model%tree%part), 1, -1
+         if (model%tree%part(k)%seen /= model%tree%now) call bring(model, k, count, status)
+         if (status /= status_ok) return
+      end do
+      model%tree%part(:)%patience = 0
+      model%tree%part(:)%failed = 0
+   end subroutine bring_all
+
+   !> One iteration of an incremental analysis: in each element the most overloaded point at a multiplier loses a tooth,
+   !> all at once; then the factor and the displacements are made anew
+   subroutine damage_overloaded(model, lambda, count, status)
+      type(element_model), intent(inout) :: model    !! all its displacements are those of a solution
+      real(wp), intent(in) :: lambda
+      integer, intent(out) :: count                  !! points damaged
+      integer(c_int), intent(out) :: status          !! not_positive_definite: a mechanism
+      real(wp), parameter :: tolerance = 1.0e-9_wp
+      type(scan_result) :: found
+      type(event_vectors) :: event
+      type(bound) :: worst
+      real(wp) :: ratio
+      integer(c_int) :: node, direction
+      integer :: g, e, i, tooth
+
+      count = 0
+      status = status_ok
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
          class is (point_group)
-            call group%scan(model%piece(2, k), model%piece(3, k), model%ua, model%ub, model%lambda, model%noise, &
-               model%part(k))
+            do e = 1, group%elements
+               found = scan_result()
+               call group%scan(e, e, model%ua, model%ub, lambda, model%noise, found)
+               worst = bound()
+               if (found%empty%point /= 0) then
+                  worst = found%empty
+               else if (found%hi%point /= 0 .and. found%hi%value < lambda - tolerance * abs(lambda)) then
+                  worst = found%hi
+               else if (found%lo%point /= 0 .and. found%lo%value > lambda + tolerance * abs(lambda)) then
+                  worst = found%lo
+               end if
+               if (worst%point == 0) cycle
+               call group%damage(worst%point, worst%code, lambda, model%ua, model%ub, event, tooth)
+               count = count + 1
+               do i = 1, event%rank
+                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * dot_product(event%w(1:event%entries, i), &
+                     model%ua(event%index(1:event%entries)) + lambda * model%ub(event%index(1:event%entries)))**2
+               end do
+            end do
          end select
       end do
-      !$omp end parallel do
+      if (count == 0) return
+      call model_factor(model, node, direction, ratio, status)
+      if (status == status_ok) call model_solve(model, status)
+   end subroutine damage_overloaded
+
+   !> The point that limits the loads of the last state in equilibrium if all of them grow together from nothing
+   subroutine scan_scaled(model, limit, status)
+      type(element_model), intent(inout) :: model
+      type(bound), intent(out) :: limit              !! share of the loads; point 0 where nothing limits them
+      integer(c_int), intent(out) :: status
+      type(scan_result) :: found
+      real(wp), allocatable :: zero(:), u(:)
+      integer :: k, info
+
+      call bring_all(model, status)
+      if (status /= status_ok) return
+      model%tree%settled = .false.                   ! the margins were those of before
+      allocate (zero(0:model%equations), u(0:model%equations), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      zero(:) = 0.0_wp
+      u(:) = model%ua + model%lambda_held * model%ub
+      do k = 1, size(model%list)
+         model%list(k) = k
+      end do
       found = scan_result()
-      do k = 1, size(model%part)
-         associate (g => model%piece(1, k))
-            found%bounded = found%bounded .or. model%part(k)%bounded
-            if (model%part(k)%hi%point /= 0 .and. below(model%part(k)%hi%value, found%hi%value)) then
-               found%hi = model%part(k)%hi
-               found%hi%group = g
-            end if
-            if (model%part(k)%lo%point /= 0 .and. below(-model%part(k)%lo%value, -found%lo%value)) then
-               found%lo = model%part(k)%lo
-               found%lo%group = g
-            end if
-            if (model%part(k)%empty%point /= 0 .and. &
-                (found%empty%point == 0 .or. model%part(k)%empty%value > found%empty%value)) then
-               found%empty = model%part(k)%empty
-               found%empty%group = g
+      call scan_list(model, zero, u, model%noise * max(abs(model%lambda_held), 1.0_wp), scan_result(), &
+         1, size(model%list), found)
+      if (found%hi%point /= 0) limit = found%hi
+   end subroutine scan_scaled
+
+   !> Limits over the listed regions, joined to those found before
+   subroutine scan_list(model, ua, ub, noise, near, first, last, found)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(in) :: near          !! limits of some points, loosened: they spare others the roots
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      type(scan_result), intent(inout) :: found
+      type(scan_result) :: guess
+      integer :: i, k
+
+      guess = near
+      call loosen(found, guess)
+      !$omp parallel do schedule(static) default(none) &
+      !$omp shared(model, ua, ub, noise, guess, first, last) private(i, k) &
+      !$omp num_threads(model%threads) if(model%threads > 1 .and. last - first > few)
+      do i = first, last
+         model%part(i) = guess
+         associate (part => model%tree%part(model%list(i)))
+            do k = part%run + 1, part%run + part%runs
+               select type (group => model%holders(model%tree%run(1, k))%group)
+               class is (point_group)
+                  call scan_run(group, model%tree%run(:, k), ua, ub, model%lambda, noise, model%part(i))
+               end select
+            end do
+         end associate
+      end do
+      !$omp end parallel do
+      do i = first, last
+         associate (part => model%part(i))
+            found%bounded = found%bounded .or. part%bounded
+            if (part%hi%point /= 0 .and. wins(part%hi, part%hi%value, found%hi, found%hi%value)) found%hi = part%hi
+            if (part%lo%point /= 0 .and. wins(part%lo, -part%lo%value, found%lo, -found%lo%value)) found%lo = part%lo
+            if (part%empty%point == 0) cycle
+            if (found%empty%point == 0 .or. part%empty%value > found%empty%value .or. &
+                (.not. part%empty%value < found%empty%value .and. earlier(part%empty, found%empty))) then
+               found%empty = part%empty
             end if
          end associate
       end do
-   end subroutine scan_model
+   end subroutine scan_list
 
-   !> Loosened limits of the points that set the last ones
-   subroutine guess_limits(model, guess)
+   !> Limits over one run of elements; what it finds carries the group's number
+   subroutine scan_run(group, run, ua, ub, lambda, noise, found)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: run(3)          !! group, first and last element
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(inout) :: found
+      type(scan_result) :: new
+      new = found
+      call group%scan(run(2), run(3), ua, ub, lambda, noise, new)
+      ! The group gives new limits no number.
+      if (new%hi%group == 0 .and. new%hi%point /= 0) new%hi%group = run(1)
+      if (new%lo%group == 0 .and. new%lo%point /= 0) new%lo%group = run(1)
+      if (new%empty%group == 0 .and. new%empty%point /= 0) new%empty%group = run(1)
+      found = new
+   end subroutine scan_run
+
+   !> Does a limit take the place of another one: it is less, or the same of an earlier point
+   pure function wins(new, value, old, least) result(better)
+      type(bound), intent(in) :: new
+      real(wp), intent(in) :: value          !! of the new, the least wins
+      type(bound), intent(in) :: old
+      real(wp), intent(in) :: least          !! of the old
+      logical :: better
+      better = below(value, least)
+      if (.not. better .and. old%point /= 0 .and. .not. below(least, value)) better = earlier(new, old)
+   end function wins
+
+   !> Does a point come before another
+   pure function earlier(a, b) result(first)
+      type(bound), intent(in) :: a, b
+      logical :: first
+      first = a%group < b%group .or. (a%group == b%group .and. a%point < b%point)
+   end function earlier
+
+   !> Loosened limits of the points that set the last ones: those of the point damaged last are near the new ones
+   function guess_limits(model) result(guess)
       type(element_model), intent(in) :: model
-      type(scan_result), intent(out) :: guess
+      type(scan_result) :: guess
       type(scan_result) :: found
       integer :: k, g, e
 
@@ -187,13 +441,48 @@ contains
             e = 1 + (model%hot(2, k) - 1) / (group%points / group%elements)
             found = scan_result()
             call group%scan(e, e, model%ua, model%ub, model%lambda, model%noise, found)
-            if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, &
-               found%hi%value + 1.0e-9_wp * abs(found%hi%value))
-            if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, &
-               found%lo%value - 1.0e-9_wp * abs(found%lo%value))
+            call loosen(found, guess)
          end select
       end do
-   end subroutine guess_limits
+   end function guess_limits
+
+   !> Limits that leave room for equals of those found
+   pure subroutine loosen(found, guess)
+      type(scan_result), intent(in) :: found
+      type(scan_result), intent(inout) :: guess
+      real(wp), parameter :: room = 1.0e-9_wp
+      if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, found%hi%value + room * abs(found%hi%value))
+      if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, found%lo%value - room * abs(found%lo%value))
+   end subroutine loosen
+
+   !> A monitor on which the reference load does its work follows from that work. The regions of the others are
+   !> brought up to date in each event
+   subroutine watch(model, first, equation, share, ratio)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(in) :: first(:)
+      integer(c_int), intent(in) :: equation(:)
+      real(wp), intent(in) :: share(:)
+      real(wp), intent(out) :: ratio(:)           !! (monitors) to the work, 0: not of this kind [1/N]
+      real(wp), parameter :: same = 1.0e-12_wp
+      integer :: i, k, greatest
+      model%watched = .false.
+      do k = 1, size(ratio)
+         model%force = 0.0_wp
+         do i = int(first(k)), int(first(k + 1)) - 1
+            model%force(equation(i)) = model%force(equation(i)) + share(i)
+         end do
+         model%force(0) = 0.0_wp
+         greatest = maxloc(abs(model%fb), dim=1) - 1
+         ratio(k) = 0.0_wp
+         if (abs(model%fb(greatest)) > 0.0_wp) ratio(k) = model%force(greatest) / model%fb(greatest)
+         if (maxval(abs(model%force - ratio(k) * model%fb)) <= same * maxval(abs(model%force))) cycle
+         ratio(k) = 0.0_wp
+         do i = int(first(k)), int(first(k + 1)) - 1
+            if (equation(i) > 0) model%watched(model%tree%of(equation(i))) = .true.
+         end do
+      end do
+      model%wanted = model%watched
+   end subroutine watch
 
    !> The point to damage next and its multiplier
    pure subroutine choose(model, chosen)
@@ -203,30 +492,31 @@ contains
       model%lambda = chosen%value
    end subroutine choose
 
-   !> Damage the pending point; the displacements and the factor follow
+   !> Damage the pending point; the factor follows, and the displacements on the path of its element
    subroutine apply_event(model, reason, status)
       type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: reason
       integer(c_int), intent(out) :: status
-      real(wp) :: m(most_rank, most_rank), wa(most_rank), wb(most_rank)
-      integer(c_int) :: index0(most_entries)
-      integer :: i, j, r, n, tooth
+      real(wp) :: w(most_entries * most_rank), b(most_entries * 2), before(2, most_rank), after(2), least
+      integer(c_int) :: index0(most_entries), sense(most_rank)
+      integer :: i, k, n, tooth, pass, changes, path
 
       reason = stop_none
       status = status_ok
-      n = model%equations
       select type (group => model%holders(model%pending(1))%group)
       class is (point_group)
          call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
       end select
       model%pending = 0
       model%events = model%events + 1
-      associate (event => model%event)
-         r = event%rank
-         if (r == 0) return
-         do i = 1, r
-            model%before(i) = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
-               model%lambda * model%ub(event%index(1:event%entries))) - event%origin(i)
+      model%tree%now = model%tree%now + 1
+      associate (event => model%event, tree => model%tree)
+         if (event%rank == 0) return
+         n = event%entries
+         do i = 1, event%rank
+            before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
+               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i)) - event%origin(i)
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -239,75 +529,56 @@ contains
             return
          end if
          model%origin_energy = model%origin_energy + event%shift
+         ! (K - W S W') du = W S (W' u - origin - hold). Stiffening first: no way-station is less definite than the
+         ! ends.
+         changes = 0
+         b = 0.0_wp
+         do pass = 1, 2
+            do i = 1, event%rank
+               if ((event%sign(i) > 0.0_wp) .eqv. (pass == 1)) cycle
+               w(changes * n + 1:changes * n + n) = event%w(1:n, i)
+               changes = changes + 1
+               sense(changes) = int(-sign(1.0_wp, event%sign(i)), c_int)
+               b(1:n) = b(1:n) + event%sign(i) * (before(1, i) - event%origin(i) - event%hold(1, i)) * event%w(1:n, i)
+               b(n + 1:2 * n) = b(n + 1:2 * n) + event%sign(i) * (before(2, i) - event%hold(2, i)) * event%w(1:n, i)
+               model%fo(event%index(1:n)) = model%fo(event%index(1:n)) - &
+                  event%sign(i) * event%origin(i) * event%w(1:n, i)
+               model%fh(event%index(1:n), 1) = model%fh(event%index(1:n), 1) - &
+                  event%sign(i) * event%hold(1, i) * event%w(1:n, i)
+               model%fh(event%index(1:n), 2) = model%fh(event%index(1:n), 2) - &
+                  event%sign(i) * event%hold(2, i) * event%w(1:n, i)
+            end do
+         end do
+         path = 0
+         k = regions_home(tree, event%index(1:n))
+         do while (k > 0)
+            path = path + 1
+            model%list(path) = k
+            model%z(tree%part(k)%first:tree%part(k)%last, :) = 0.0_wp   ! part of a region may lie off the path
+            k = tree%part(k)%parent
+         end do
          index0 = event%index - 1_c_int
-         status = extrados_sparse_event(model%handle, int(r, c_int), int(event%entries, c_int), index0, &
-            reshape(event%w(1:event%entries, 1:r), [event%entries * r]), model%z)
-         if (status /= status_ok) return
-         do j = 1, r
-            do i = 1, r
-               m(i, j) = -dot_product(event%w(1:event%entries, i), model%z(event%index(1:event%entries), j))
-            end do
-            m(j, j) = m(j, j) + event%sign(j)
-            wa(j) = dot_product(event%w(1:event%entries, j), model%ua(event%index(1:event%entries))) - &
-               event%origin(j) - event%hold(1, j)
-            model%fo(event%index(1:event%entries)) = model%fo(event%index(1:event%entries)) - &
-               event%sign(j) * event%origin(j) * event%w(1:event%entries, j)
-            do i = 1, 2
-               model%fh(event%index(1:event%entries), i) = model%fh(event%index(1:event%entries), i) - &
-                  event%sign(j) * event%hold(i, j) * event%w(1:event%entries, j)
-            end do
-            wb(j) = dot_product(event%w(1:event%entries, j), model%ub(event%index(1:event%entries))) - event%hold(2, j)
+         status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(n, c_int), index0, w, 2_c_int, &
+            b, model%z, least)
+         if (status == status_not_positive_definite .or. (status == status_ok .and. least < least_pivot)) then
+            status = status_ok
+            reason = stop_mechanism
+         end if
+         if (status /= status_ok .or. reason /= stop_none) return
+         ! From the root down to the element
+         do i = path, 1, -1
+            call regions_bring(tree, model%list(i), model%handle, .true., model%ua, model%ub, model%z, status)
+            if (status /= status_ok) return
          end do
-         call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), reason)
-         if (reason /= stop_none) return
-         do j = 1, r
-            model%ua(1:n) = model%ua(1:n) + wa(j) * model%z(:, j)
-            model%ub(1:n) = model%ub(1:n) + wb(j) * model%z(:, j)
-         end do
-         ! Stiffening first: no way-station is less definite than the ends.
-         do j = 1, 2
-            do i = 1, r
-               if ((event%sign(i) > 0.0_wp) .eqv. (j == 1)) cycle
-               status = extrados_sparse_rank1(model%handle, int(-sign(1.0_wp, event%sign(i)), c_int), &
-                  int(event%entries, c_int), index0, event%w(1:event%entries, i))
-               if (status == status_not_positive_definite) then
-                  status = status_ok
-                  reason = stop_mechanism
-               end if
-               if (status /= status_ok .or. reason /= stop_none) return
-            end do
+         do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
+            after = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
+               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            model%work_now = model%work_now + event%sign(i) * &
+               [before(1, i) * after(1), before(1, i) * after(2), before(2, i) * after(2)]
          end do
       end associate
       if (mod(model%events, guard_every) == 0) call guard_residual(model, status)
    end subroutine apply_event
-
-   !> Solve m x = wa, m y = wb by elimination without pivoting: m is positive definite for softening events
-   pure subroutine small(m, wa, wb, r, definite, reason)
-      real(wp), intent(inout) :: m(:, :)
-      real(wp), intent(inout) :: wa(:)
-      real(wp), intent(inout) :: wb(:)
-      integer, intent(in) :: r
-      logical, intent(in) :: definite
-      integer(c_int), intent(inout) :: reason
-      real(wp) :: f
-      integer :: i, j
-      do j = 1, r
-         if ((definite .and. .not. m(j, j) > least_pivot) .or. .not. abs(m(j, j)) > least_pivot) then
-            reason = stop_mechanism
-            return
-         end if
-         do i = j + 1, r
-            f = m(i, j) / m(j, j)
-            m(i, j:r) = m(i, j:r) - f * m(j, j:r)
-            wa(i) = wa(i) - f * wa(j)
-            wb(i) = wb(i) - f * wb(j)
-         end do
-      end do
-      do j = r, 1, -1
-         wa(j) = (wa(j) - dot_product(m(j, j + 1:r), wa(j + 1:r))) / m(j, j)
-         wb(j) = (wb(j) - dot_product(m(j, j + 1:r), wb(j + 1:r))) / m(j, j)
-      end do
-   end subroutine small
 
    !> Residuals of both displacements by the elements; refine, then factorise anew, only where they ask for it
    subroutine guard_residual(model, status)
@@ -317,27 +588,34 @@ contains
       real(wp) :: ratio
       integer :: n
 
-      status = status_ok
       n = model%equations
+      call bring_all(model, status)
+      if (status /= status_ok) return
       model%guard(1) = model%guard(1) + 1
-      call residual(model)
-      if (model%residual <= most_residual) return
+      call residual(model, model%ua, model%ub)
+      if (model%residual <= most_residual) then
+         call model_settled(model)
+         return
+      end if
       model%guard(2) = model%guard(2) + 1
       status = extrados_sparse_solve(model%handle, 2_c_int, model%z)
       if (status /= status_ok) return
       model%ua(1:n) = model%ua(1:n) + model%z(:, 1)
       model%ub(1:n) = model%ub(1:n) + model%z(:, 2)
-      call residual(model)
+      call model_settled(model)
+      call residual(model, model%ua, model%ub)
       if (model%residual <= most_residual) return
       model%guard(3) = model%guard(3) + 1
       call model_factor(model, node, direction, ratio, status)
       if (status == status_ok) call model_solve(model, status)
-      if (status == status_ok) call residual(model)
+      if (status == status_ok) call residual(model, model%ua, model%ub)
    end subroutine guard_residual
 
    !> Residual forces into z, the larger relative norm into made%residual
-   subroutine residual(model)
+   subroutine residual(model, ua, ub)
       type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
       real(wp) :: load
       integer :: k, g, n
       n = model%equations
@@ -345,8 +623,8 @@ contains
       do k = 1, 2
          model%force = 0.0_wp
          do g = 1, size(model%holders)
-            if (k == 1) call model%holders(g)%group%force(model%ua, model%force)
-            if (k == 2) call model%holders(g)%group%force(model%ub, model%force)
+            if (k == 1) call model%holders(g)%group%force(ua, model%force)
+            if (k == 2) call model%holders(g)%group%force(ub, model%force)
          end do
          if (k == 1) model%z(:, k) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1) - model%force(1:n)
          if (k == 2) model%z(:, k) = model%fb(1:n) + model%fh(1:n, 2) - model%force(1:n)
@@ -360,24 +638,31 @@ contains
    subroutine account(model, lambda)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: lambda
-      real(wp) :: new(3), held(2), after, was, change, cross
+      real(wp) :: now(3), held(2), after, was, s, t, change, cross
       integer :: i
 
       was = model%lambda_recorded
-      held = held_work(model, lambda)
-      cross = dot_product(model%fb, model%ua)   ! fa.ub too, but for friction that slides
+      s = model%scale
+      t = model%scale_recorded
+      if (model%slides) then
+         held = held_work(model, lambda)
+         now = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), dot_product(model%fb, model%ub)]
+         cross = dot_product(model%fb, model%ua)   ! fa.ub too, but for friction that slides
+      else
+         held = 0.0_wp
+         now = model%work_now
+         cross = now(2)
+      end if
       change = 0.0_wp
-      new = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), dot_product(model%fb, model%ub)]
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
-         if (.not. model%carried) model%external = model%external + 0.5_wp * new(1)
-         model%external = model%external + 0.5_wp * lambda * (new(2) + cross) + 0.5_wp * lambda**2 * new(3)
+         if (model%carried) model%external = model%external - 0.5_wp * now(1)
+         model%external = model%external + 0.5_wp * s**2 * (now(1) + lambda * (now(2) + cross + lambda * now(3)))
          model%recorded = .true.
       else
          associate (event => model%event)
             do i = 1, event%rank
-               after = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
-                  lambda * model%ub(event%index(1:event%entries))) - event%origin(i)
+               after = s * along(event, i, model%ua, model%ub, lambda) - event%origin(i)
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * (model%before(i) * after - &
                   event%origin(i)**2)
                ! What the change of the held forces did at the old and at the new displacements
@@ -390,39 +675,43 @@ contains
          ! Work of the held forces, (fh_old + fh_new) . (u_new - u_old) / 2
          model%dissipated = model%dissipated - 0.5_wp * (2.0_wp * held(1) + (lambda + was) * held(2) &
             - 2.0_wp * model%held(1) - (lambda + was) * model%held(2) + change)
-         ! (f_old + f_new) . (u_new - u_old) / 2 with f = A + lambda B, u = ua + lambda ub
+         ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub)
          model%external = model%external + 0.5_wp * ( &
-            2.0_wp * new(1) + 2.0_wp * lambda * new(2) + (was + lambda) * cross + (was * lambda + lambda**2) * new(3) &
-            - 2.0_wp * model%work(1) - 2.0_wp * was * model%work(2) - (lambda + was) * model%cross &
-            - (was * lambda + was**2) * model%work(3))
+            s * (s + t) * now(1) + s * (s + t) * lambda * now(2) &
+            + s * (s * lambda + t * was) * (cross + lambda * now(3)) &
+            - t * (s + t) * model%work(1) - t * (s + t) * was * model%work(2) &
+            - t * (s * lambda + t * was) * (model%cross + was * model%work(3)))
       end if
       model%event%rank = 0
       model%held = held
       model%cross = cross
-      model%work = new
+      model%work = now
       model%lambda_recorded = lambda
+      model%scale_recorded = s
       model%lambda = lambda
    end subroutine account
 
    !> One row of the log
-   subroutine record(model, found, equilibrium, first, equation, share, log)
+   subroutine record(model, found, equilibrium, first, equation, share, ratio, log)
       type(element_model), intent(inout) :: model
       type(scan_result), intent(in) :: found
       logical, intent(in) :: equilibrium
       integer(c_int), intent(in) :: first(:)
       integer(c_int), intent(in) :: equation(:)
       real(wp), intent(in) :: share(:)
+      real(wp), intent(in) :: ratio(:)      !! see watch
       type(event_log), intent(inout) :: log
-      real(wp) :: stored
+      real(wp) :: stored, slope
       integer :: k, i, offset
 
       log%count = log%count + 1
-      stored = 0.5_wp * (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
+      stored = 0.5_wp * model%scale**2 * &
+         (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
       ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
-      stored = stored + model%origin_energy + 0.5_wp * (model%held(1) + model%lambda * model%held(2) &
-         - dot_product(model%fo, model%ua + model%lambda * model%ub))
+      if (model%slides) stored = stored + model%origin_energy + 0.5_wp * (model%held(1) + &
+         model%lambda * model%held(2) - dot_product(model%fo, model%ua + model%lambda * model%ub))
       log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored, model%external, &
-         model%dissipated, model%cracked, model%work(3), model%residual]
+         model%dissipated, model%cracked, model%work(3), model%residual, model%scale]
       offset = 0
       if (model%pending(1) /= 0) then
          select type (group => model%holders(model%pending(1))%group)
@@ -433,13 +722,37 @@ contains
       log%integers(:, log%count) = [int(offset + model%pending(2), c_int), int(model%pending(3), c_int), &
          int(model%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
       do k = 1, size(log%monitors, 1)
-         log%monitors(k, log%count) = 0.0_wp
-         do i = int(first(k)), int(first(k + 1)) - 1
-            log%monitors(k, log%count) = log%monitors(k, log%count) + &
-               share(i) * (model%ua(equation(i)) + model%lambda * model%ub(equation(i)))
-            if (k == 1) model%slope = merge(0.0_wp, model%slope, i == first(1)) + share(i) * model%ub(equation(i))
-         end do
+         if (abs(ratio(k)) > 0.0_wp) then
+            slope = ratio(k) * model%work(3)
+            log%monitors(k, log%count) = ratio(k) * model%cross + model%lambda * slope
+         else
+            log%monitors(k, log%count) = 0.0_wp
+            slope = 0.0_wp
+            do i = int(first(k)), int(first(k + 1)) - 1
+               log%monitors(k, log%count) = log%monitors(k, log%count) + &
+                  share(i) * (model%ua(equation(i)) + model%lambda * model%ub(equation(i)))
+               slope = slope + share(i) * model%ub(equation(i))
+            end do
+         end if
+         log%monitors(k, log%count) = model%scale * log%monitors(k, log%count)
+         if (k == 1) model%slope = slope
       end do
    end subroutine record
+
+   !> w_i . (x + lambda y) over the entries of an event: dot_product would gather them in memory that it does not ask
+   !> for
+   pure function along(event, i, x, y, lambda) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp), intent(in) :: y(0:)
+      real(wp), intent(in) :: lambda
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * (x(event%index(k)) + lambda * y(event%index(k)))
+      end do
+   end function along
 
 end module sla_events

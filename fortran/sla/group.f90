@@ -74,12 +74,14 @@ module sla_group
       integer :: points = 0                !! of the group
       integer :: offset = 0                !! points of the groups before it
       integer :: directions = 2            !! crack directions of a point; a bar has one
+      logical :: slides = .false.          !! it has forces beside its stiffness, see origins
       type(material_options) :: options
    contains
       procedure(scan_interface), deferred :: scan
       procedure(damage_interface), deferred :: damage
       procedure(report_interface), deferred :: report
       procedure(state_interface), deferred :: state
+      procedure :: margin
       procedure :: origins
    end type point_group
 
@@ -163,6 +165,24 @@ module sla_group
    end interface
 
 contains
+
+   !> What a range of elements can bear before a point leaves its limits at one of the multipliers `lambda`: the
+   !> least sqrt(2 U) of the strain energies U [J] that a change of the displacements must bring into them.
+   !> For a component of the stress that has `slack` left at a point of volume w and stiffness D of that
+   !> component it is slack sqrt(w / D). Here for points of which nothing is known: they are looked at in each event.
+   pure subroutine margin(group, first, last, ua, ub, lambda, least)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda(:)
+      real(wp), intent(inout) :: least(:)     !! sqrt(2 U) by multiplier [J^1/2]
+      associate (unused_group => group%points, unused_first => first, unused_last => last, unused_a => ua, &
+         unused_b => ub, unused_load => lambda)
+      end associate
+      least = -1.0_wp
+   end subroutine margin
 
    !> Points whose stress is k d - k0 + h: add the forces of k0 and of -h, and the energy that k0 alone leaves
    pure subroutine origins(group, springs, held, energy)

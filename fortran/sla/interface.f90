@@ -112,6 +112,7 @@ contains
       group%points = 2 * n
       group%freedoms = 8
       group%directions = 1
+      group%slides = .true.
       group%options = options
       group%teeth = teeth
       group%law = law

@@ -11,19 +11,20 @@ module sla_model
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
    use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
       most_rank, report_rows
+   use sla_regions, only : region_tree, regions_new, regions_measure, regions_settled, regions_made_up
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
    implicit none
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
+   public :: model_displacements, model_settled
    public :: held_work, model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
    !> No tooth or change of a stored damage has a greater number
    real(wp), parameter :: most_damage = 1.0e8_wp
-   integer, parameter :: standing_values = 27   !! numbers that tell where the event loop stands
-   integer, parameter :: chunk = 128   !! elements scanned in one piece, whatever the threads
+   integer, parameter :: standing_values = 30   !! numbers that tell where the event loop stands
 
    type :: element_model
       integer :: stage = 0                               !! how far it is built, see sla_handle
@@ -40,16 +41,20 @@ module sla_model
       real(wp), allocatable :: value(:)
       type(c_ptr) :: handle = c_null_ptr
       integer(c_int64_t) :: factor_values = 0
-      integer, allocatable :: piece(:, :)                !! (3, pieces) group, first and last element of a scan
+      type(region_tree) :: tree                          !! what an event matters to
       real(wp), allocatable :: fa(:), fb(:)              !! (0:n) constant and reference load [N]
       real(wp), allocatable :: fo(:)                     !! (0:n) forces of origins that moved, see group [N]
       real(wp), allocatable :: fh(:, :)                  !! (0:n, 2) held forces, constant and per multiplier [N]
       real(wp) :: held(2) = 0.0_wp                       !! fh.u of the last state [J]
       real(wp) :: origin_energy = 0.0_wp                 !! [J]
-      real(wp), allocatable :: ua(:), ub(:)              !! (0:n) their displacements [m]
-      real(wp), allocatable :: z(:, :)                   !! (n, most_rank)
+      logical :: slides = .false.                        !! a group has origins: no region may wait
+      !> (0:n) displacements where the tree brought them up to date, see model_displacements [m]
+      real(wp), allocatable :: ua(:), ub(:)
+      real(wp), allocatable :: z(:, :)                   !! (n, 2)
       real(wp), allocatable :: force(:)                  !! (0:n) of the residual
-      type(scan_result), allocatable :: part(:)          !! limits of each piece
+      type(scan_result), allocatable :: part(:)          !! limits of each region
+      integer, allocatable :: list(:)                    !! regions looked at in this event
+      logical, allocatable :: wanted(:), watched(:)      !! regions to be brought in this event, in each event
       ! How the loop runs
       logical :: refactor = .false.                      !! factorise at each event, to compare
       integer :: threads = 1
@@ -59,6 +64,7 @@ module sla_model
       real(wp) :: lambda = 0.0_wp
       real(wp) :: noise = 0.0_wp                         !! stress under B that counts as none [Pa]
       real(wp) :: work(3) = 0.0_wp                       !! fa.ua, fa.ub, fb.ub of the last state [J]
+      real(wp) :: work_now(3) = 0.0_wp                   !! the same with the last damage applied [J]
       real(wp) :: cross = 0.0_wp                         !! fb.ua of the last state [J]
       real(wp) :: before(most_rank) = 0.0_wp             !! w.u before the last event
       real(wp) :: external = 0.0_wp                      !! [J]
@@ -74,6 +80,9 @@ module sla_model
       logical :: recorded = .false.                      !! the stage has a state to count energy from
       logical :: carried = .false.                       !! the work of the constant loads is counted already
       real(wp) :: lambda_recorded = 0.0_wp               !! of the last state
+      real(wp) :: scale = 1.0_wp                         !! of all loads, A too, in the state chosen; see stop_rules
+      real(wp) :: scale_recorded = 1.0_wp                !! of the last state
+      real(wp) :: lambda_held = 0.0_wp                   !! of the last state in equilibrium
       integer :: hot(2, 2) = 0                           !! group and point of the last upper and lower limit
    end type element_model
 
@@ -153,7 +162,7 @@ contains
       integer(c_int), intent(out) :: status
       integer(c_int64_t), allocatable :: order(:)
       integer(c_int), allocatable :: new(:)
-      integer :: n, i, e, g, info, pieces, k
+      integer :: n, i, e, g, info
 
       n = model%equations
       call build_pattern(model%holders, n, model%start, model%row, status)
@@ -173,7 +182,6 @@ contains
          model%equation(1, i) = new(model%equation(1, i))
          model%equation(2, i) = new(model%equation(2, i))
       end do
-      pieces = 0
       do g = 1, size(model%holders)
          associate (group => model%holders(g)%group)
             do e = 1, group%elements
@@ -181,7 +189,6 @@ contains
                   group%equation(i, e) = new(group%equation(i, e))
                end do
             end do
-            pieces = pieces + (group%elements + chunk - 1) / chunk
          end associate
       end do
       call build_pattern(model%holders, n, model%start, model%row, status)
@@ -192,26 +199,33 @@ contains
          status = status_too_large
          return
       end if
+      call regions_new(model%tree, model%handle, model%holders, n, status)
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
+         class is (point_group)
+            model%slides = model%slides .or. group%slides
+         end select
+      end do
+      ! Regions that were not measured are looked at in each event
+      if (status == status_ok .and. .not. (model%refactor .or. model%slides)) call regions_measure(model%tree, &
+         model%holders, model%xy, model%equation, model%factor, status)
+      if (status /= status_ok) return
       allocate (model%value(model%start(n + 1)), model%fa(0:n), model%fb(0:n), model%fo(0:n), model%fh(0:n, 2), &
          model%ua(0:n), model%ub(0:n), &
-         model%z(n, most_rank), model%force(0:n), model%piece(3, pieces), model%part(pieces), stat=info)
+         model%z(n, 2), model%force(0:n), model%part(size(model%tree%part)), model%list(size(model%tree%part)), &
+         model%wanted(size(model%tree%part)), model%watched(size(model%tree%part)), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
       end if
+      model%wanted = .false.
+      model%watched = .false.
       model%fa = 0.0_wp
       model%fb = 0.0_wp
       model%fo = 0.0_wp
       model%fh = 0.0_wp
       model%ua = 0.0_wp
       model%ub = 0.0_wp
-      k = 0
-      do g = 1, size(model%holders)
-         do e = 1, model%holders(g)%group%elements, chunk
-            k = k + 1
-            model%piece(:, k) = [g, e, min(e + chunk - 1, model%holders(g)%group%elements)]
-         end do
-      end do
    end subroutine model_prepare
 
    !> Assemble and factorise; names the node that is free to move
@@ -266,7 +280,31 @@ contains
       if (status /= status_ok) return
       model%ua(1:n) = model%z(:, 1)
       model%ub(1:n) = model%z(:, 2)
+      call model_settled(model)
    end subroutine model_solve
+
+   !> All displacements are known: what follows from them, and the tree takes them as its start
+   subroutine model_settled(model)
+      type(element_model), intent(inout) :: model
+      model%work_now = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), &
+         dot_product(model%fb, model%ub)]
+      call regions_settled(model%tree, model%ua, model%ub)
+   end subroutine model_settled
+
+   !> Displacements of the constant and the reference load as they are now
+   subroutine model_displacements(model, ua, ub, status)
+      type(element_model), intent(inout) :: model
+      real(wp), allocatable, intent(out) :: ua(:)      !! (0:n) [m]
+      real(wp), allocatable, intent(out) :: ub(:)      !! (0:n) per unit multiplier [m]
+      integer(c_int), intent(out) :: status
+      integer :: info
+      allocate (ua(0:model%equations), ub(0:model%equations), stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+      if (info /= 0) return
+      ua(:) = model%ua
+      ub(:) = model%ub
+      call regions_made_up(model%tree, model%handle, ua, ub, model%z, status)
+   end subroutine model_displacements
 
    !> Start a stage: constant load A and reference load B as nodal forces
    subroutine model_loads(model, load_a, load_b, carried, status)
@@ -293,6 +331,9 @@ contains
       if (status /= status_ok) return
       model%pending = 0
       model%lambda = 0.0_wp
+      model%lambda_held = 0.0_wp
+      model%scale = 1.0_wp
+      model%scale_recorded = 1.0_wp
       model%peak = 0.0_wp
       model%event%rank = 0
       model%hot = 0
@@ -325,7 +366,8 @@ contains
       values = [real(model%pending, wp), model%lambda, model%noise, model%work, model%external, model%dissipated, &
          model%cracked, model%first_compliance, model%peak, model%peak_displacement, model%slope, model%residual, &
          real(model%guard, wp), real(model%events, wp), merge(1.0_wp, 0.0_wp, model%recorded), &
-         merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4])]
+         merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4]), &
+         model%scale, model%scale_recorded, model%lambda_held]
    end function model_standing
 
    !> Go on from where an event loop stood, after its loads and its damage were set and the factor made: the
@@ -357,6 +399,9 @@ contains
       model%carried = values(22) > 0.5_wp
       model%lambda_recorded = values(23)
       model%hot = reshape(nint(values(24:27)), [2, 2])
+      model%scale = values(28)
+      model%scale_recorded = values(29)
+      model%lambda_held = values(30)
       model%event%rank = 0
       call model_solve(model, status)
       model%held = held_work(model, model%lambda_recorded)

@@ -79,6 +79,7 @@ module sla_plane
       procedure :: damage
       procedure :: report
       procedure :: state
+      procedure :: margin
       procedure :: refresh
       procedure :: table_of
    end type plane_group
@@ -415,6 +416,71 @@ contains
       end do
 
    end subroutine scan_point
+
+   !> See point_group: the same limits as scan_point
+   pure subroutine margin(group, first, last, ua, ub, lambda, least)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda(:)
+      real(wp), intent(inout) :: least(:)
+      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), sa(3), sb(3), share, f, fc
+      integer :: e, p, k
+
+      do e = first, last
+         if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
+         if (group%confinement(e) > 0.0_wp) then   ! crushing depends on both principal stresses
+            least = -1.0_wp
+            return
+         end if
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         do p = (e - 1) * group%rule%points + 1, e * group%rule%points
+            sa = stress_at(group, p, strain_at(group, e, p, la))
+            sb = stress_at(group, p, strain_at(group, e, p, lb))
+            if (group%cracked(p) == 0 .or. (group%options%cracking == isotropic .and. &
+                group%axis(e) == axis_free)) then
+               share = sqrt(group%weight(p) / group%stiff(1, p))
+               f = group%limit(1, p)
+               if (f < unbounded) then
+                  least = min(least, share * slack(f, 1.0_wp, sa, sb, lambda))
+                  fc = group%lateral(e)
+                  if (fc > 0.0_wp) least = min(least, share * &
+                     slack(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda))
+               end if
+               f = group%limit(3, p)
+               if (f < unbounded) least = min(least, share * slack(f, -1.0_wp, sa, sb, lambda))
+               cycle
+            end if
+            do k = 1, merge(1, 2, group%axis(e) /= axis_free)
+               share = sqrt(group%weight(p) / group%stiff(2 * k - 1, p))
+               f = group%limit(k, p)
+               if (f < unbounded) least = min(least, share * (f - sa(k) - lambda * sb(k)))
+               fc = group%limit(k + 2, p)
+               if (fc < unbounded) least = min(least, share * (fc + sa(k) + lambda * sb(k)))
+               if (.not. group%options%closure .or. group%tooth(k, p) == 1) cycle
+               if (group%shut(k, p) /= 0) then
+                  least = min(least, -share * (sa(k) + lambda * sb(k)))
+               else if (group%changes(k, p) < group%options%most_changes) then
+                  least = min(least, share * (sa(k) + lambda * sb(k)))
+               end if
+            end do
+         end do
+      end do
+
+   end subroutine margin
+
+   !> What r <= alpha - beta m has left; for |beta| <= 1 no more than the greater principal stress of a change uses it
+   pure function slack(alpha, beta, sa, sb, lambda) result(left)
+      real(wp), intent(in) :: alpha, beta        !! see sla_interval
+      real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
+      real(wp), intent(in) :: lambda(:)
+      real(wp) :: left(size(lambda))             !! [Pa]
+      left = alpha - beta * 0.5_wp * (sa(1) + sa(2) + lambda * (sb(1) + sb(2))) &
+         - sqrt(0.25_wp * (sa(1) - sa(2) + lambda * (sb(1) - sb(2)))**2 + (sa(3) + lambda * sb(3))**2)
+   end function slack
 
    !> Limits of an uncracked point under one criterion
    pure subroutine cone(alpha, beta, sa, sb, lambda, noise, p, code, found)

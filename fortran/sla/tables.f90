@@ -6,7 +6,7 @@ module sla_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: tooth_tables, tooth_tables_new
+   public :: tooth_tables, tooth_tables_new, tooth_tables_copy
 
    type :: tooth_tables
       integer, allocatable :: first(:)       !! (tables + 1) first tooth of each
@@ -76,6 +76,26 @@ contains
       teeth%modulus(:) = all_moduli(1:used)
       teeth%strength(:) = all_strengths(1:used)
    end subroutine tooth_tables_new
+
+   !> The tables again; an assignment would not tell where there is no memory for it
+   subroutine tooth_tables_copy(teeth, copy, status)
+      type(tooth_tables), intent(in) :: teeth
+      type(tooth_tables), intent(out) :: copy
+      integer(c_int), intent(out) :: status
+      integer :: info
+      status = status_ok
+      if (.not. allocated(teeth%first)) return
+      allocate (copy%first(size(teeth%first)), copy%modulus(size(teeth%modulus)), &
+         copy%strength(size(teeth%strength)), copy%band(size(teeth%band)), stat=info)
+      if (info /= 0) then
+         status = status_out_of_memory
+         return
+      end if
+      copy%first(:) = teeth%first
+      copy%modulus(:) = teeth%modulus
+      copy%strength(:) = teeth%strength
+      copy%band(:) = teeth%band
+   end subroutine tooth_tables_copy
 
    !> How many there are
    pure function tables(teeth) result(count)

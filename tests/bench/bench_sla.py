@@ -1,8 +1,9 @@
-"""Sequentially linear analysis: updating the factor against supernodal refactorisation at each event.
+"""Sequentially linear analysis: what an event takes against supernodal refactorisation at each event.
 
-Both run in compiled code with the same sweep over all points; the peer factorises and solves by CHOLMOD
-(supernodal, with BLAS). Wall of n x n Q4 elements with an opening, weight and a push at the top. Processor time
-of one thread each: a busy machine then disturbs neither.
+Both run in compiled code with the same criteria; ours changes the factor and looks at the regions that the event
+concerns, the peer factorises and solves by CHOLMOD (supernodal, with BLAS) and looks at all points. Wall of n x n Q4
+elements with an opening, weight and a push at the top. Processor time of one thread each: a busy machine then
+disturbs neither.
 """
 
 import os
@@ -62,7 +63,7 @@ class Wall:
 
 def against_refactorisation() -> None:
     """Time per event of both at four sizes, the largest difference of the loads, the growth with the size."""
-    print("\nsla: per event, one thread; update of the factor against supernodal refactorisation, same sweep")
+    print("\nsla: per event, one thread; update against supernodal refactorisation")
     print(
         f"{'equations':>10} {'update ms':>10} {'refactor ms':>12} {'ratio':>7} {'factor MB':>10} {'load difference':>16}"
     )

@@ -1,4 +1,4 @@
-/* The sparse factor on a grid of springs: solutions, rank-1 changes and events against the matrix itself. */
+/* The sparse factor on a grid of springs: solutions and changes against the matrix itself. */
 #include <assert.h>
 #include <math.h>
 #include <stdio.h>
@@ -54,7 +54,7 @@ static void change(int sign, int count, const int *index, const double *w) {
 
 int main(void) {
   int64_t order[n], values, weakest;
-  double ratio, b[2 * n], x[2 * n], z[n], full[n];
+  double ratio, b[2 * n], x[2 * n], both_z[2 * n], full[n];
   void *handle;
   for (int i = 0; i < n; i++) order[i] = i;
   assemble(order);
@@ -85,16 +85,47 @@ int main(void) {
   }
   assert(pair[0] >= 0);
   const double w[2] = {0.7, -0.7};
-  assert(extrados_sparse_rank1(handle, 1, 2, pair, w) == EXTRADOS_ok);
+  const int stiffer[1] = {1}, softer[1] = {-1};
+  double least, part[2 * n];
+  assert(extrados_sparse_change(handle, 1, stiffer, 2, pair, w, 0, NULL, NULL, &least) == EXTRADOS_ok);
+  assert(least == 1.0);
   change(1, 2, pair, w);
   memcpy(x, b, sizeof x);
   assert(extrados_sparse_solve(handle, 1, x) == EXTRADOS_ok && residual(x, b) < 1e-13);
-  assert(extrados_sparse_event(handle, 1, 2, pair, w, z) == EXTRADOS_ok);
-  memset(full, 0, sizeof full);
-  full[pair[0]] = w[0];
-  full[pair[1]] = w[1];
-  assert(residual(z, full) < 1e-14);
-  assert(extrados_sparse_rank1(handle, -1, 2, pair, w) == EXTRADOS_ok);
+  /* Two changes at once, one each way, and two right-hand sides that go forward on the way and backward after. */
+  const int both[2] = {1, -1};
+  const double two[4] = {0.2, 0.5, 0.3, -0.4}, load[4] = {1.0, 2.0, -1.0, 0.5};
+  for (int i = 0; i < 2 * n; i++) part[i] = 1e3; /* what lies off the path is not read */
+  assert(extrados_sparse_change(handle, 2, both, 2, pair, two, 2, load, part, &least) == EXTRADOS_ok);
+  assert(least > 0.5 && least < 1.0);
+  change(1, 2, pair, two);
+  change(-1, 2, pair, two + 2);
+  int64_t blocks;
+  const int64_t *column, *begin, *rows;
+  extrados_sparse_tree(handle, &blocks, &column, &begin, &rows);
+  assert(column[0] == 0 && column[blocks] == n && begin[0] == 0);
+  for (int64_t s = blocks - 1; s >= 0; s--) {
+    assert(rows[begin[s]] == column[s]);
+    /* A block is on the path where it holds one of the pair, or a block below it hands over to it. */
+    int on = 0;
+    for (int i = 0; i < 2; i++)
+      for (int64_t at = pair[i]; at >= 0 && !on;) {
+        int64_t t = 0;
+        while (column[t + 1] <= at) t++;
+        on = t == s;
+        int64_t next = begin[t] + column[t + 1] - column[t];
+        at = next < begin[t + 1] ? rows[next] : -1;
+      }
+    for (int v = 0; v < 2; v++)
+      for (int64_t j = column[s]; j < column[s + 1]; j++) both_z[v * n + j] = on ? part[v * n + j] : 0.0;
+    assert(extrados_sparse_backward(handle, s, s, 2, both_z) == EXTRADOS_ok);
+  }
+  for (int v = 0; v < 2; v++) {
+    memset(full, 0, sizeof full);
+    for (int i = 0; i < 2; i++) full[pair[i]] = load[2 * v + i];
+    assert(residual(both_z + v * n, full) < 1e-14);
+  }
+  assert(extrados_sparse_change(handle, 1, softer, 2, pair, w, 0, NULL, NULL, &least) == EXTRADOS_ok);
   change(-1, 2, pair, w);
   memcpy(x, b, sizeof x);
   assert(extrados_sparse_solve(handle, 1, x) == EXTRADOS_ok && residual(x, b) < 1e-13);
@@ -102,7 +133,7 @@ int main(void) {
   /* What is not definite, and what is no number, is refused. */
   const double strong[1] = {3.0};
   const int one[1] = {n / 2};
-  assert(extrados_sparse_rank1(handle, -1, 1, one, strong) == EXTRADOS_not_positive_definite);
+  assert(extrados_sparse_change(handle, 1, softer, 1, one, strong, 0, NULL, NULL, &least) == EXTRADOS_not_positive_definite);
   value[start[n - 1]] = -1.0;
   assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_not_positive_definite);
   value[start[n - 1]] = NAN;
@@ -111,7 +142,9 @@ int main(void) {
   assert(extrados_sparse_factor(handle, value, &ratio, &weakest) == EXTRADOS_ok);
   x[3] = INFINITY;
   assert(extrados_sparse_solve(handle, 1, x) == EXTRADOS_not_finite);
-  assert(extrados_sparse_rank1(handle, 2, 1, one, strong) == EXTRADOS_invalid_argument);
+  const int wrong[1] = {2};
+  assert(extrados_sparse_change(handle, 1, wrong, 1, one, strong, 0, NULL, NULL, &least) == EXTRADOS_invalid_argument);
+  assert(extrados_sparse_backward(handle, 0, blocks, 1, x) == EXTRADOS_invalid_argument);
   extrados_sparse_free(&handle);
   extrados_sparse_free(&handle);
   assert(!handle);

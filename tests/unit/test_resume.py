@@ -207,7 +207,7 @@ main()
 #: Batches after which a run is killed, where two are too few to come to what is tried: the second curve, the last
 #: searches of a sweep, the shortest durations after the rounds of the map
 KEEPS = {
-    "sla, one curve of each sense": 3,
+    "sla, one curve of each sense": 4,
     "sweep, its changes and optimum": 3,
     "failure-domain at amplitudes": 5,
     "generated motions": 4,
@@ -300,6 +300,53 @@ def test_interrupted_and_resumed(kind: str, tmp_path: Path, monkeypatch: pytest.
     (whole,) = run_analyses(Context(deck))
     assert resumed.status == whole.status == "ok" and resumed.answer == whole.answer
     assert kept <= set(folder_of(out).glob("*/*.npz")) and again
+
+
+#: Its weight cracks the wall many times before the push begins
+HEAVY = (
+    WALL.replace("density = 2000", "density = 2500").replace(
+        'value = "0.2 MPa" }]', 'value = "0.1 MPa" }, { kind = "point", x = 0.5, y = 0.5, fx = "9 kN" }]'
+    )
+    + """
+events = 2000
+ripple = 0.012
+mesh.size = "0.05 m"
+"""
+)
+
+
+@pytest.mark.parametrize("kept", [1, 2])
+def test_constant_loads_are_not_brought_on_again(kept: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stopped on their way (after 1000 events) or after it: what was done stays done, and the end has the same bits."""
+    deck = make_deck(tomllib.loads(HEAVY))
+    runs: list[int] = []
+    real, run = Checkpoint.keep, core.Model.run
+
+    def keep(self, *args):
+        runs.append(0)
+        if len(runs) == kept:
+            calls._ask()
+        return real(self, *args)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(Checkpoint, "keep", keep)
+        (stopped,) = run_analyses(Context(deck, out=tmp_path / "run"))
+    assert stopped.status == "interrupted" and stopped.results["events"] == 0
+    done = []
+
+    def counted(self, *args, **keywords):
+        found = run(self, *args, **keywords)
+        done.append(len(found))
+        return found
+
+    (whole,) = run_analyses(Context(deck))
+    with monkeypatch.context() as patch:
+        patch.setattr(core.Model, "run", counted)
+        (resumed,) = run_analyses(Context(deck, out=tmp_path / "run", resume=True))
+    before = whole.results["events_of_constant_loads"] + 1
+    assert sum(done) <= whole.results["events"] + 100 + (before - 1000 if kept == 1 else 0)
+    for name, array in whole.arrays.items():
+        assert np.asarray(array.data).tobytes() == np.asarray(resumed.arrays[name].data).tobytes(), name
 
 
 def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:

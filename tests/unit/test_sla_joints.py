@@ -119,6 +119,22 @@ def test_the_load_of_limit_analysis_with_friction(kind: str, friction: float, be
     assert (1.0 - below) * limit < found.results["peak_acceleration_g"] < (1.0 + above) * limit
 
 
+def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
+    """Forces that friction holds go with the change of the factor; all regions are looked at."""
+    update, refactor = (
+        capacity(STRUCTURES["brickwork"], 0.7, "sla", events=60, algorithm=name) for name in ("update", "refactor")
+    )
+    for name in ("event_point", "event_code"):
+        assert (update[name] == refactor[name]).all()
+    for name in ("event_load", "event_displacement"):
+        np.testing.assert_allclose(update[name], refactor[name], rtol=1e-6)
+
+
+@pytest.mark.parametrize("options", [{"solution": "incremental"}, {"without_equilibrium": "proportional"}])
+def test_variants_do_not_take_joints_that_slide(options) -> None:
+    assert "joints that slide" in capacity(STRUCTURES["block"], 0.7, "sla", **options).reason
+
+
 def test_no_sliding_keeps_what_hinges() -> None:
     found = capacity(STRUCTURES["brickwork"], "no-sliding", "sla")
     assert found.results["peak_acceleration_g"] == pytest.approx(1.5, rel=1e-4)

@@ -49,7 +49,7 @@ def test_mesh_files_agree_with_the_built_in_mesh(tmp_path, name, clockwise) -> N
     data["analysis"][0]["mesh"] = {"lines_y": [0.225, 0.45, 0.675], "size": 0.2}
     built = run_deck(data)
     assert found.results["elements"] == built.results["elements"] == 24
-    assert found.results["peak_load_N"] == pytest.approx(built.results["peak_load_N"], rel=1e-6)
+    assert found.results["greatest_load_N"] == pytest.approx(built.results["greatest_load_N"], rel=1e-6)
 
 
 def test_bad_mesh_files(tmp_path) -> None:
@@ -97,8 +97,12 @@ def test_outline_from_a_drawing(tmp_path) -> None:
 
 def test_repetitions_give_a_band() -> None:
     """Random meshes and strengths: another seed is another wall, the same seed the same."""
-    data = wall(events=60, seeds=[4, 9], strength_variation=0.2, strength_length=0.5)
+    data = wall(0.3, events=60, seeds=[4, 9], strength_variation=0.2, strength_length=0.5)
     data["analysis"][0]["mesh"] |= {"element": "T3", "pattern": "random"}
+    rising = run_deck(data)
+    assert "scatter" not in rising.results and rising["scatter_load"].shape[0] == 2
+    assert any("did not pass a peak" in text and "seeds 4, 9" in text for text in rising.warnings)
+    data["analysis"][0] |= {"events": 4000, "stop_fraction": 0.8}
     scatter = run_deck(data)
     peaks = scatter.results["scatter"]["peak_loads_N"]
     assert peaks[0] != peaks[1]
@@ -167,6 +171,20 @@ def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
     moved = wall(events=5, resume_from=str(out))
     moved["structure"]["width"] = 3.01
     assert "lie up to" in run_deck(moved).reason
+    for words, change in {
+        "other stiffness": {"young": 7e9}, "other tensile laws": {"tensile_strength": 0.25e6},
+        "other crushing laws": {"compressive_strength": 3e6, "crushing_energy": 5e3},
+    }.items():  # fmt: skip
+        other = wall(events=5, resume_from=str(out))
+        other["material"] |= change
+        found = run_deck(other)
+        assert (found.status, words in found.reason) == ("refused", True), found.reason
+    for words, change in {
+        "other tensile laws": {"ripple": 0.1}, "other ways of cracking": {"shear_retention": 0.1}
+    }.items():  # fmt: skip
+        found = run_deck(wall(events=5, resume_from=str(out)) | {"analysis": [
+            wall(events=5, resume_from=str(out))["analysis"][0] | change]})  # fmt: skip
+        assert (found.status, words in found.reason) == ("refused", True), found.reason
 
 
 def test_a_wall_that_cannot_crack(tmp_path) -> None:

@@ -314,19 +314,25 @@ class Model(Owner):
         )
         check(status, "loads")
 
-    def run(self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None) -> Events:
-        """Up to `room` events; the last one recorded is chosen but not applied until the next call."""
+    def run(
+        self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None, *, proportional: bool = False
+    ) -> Events:
+        """Up to `room` events; the last one recorded is chosen but not applied until the next call.
+
+        proportional: where no multiplier suits all points all loads of the last state in equilibrium go down together
+        (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides.
+        """
         stop = stop or Stop()
         if room < 1 or not monitors:
             raise ValueError("a run needs room for an event, and a monitor")
-        room_for(13 + len(monitors), room)
+        room_for(14 + len(monitors), room)
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
         direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
         limits = [min(stop.load, huge), min(stop.displacement, huge), stop.fraction, stop.compliance]
         counts, reals, ints, watched, cracked, status = long_call(
-            _core.api_sla.run, self.handle, int(room), real("stop", limits, (4,)), int(stop.refuse_overload), first,
+            _core.api_sla.run, self.handle, int(room), real("stop", limits, (4,)), int(stop.refuse_overload), int(proportional), first,
             _rows(node, direction), real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
         interrupted = status == status_code("cancelled")
@@ -334,13 +340,23 @@ class Model(Owner):
             check(status, "events")
         count, checks, solutions, factors, reason = (int(k) for k in counts)
         reals, ints = reals[:, :count].copy(), ints[:, :count].copy()
-        load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual = reals
+        load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale = reals
         return Events(
-            load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual,
+            load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale,
             point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
             monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
             interrupted=interrupted, crack_total=float(cracked),
         )  # fmt: skip
+
+    def relax(self, load: float) -> tuple[int, float]:
+        """One iteration of an incremental analysis: in each element the most overloaded point loses a tooth, all at
+        once, and all is solved anew; how many did, and the crack energy so far [J]. FreeNode of a mechanism.
+        """
+        damaged, cracked, status = long_call(_core.api_sla.relax, self.handle, float(load))
+        if status == status_code("not_positive_definite"):
+            raise FreeNode(-1, "x", 0.0)
+        check(status, "overloaded points")
+        return int(damaged), float(cracked)
 
     def displacement(self, load: float) -> np.ndarray:
         """Displacements (nodes, 2) [m] under constant + load * reference."""
@@ -402,7 +418,7 @@ class Model(Owner):
         Whoever goes on from the same two gets the same bits, after whatever history. Raises FreeNode.
         """
         self.set_damage(damage)
-        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (27,))), "stored events")
+        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (30,))), "stored events")
 
 
 def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:

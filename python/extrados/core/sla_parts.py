@@ -211,7 +211,8 @@ class Events:
     """What was recorded, one row per event; n_* before the damage of that event is done.
 
     load: multiplier; limit_t, limit_c: least upper and greatest lower limit; stored, external, dissipated
-    (path), crack (area of the teeth) energies [J]; compliance fB.uB; residual of the last guard check.
+    (path), crack (area of the teeth) energies [J]; compliance fB.uB; residual of the last guard check; scale of all
+    loads, below 1 where they went down together.
     point (0-based), code (see EVENTS), equilibrium; monitors (events, monitors) [m].
     """
 
@@ -224,6 +225,7 @@ class Events:
     crack: np.ndarray
     compliance: np.ndarray
     residual: np.ndarray
+    scale: np.ndarray
     point: np.ndarray
     code: np.ndarray
     number: np.ndarray

@@ -73,6 +73,10 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             grid, rows = get("scatter_displacement") * 1e3, get("scatter_load") / 1e3
             ax.fill_between(grid, rows.min(axis=0), rows.max(axis=0), color="#dfe7ef", label=f"{len(rows)} repetitions")
             ax.plot(grid, rows.mean(axis=0), color="#7b93ab", linestyle=":", label="their mean")
+        for other in _incremental(run, name):
+            at, load = (run.array(other, f"event_{n}") for n in ("displacement", "load"))
+            ax.plot(at * 1e3, load / 1e3, "o-", color="#8a8a8a", markersize=3, linewidth=0.8,
+                    label=f"incremental, {run[other].stop}")  # fmt: skip
         if "measured_displacement" in run.arrays[name]:
             test = get("measured_displacement") * 1e3
             least, greatest = get("measured_least") / 1e3, get("measured_greatest") / 1e3
@@ -120,8 +124,15 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
-            "Load against displacement: every event (thin), the monotone envelope and its bilinear idealisation."
+            "Load against displacement: every event (thin), the monotone envelope and its bilinear idealisation; grey, the "
+            "steps of an incremental solution of the same deck, if there is one."
         )
+
+
+def _incremental(run: Stored, name: str) -> list[str]:
+    """The incremental analyses of the same run, to be drawn behind a curve of events."""
+    steps = [n for n, a in run.arrays.items() if "event_scale" in a and (run.array(n, "event_point") < 0).any()]
+    return [] if name in steps else steps
 
 
 def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
@@ -134,7 +145,7 @@ def _peak_state(run: Stored, name: str, prefix: str) -> list[int]:
 def _peak(run: Stored, name: str, prefix: str) -> int:
     """The state at the peak, or of the greatest load where that was not kept."""
     numbers = run[name].get("minus", {}) if prefix else run[name]
-    there = np.flatnonzero(run.array(name, f"{prefix}state_event") == numbers.get("peak_event"))
+    there = np.flatnonzero(run.array(name, f"{prefix}state_event") == numbers.get("greatest_load_event"))
     return int(there[0]) if len(there) else int(run.array(name, f"{prefix}state_load").argmax())
 
 

@@ -21,14 +21,29 @@ class Bilinear(ResultModel):
     ductility: float = fact("ultimate over yield displacement")
 
 
+class Makeup(ResultModel):
+    """Fingerprints of what a stored damage rests on; a run goes on from another with the same ones alone."""
+
+    stiffness: str = fact("of moduli, Poisson's ratios, thicknesses and elements")
+    tension: str = fact("of the tensile laws with their teeth and crack bands")
+    compression: str = fact("of the crushing laws with their teeth and crack bands")
+    cracking: str = fact("of the options of cracking")
+
+
 class SlaCurve(ResultModel):
     """The events of one sense of the load."""
 
     sense: Literal["+", "-"] = fact("sense of the reference loads")
-    peak_load_N: float | None = fact("greatest load in equilibrium; null where there is none", "N")
-    peak_displacement_m: float | None = fact("control displacement at it", "m")
+    peak_load_N: float | None = fact(
+        "greatest load in equilibrium, where the load fell after it or the wall became a mechanism under it; else null",
+        "N",
+    )
+    peak_displacement_m: float | None = fact("control displacement at the peak", "m")
     displacement_of_constant_loads_m: float = fact("control displacement under the constant loads alone", "m")
-    peak_event: int | None = fact("event of the greatest load, from 1")
+    peak_event: int | None = fact("event of the peak, from 1")
+    greatest_load_N: float | None = fact("greatest load in equilibrium, a peak or not; null where there is none", "N")
+    greatest_load_displacement_m: float | None = fact("control displacement at the greatest load", "m")
+    greatest_load_event: int | None = fact("event of the greatest load, from 1")
     first_event_load_N: float | None = fact("load of the first event", "N")
     events: int = fact("events of this run")
     events_before_resume: int = fact("events of the runs that this one goes on from")
@@ -55,9 +70,10 @@ class SlaCurve(ResultModel):
     probe_loads_N: list[float | None] = maybe("load of the envelope at the probed displacements; null beyond it", "N")
     initial_stiffness_N_m: float = maybe("stiffness before the first event", "N/m")
     peak_acceleration_g: float | None = maybe(
-        "the greatest load as a horizontal acceleration, where the load is an acceleration of the masses", "g"
+        "the peak as a horizontal acceleration, where the load is an acceleration of the masses", "g"
     )
-    bilinear: Bilinear = maybe("idealisation of the envelope, where it has a rising branch")
+    greatest_acceleration_g: float | None = maybe("the greatest load as a horizontal acceleration, likewise", "g")
+    bilinear: Bilinear = maybe("idealisation of the envelope, where it has a rising branch and passed its peak")
 
 
 class Scatter(ResultModel):
@@ -94,6 +110,7 @@ class Sla(SlaCurve, KindResults):
     elements: int = fact("elements of the mesh")
     equations: int = fact("equations")
     points: int = fact("integration points, those of bars too")
+    makeup: Makeup = maybe("what resume_from compares")
     minus: SlaCurve = maybe("the curve of the second sense")
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
@@ -102,10 +119,20 @@ class Sla(SlaCurve, KindResults):
     def judged(self, demand: Demand) -> Verdict:
         """The lesser peak of the two senses: an acceleration [g], or a load [N] that the deck does not ask for."""
         curves = [c for c in (self, self.minus) if c is not None]
-        borne = [abs(c.peak_acceleration_g) for c in curves if c.peak_acceleration_g is not None]
-        if len(borne) == len(curves):
-            return acceleration(min(borne), demand)
-        peaks = [c.peak_load_N for c in curves if c.peak_load_N is not None]
-        if not peaks:
+        if any(c.greatest_load_N is None for c in curves):
             return judge(f"No greatest load was found; the run ended by: {self.stop}.", None, None, "N")
-        return judge(f"The building bears {min(peaks) / 1e3:.4g} kN of the growing load.", None, min(peaks), "N")
+        least = min(curves, key=lambda c: c.greatest_load_N or 0.0)
+        reached, load = least.greatest_acceleration_g, f"{(least.greatest_load_N or 0.0) / 1e3:.4g} kN"
+        if any(c.peak_load_N is None for c in curves):
+            text = f"The load has reached {load} without a peak; what the building bears is not known"
+            if reached is None or demand.peak_g is None:
+                return judge(f"{text}.", None, None, "N" if reached is None else "g")
+            if demand.peak_g < reached:
+                return acceleration(reached, demand)
+            return judge(
+                f"{text}; the motion asks for {demand.peak_g:.3g} g, {reached:.3g} g were reached.",
+                demand.peak_g, None, "g", "open",
+            )  # fmt: skip
+        if reached is not None:
+            return acceleration(abs(reached), demand)
+        return judge(f"The building bears {load} of the growing load.", None, least.greatest_load_N, "N")

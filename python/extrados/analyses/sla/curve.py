@@ -7,6 +7,8 @@ import numpy as np
 #: Displacements at which an envelope is given, and at most as many points: with the peak and the start
 BINS = 400
 MOST_ENVELOPE = BINS + 2
+#: A peak was passed where the last tenth of the envelope's way lies this much below it
+LAST, FALLEN = 0.1, 0.02
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,12 @@ def envelope(
     np.maximum.at(best, at, p[segment] + share * (p[segment + 1] - p[segment]))
     kept = np.isfinite(best)
     return grid[kept] + turn * start, best[kept]
+
+
+def fallen(d: np.ndarray, p: np.ndarray) -> bool:
+    """Does an envelope end below its peak for good, not only by a tooth?"""
+    end = p[np.abs(d - d[0]) >= (1.0 - LAST) * abs(d[-1] - d[0])]
+    return bool(end.max() < (1.0 - FALLEN) * p.max())
 
 
 def bilinear(d: np.ndarray, p: np.ndarray) -> Bilinear | None:

@@ -9,7 +9,7 @@ from extrados.analyses.sla.measured import arrays, compare, read_measured
 from extrados.analyses.sla.measures import joint_openings, numbers_of, tooth_counts
 from extrados.analyses.sla.model import SlaModel, build, strength_factors
 from extrados.analyses.sla.repetitions import repeat
-from extrados.analyses.sla.resume import carry_on, start_of
+from extrados.analyses.sla.resume import carry_on, makeup, start_of
 from extrados.analyses.sla.stored import curve_arrays, field_files, mesh_arrays, sections
 from extrados.analyses.sla.tables import Sla
 from extrados.analyses.sla.words import answer_of_stones, answer_of_wall
@@ -65,12 +65,18 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         "elements": model.mesh.elements(),
         "equations": first.equations,
         "points": first.points,
+        "makeup": makeup(model),
     }
     for curve in curves[1:]:
         numbers["minus"] = numbers_of(model, options, curve)
     for curve in curves:
         result.warnings += curve.warnings
         events, sense = curve.events, f" (load to {curve.sense})"
+        if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
+            result.warnings.append(
+                f"the load{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; its "
+                f"greatest value, {events.load[curve.peak] * model.unit:.4g} N, is no capacity"
+            )
         if len(events) and events.load[0] < 0.0:
             result.warnings.append(
                 f"the first event{sense} has a negative load, {events.load[0] * model.unit:.4g} N: the constant loads "
@@ -85,5 +91,5 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         numbers["hinges"] = joint_openings(result, model, first)
         result.answer = answer_of_stones(numbers, len(curves) > 1, model.slides)
     else:
-        result.answer = answer_of_wall(numbers, len(curves) > 1)
+        result.answer = answer_of_wall(numbers, len(curves) > 1, "event" if options.solution == "events" else "step")
     return numbers

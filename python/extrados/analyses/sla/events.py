@@ -13,10 +13,12 @@ import numpy as np
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.contact import settle
-from extrados.analyses.sla.curve import envelope
+from extrados.analyses.sla.curve import envelope, fallen
+from extrados.analyses.sla.incremental import run_incremental
 from extrados.analyses.sla.kept import State, UnderWay
-from extrados.analyses.sla.model import SlaModel
+from extrados.analyses.sla.model import MECHANISM, MECHANISM_OF_STONES, SlaModel
 from extrados.analyses.sla.tables import Sla
+from extrados.core import lists
 from extrados.core import sla as core
 from extrados.core.errors import CoreError, status_code
 from extrados.core.sla import EVENT
@@ -29,6 +31,9 @@ GRID = 100
 #: Events beyond the peak's number among which its load is looked for, where it comes in another order
 MORE = 30
 NOTHING = np.zeros(0)
+STRAINS_AND_STRESSES = core.REPORT[:6]
+#: How a run ends whose load fell below `stop_fraction` of its peak, further on than there
+FELL = core.STOPS[next(entry.number for entry in lists.entries("sla_stop") if entry.name == "fraction")]
 
 
 @dataclass
@@ -47,6 +52,8 @@ class Curve:
     points: int = 0
     events_before: int = 0  # of the runs that this one goes on from
     before: float = 0.0  # control displacement of the constant loads alone, in the sense of the load [m]
+    most_compliance: float = np.inf  # beyond it only the floor of the stiffness carries
+    stones: bool = False  # of joints that open without teeth
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
 
     @property
@@ -55,14 +62,24 @@ class Curve:
 
     def envelope(self, unit: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and loads [N] of the envelope; it begins at the constant loads' displacement."""
-        fine = self.events.equilibrium
+        fine = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
         return envelope(self.events.monitors[fine, 0], self.events.load[fine] * unit, self.before)
 
     @property
     def peak(self) -> int:
-        """The event of the greatest load in equilibrium; -1 where there is none."""
-        load = np.where(self.events.equilibrium, self.events.load, -np.inf)
+        """The event of the greatest load in equilibrium, passed or not; -1 where there is none."""
+        carried = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
+        load = np.where(carried, self.events.load, -np.inf)
         return int(load.argmax()) if len(load) and np.isfinite(load.max()) else -1
+
+    def passed(self, unit: float) -> bool:
+        """Was the greatest load a peak: did the load fall after it, or the wall become a mechanism under it?"""
+        if self.peak < 0:
+            return False
+        ended = ("mechanism", FELL, "no point limits the load") if self.stones else ("mechanism", FELL)
+        if self.events.reason in ended:
+            return True
+        return fallen(*self.envelope(unit))
 
 
 def run_curves(
@@ -75,8 +92,14 @@ def run_curves(
 ) -> list[Curve]:
     """The curves of all senses of B, each from the state that A leaves (or from a stored damage).
 
-    chain: where the states of the curve of a sense, +1 or -1, are kept on its way; none are without it.
+    chain: where the states of the curve of a sense, +1 or -1, are kept on its way, and of 0, of the constant loads;
+    none are without it.
     """
+    if model.slides and (options.solution == "incremental" or options.without_equilibrium == "proportional"):
+        raise Refused(
+            "joints that slide keep forces that neither an incremental solution nor loads that go down together can "
+            'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload'
+        )
     curves = []
     with model.open(options, threads) as core_model:
         stage_a, warnings, rubs = None, [], False
@@ -87,27 +110,25 @@ def run_curves(
                 )
             core_model.set_damage(damage)
         else:
-            rubs = settle(core_model, model, options, warnings)
-        # Friction was found under the whole of A, and does not hold under a part of it
-        if damage is None and not rubs and options.constant_damage and np.any(model.constant):
-            stage_a = _constant_stage(core_model, model, options, progress)
-        if stage_a is not None and len(stage_a):
-            core_model.end_stage(float(stage_a.load[-1]))
+            stage_a, rubs = _start(core_model, model, options, progress, warnings, chain and chain(0))
         start = core_model.damage()
         ledger, events = _totals(stage_a)
         for number, sense in enumerate(options.directions):
             sign = 1 if sense == "+" else -1
-            if number:
+            if number or stage_a is not None:  # a new factor: a run that is resumed here has one too
                 core_model.set_damage(start)
             core_model.loads(
                 model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger
             )
             watch = model.control
             before = sign * float(watch.share @ core_model.displacement(0.0)[watch.node, watch.direction])
-            curve = _reference_stage(
-                core_model, model, options, sign, progress, bool(stage_a is None and damage is None and not rubs),
-                chain and chain(sign),
-            )  # fmt: skip
+            if options.solution == "incremental":
+                curve = _incremental_stage(core_model, model, options, sign, progress)
+            else:
+                curve = _reference_stage(
+                    core_model, model, options, sign, progress,
+                    bool(stage_a is None and damage is None and not rubs), chain and chain(sign),
+                )  # fmt: skip
             curve.stage_a, curve.before = stage_a, before
             curve.damage_start = start
             curve.warnings += warnings if not number else []
@@ -123,26 +144,70 @@ def _totals(stage: core.Events | None) -> tuple[tuple[float, float, float], int]
     return (float(stage.external[-1]), float(stage.dissipated[-1]), float(stage.crack[-1])), int(stage.number[-1])
 
 
-def _constant_stage(
-    core_model: core.Model, model: SlaModel, options: Sla, progress: Callable[[float, float, str], None]
-) -> core.Events:
-    """Bring the constant loads from 0 to 1, with damage where they ask for it."""
+def _start(
+    core_model: core.Model,
+    model: SlaModel,
+    options: Sla,
+    progress: Callable[[float, float, str], None],
+    warnings: list[str],
+    chain: Chain | None,
+) -> tuple[core.Events | None, bool]:
+    """The constant loads are on: which dry joints touch and slide, and the events until then, None where there are none.
+
+    True where joints can slide: their friction was found under the whole of A and does not hold under a part of it.
+    """
+    kept = None if chain is None or chain.state is None else chain.state[1]
+    if kept is None:
+        rubs = settle(core_model, model, options, warnings)
+        if rubs or not options.constant_damage or not np.any(model.constant):
+            return None, rubs
+    way = UnderWay((core_model.damage(), 0)) if kept is None else UnderWay.of(kept)
+    if kept is not None and not len(kept["standing"]):  # they were on already
+        core_model.set_damage(kept["damage"])
+        return core.Events.join(way.parts), False
     core_model.loads(np.zeros_like(model.constant), model.constant)
-    parts, done = [], 0
+    if kept is not None:
+        core_model.renew(kept["damage"], kept["standing"])
+    events = _constant_stage(core_model, model, options, progress, way, chain)
+    if len(events):
+        core_model.end_stage(float(events.load[-1]))
+    if chain is not None and not events.interrupted:
+        chain.keep(len(events), way.arrays(core_model.damage(), NOTHING))
+    return events, False
+
+
+def _constant_stage(
+    core_model: core.Model,
+    model: SlaModel,
+    options: Sla,
+    progress: Callable[[float, float, str], None],
+    way: UnderWay,
+    chain: Chain | None,
+) -> core.Events:
+    """Bring the constant loads from 0 to 1, with damage where they ask for it; the state is kept on the way."""
+    begin = len(way.parts)
     stop = core.Stop(load=1.0, compliance=model.mechanism_ratio)
     while True:
-        part = core_model.run(min(500, options.events - done), [model.control], stop)
-        parts.append(part)
-        done += len(part)
-        progress(done, options.events, f"constant loads, event {done}")
-        if part.reason or part.interrupted or done >= options.events:
+        if way.done % KEPT == 0 and len(way.parts) > begin:
+            damage, standing = core_model.damage(), core_model.standing()
+            try:
+                core_model.renew(damage, standing)
+            except core.FreeNode:
+                way.parts[-1].reason = "mechanism"
+                break
+            if chain is not None:
+                chain.keep(way.done, way.arrays(damage, standing))
+        part = core_model.run(min(500, options.events - way.done), [model.control], stop)
+        way.parts.append(part)
+        progress(way.done, options.events, f"constant loads, event {way.done}")
+        if part.reason or part.interrupted or way.done >= options.events:
             break
-    events = core.Events.join(parts)
+    events = core.Events.join(way.parts)
     if events.reason == "no point limits the load":
         return events  # nothing can crack under A: it is carried
     if events.reason != "target load" and not events.interrupted:
         most = float(events.load.max()) if len(events) else 0.0
-        why = events.reason or f"{done} events were not enough"
+        why = events.reason or f"{way.done} events were not enough"
         raise Refused(
             f"the constant loads are not carried: with damage the wall reaches {100 * most:.3g} % of them ({why})"
         )
@@ -172,6 +237,8 @@ def _reference_stage(
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
     before = way.seconds
+    proportional = options.without_equilibrium == "proportional"
+    floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     while (done := way.done) < options.events:
         if done % KEPT == 0 and done:
@@ -193,7 +260,7 @@ def _reference_stage(
             room = min(room, ahead[0] + 1 - done)
         clock = time.perf_counter()
         try:
-            part = core_model.run(room, [model.control], stop)
+            part = core_model.run(room, [model.control], stop, proportional=proportional)
         except CoreError as error:
             if error.status != status_code("beyond_strength"):
                 raise
@@ -204,14 +271,15 @@ def _reference_stage(
         spent = time.perf_counter() - clock
         way.parts.append(part)
         if len(part):
-            load = np.where(part.equilibrium, part.load, -np.inf)
+            most = floor * way.parts[0].compliance[0]
+            load = np.where(part.equilibrium & (part.compliance <= most), part.load, -np.inf)
             if part.reason == "mechanism" and model.mesh.has_joints:
                 load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
         done += len(part)
         if done and done - 1 in wanted:
-            way.states.append(_state(core_model, done - 1, float(part.load[-1])))
+            way.states.append(_state(core_model, done - 1, part))
         progress(done, options.events, f"event {done}, load {part.load[-1] * model.unit:.4g} N" if len(part) else "")
         if part.reason or part.interrupted or not len(part):
             break
@@ -224,15 +292,18 @@ def _reference_stage(
         events.equilibrium[-1] = False
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
+    curve.stones = model.mesh.has_joints
+    if len(events):
+        curve.most_compliance = floor * float(events.compliance[0])
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before
         if events.reason != "mechanism" or (collapsed and not model.mesh.has_joints):
             curve.residual = core_model.residual()
         if not (done - 1 in wanted and states):
-            states.append(_state(core_model, len(events) - 1, float(events.load[-1])))
+            states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
         if peak >= 0 and peak not in {s.event for s in states} and not events.interrupted:
-            state = _replay(core_model, model, sign, events, peak, way.before_best)
+            state = _replay(core_model, model, sign, events, peak, way.before_best, proportional)
             if state is None:
                 curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
             else:
@@ -242,12 +313,45 @@ def _reference_stage(
     return curve
 
 
-def _state(core_model: core.Model, event: int, load: float) -> State:
-    return State(event, load, core_model.displacement(load), core_model.report(load), core_model.damage())
+def _incremental_stage(
+    core_model: core.Model,
+    model: SlaModel,
+    options: Sla,
+    sign: int,
+    progress: Callable[[float, float, str], None],
+) -> Curve:
+    """The same loads by the incremental peer; its last state is kept."""
+    begin = time.perf_counter()
+    events = run_incremental(core_model, model, options, sign, progress)
+    events.monitors *= sign
+    states = [_state(core_model, len(events) - 1, events)] if len(events) else []
+    curve = Curve(
+        events, None, states, NOTHING, core_model.damage(), time.perf_counter() - begin, sign, [],
+        core_model.equations, core_model.points, stones=model.mesh.has_joints,
+    )  # fmt: skip
+    if len(events):
+        curve.residual = core_model.residual()
+        curve.most_compliance = (MECHANISM_OF_STONES if curve.stones else MECHANISM) * float(events.compliance[0])
+    return curve
+
+
+def _state(core_model: core.Model, event: int, events: core.Events) -> State:
+    """The state of the last of some events, which has this number; with the part of the loads that is on."""
+    load, scale = float(events.load[-1]), float(events.scale[-1])
+    report = core_model.report(load)
+    if scale < 1.0:
+        report |= {name: scale * report[name] for name in STRAINS_AND_STRESSES}
+    return State(event, load, scale * core_model.displacement(load), report, core_model.damage())
 
 
 def _replay(
-    core_model: core.Model, model: SlaModel, sign: int, events: core.Events, event: int, before: tuple[np.ndarray, int]
+    core_model: core.Model,
+    model: SlaModel,
+    sign: int,
+    events: core.Events,
+    event: int,
+    before: tuple[np.ndarray, int],
+    proportional: bool,
 ) -> State | None:
     """The state of an event that has passed, run again from the damage kept before it."""
     damage, first = before
@@ -259,7 +363,7 @@ def _replay(
             core_model.renew(damage, core_model.standing_at(float(events.load[first - 1])))
 
     begin()
-    again = core_model.run(event - first + 1, [model.control], core.Stop())
+    again = core_model.run(event - first + 1, [model.control], core.Stop(), proportional=proportional)
     # Near a mechanism of stiff stones the last digits of the load, and so the order of events, depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
     away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
@@ -267,14 +371,14 @@ def _replay(
         return None
     if away[-1]:
         begin()
-        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop())
+        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop(), proportional=proportional)
         away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
         near = np.flatnonzero(~away & again.equilibrium)
         if not len(near):
             return None
         begin()
-        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop())
-    return _state(core_model, event, float(again.load[-1]))
+        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop(), proportional=proportional)
+    return _state(core_model, event, again)
 
 
 def damage_before(start: np.ndarray, end: np.ndarray, point: np.ndarray, code: np.ndarray) -> np.ndarray:

@@ -19,7 +19,8 @@ HINGE, WIDE = 0.9, 0.1
 
 def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     """Results of one curve; keys end in their unit."""
-    events, peak, unit = curve.events, curve.peak, model.unit
+    events, greatest, unit = curve.events, curve.peak, model.unit
+    peak = greatest if curve.passed(unit) else -1
     lost = np.flatnonzero(~events.equilibrium)
 
     def kinds(*names: str) -> np.ndarray:
@@ -28,7 +29,10 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     numbers: dict[str, Any] = {
         "sense": curve.sense,
         "peak_load_N": float(events.load[peak] * unit) if peak >= 0 else None,
-        **_acceleration(model, float(events.load[peak]) if peak >= 0 else None),
+        "greatest_load_N": float(events.load[greatest] * unit) if greatest >= 0 else None,
+        "greatest_load_displacement_m": float(events.monitors[greatest, 0]) if greatest >= 0 else None,
+        "greatest_load_event": greatest + 1 if greatest >= 0 else None,
+        **_acceleration(model, *(float(events.load[k]) if k >= 0 else None for k in (peak, greatest))),
         "peak_displacement_m": float(events.monitors[peak, 0]) if peak >= 0 else None,
         "displacement_of_constant_loads_m": curve.before,
         "peak_event": peak + 1 if peak >= 0 else None,
@@ -62,7 +66,7 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         numbers["probe_loads_N"] = reached
     if len(events):
         numbers["initial_stiffness_N_m"] = float(unit**2 / events.compliance[0])
-    idea = bilinear(d - d[0], p)  # from the state under the constant loads
+    idea = bilinear(d - d[0], p) if peak >= 0 else None  # from the state under the constant loads
     if idea is not None:
         numbers["bilinear"] = {
             "stiffness_N_m": idea.stiffness, "yield_load_N": idea.yield_load,
@@ -72,17 +76,21 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     return numbers
 
 
-def _acceleration(model: SlaModel, peak: float | None) -> dict[str, float | None]:
-    """The peak multiplier as an acceleration, where the reference load is one of masses alone."""
+def _acceleration(model: SlaModel, peak: float | None, greatest: float | None) -> dict[str, float | None]:
+    """Multipliers as accelerations, where the reference load is one of masses alone."""
     if model.acceleration is None:
         return {}
-    return {"peak_acceleration_g": None if peak is None else peak * model.acceleration / GRAVITY}
+    g = model.acceleration / GRAVITY
+    return {
+        "peak_acceleration_g": None if peak is None else peak * g,
+        "greatest_acceleration_g": None if greatest is None else greatest * g,
+    }
 
 
 def _residual(curve: Curve) -> float | None:
     """The greatest residual that was measured, by the guard or at the end; None where none was."""
     measured = [curve.residual] if curve.residual is not None else []
-    if curve.events.guard[0]:
+    if curve.events.guard[0] and len(curve.events):  # none where the run ended under the constant loads
         measured.append(float(curve.events.residual.max()))
     return max(measured, default=None)
 

@@ -42,6 +42,7 @@ class Repetitions:
         return {
             **rows,
             "points": np.array(len(d)),
+            "passed": np.array(curve.passed(model.unit)),
             "peak_load": np.array(curve.events.load[curve.peak] * model.unit),
             "peak_displacement": np.array(curve.events.monitors[curve.peak, 0]),
         }
@@ -61,19 +62,27 @@ def repeat(context: Context, options: Sla, result: Result) -> dict[str, out.Scat
         result.reason = f"among the repetitions: {swept.stopped}"
     if not len(swept.members):
         return {}
-    done = [options.seeds[k] for k in swept.members]
-    loads = swept["peak_load"]
     curves = [(d[:n], p[:n]) for d, p, n in zip(swept["d"], swept["p"], swept["points"], strict=True)]
-    scatter = out.Scatter(
-        seeds=done, peak_loads_N=loads, mean_N=loads.mean(), lowest_N=loads.min(), highest_N=loads.max(),
-        coefficient_of_variation=loads.std(ddof=1) / loads.mean() if len(loads) > 1 else None,
-    )  # fmt: skip
     grid = np.linspace(0.0, min(d[-1] for d, _ in curves), 200)
     rows = np.stack([np.interp(grid, d, p) for d, p in curves])
     result.arrays["scatter_displacement"] = Array(grid, ("scatter_grid",), "m", "displacements of the band")
     result.arrays["scatter_load"] = Array(rows, ("seed", "scatter_grid"), "N", "envelopes of the repetitions")
+    passed = np.flatnonzero(swept["passed"])
+    done = [options.seeds[k] for k in swept.members[passed]]
+    if len(passed) < len(swept.members):
+        left = ", ".join(str(options.seeds[k]) for k in np.delete(swept.members, passed))
+        result.warnings.append(
+            f"repetitions that did not pass a peak are not in the scatter of the peaks: seeds {left}"
+        )
+    if not done:
+        return {}
+    loads = swept["peak_load"][passed]
+    scatter = out.Scatter(
+        seeds=done, peak_loads_N=loads, mean_N=loads.mean(), lowest_N=loads.min(), highest_N=loads.max(),
+        coefficient_of_variation=loads.std(ddof=1) / loads.mean() if len(loads) > 1 else None,
+    )  # fmt: skip
     result.tables["scatter"] = TableData(
-        {"seed": done, "peak_load": loads, "peak_displacement": swept["peak_displacement"]},
+        {"seed": done, "peak_load": loads, "peak_displacement": swept["peak_displacement"][passed]},
         {"peak_load": "N", "peak_displacement": "m"},
     )
     result.answer += (

@@ -1,5 +1,9 @@
-"""Going on from the stored events of an earlier run: the damage at one of them, and what had been counted by then."""
+"""Going on from the stored events of an earlier run: the damage at one of them, and what had been counted by then.
 
+A damage counts teeth: it says something of the laws, bands and stiffnesses alone that it was found with.
+"""
+
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,6 +12,9 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.sla.events import Curve, damage_before
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
+from extrados.core import sla as core
+from extrados.results.checkpoint import fingerprint
+from extrados.results.sla import Makeup
 from extrados.results.store import StoreError, read
 from extrados.schema.files import BadFile, locate
 
@@ -26,6 +33,59 @@ class Earlier:
     totals: list[float]
 
 
+def makeup(model: SlaModel) -> Makeup:
+    """Fingerprints of what the damage of this wall rests on."""
+    stiffness: list = []
+    laws: dict[str, list] = {"tension": [], "compression": []}
+    fixed: list = []
+    for group in model.groups:
+        if isinstance(group, core.Springs):
+            continue
+        if isinstance(group, core.Joints):
+            stiffness.append(["Joints", group.area, group.normal_stiffness, group.shear_stiffness])
+            for name, found in laws.items():
+                found.append(_law(getattr(group, name)))
+            laws["tension"].append(_law(group.cohesion))  # the teeth of sliding go with those of parting
+            fixed.append(["Joints", group.normal, group.friction, group.dry, group.small, group.ripple])
+            continue
+        size = group.area if isinstance(group, core.Bars) else [group.thickness, group.nu, group.kind, group.points]
+        stiffness.append([type(group).__name__, size, group.young])
+        for sense, found in laws.items():
+            found.append([*_law(getattr(group, sense)), group.band])
+        if isinstance(group, core.Plane):
+            laws["tension"].append(group.reach)
+            laws["compression"].append(group.confinement)
+            fixed.append([group.axis, group.joint, group.lateral, group.selective])
+    return Makeup(
+        stiffness=fingerprint(stiffness)[:16], tension=fingerprint(laws["tension"])[:16],
+        compression=fingerprint(laws["compression"])[:16], cracking=fingerprint([model.behaviour, fixed])[:16],
+    )  # fmt: skip
+
+
+def _law(law: core.Softening | Sequence[core.Softening | None] | None) -> list:
+    """The kinds of laws, and which of them each element has: a wall of a hundred thousand elements has a few."""
+    each = list(law) if isinstance(law, list | tuple) else [law]
+    kinds = list(dict.fromkeys(each))
+    number = {kind: k for k, kind in enumerate(kinds)}
+    return [kinds, np.array([number[kind] for kind in each])]
+
+
+def _refuse_other(there: Makeup | None, here: Makeup) -> None:
+    if there is None:
+        raise Refused("resume_from: that run does not say of which materials it was; run it again with this version")
+    words = {
+        "stiffness": "stiffness or thickness",
+        "tension": "tensile laws, teeth or crack bands",
+        "compression": "crushing laws",
+        "cracking": "ways of cracking",
+    }
+    other = [words[name] for name in words if getattr(there, name) != getattr(here, name)]
+    if other:
+        raise Refused(
+            f"resume_from: that wall has other {' and other '.join(other)}; its damage says nothing of this one"
+        )
+
+
 def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarray | None, Earlier | None]:
     """The damage stored by an earlier run before the event asked for, and what had been counted at that event."""
     if options.resume_from is None:
@@ -41,6 +101,9 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
             raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one")
+        if len(get["event_point"]) and get["event_point"].min() < 0:
+            raise Refused("resume_from: that run was incremental and has no events to go on from")
+        _refuse_other(stored["sla"].get("makeup"), makeup(model))
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):
             raise Refused(f"resume_event is {event}, that run has {len(get['event_point'])} events")

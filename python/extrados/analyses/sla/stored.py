@@ -52,6 +52,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         "external": (e.external, "J", "work of all loads"),
         "dissipated": (e.dissipated, "J", "dissipated along the straight way between events"),
         "crack": (e.crack, "J", "area of the teeth passed"),
+        "scale": (e.scale, "", "part of all loads that is on, below 1 where they went down together"),
     }
     for name, (data, u, about) in columns.items():
         result.arrays[f"{prefix}event_{name}"] = Array(data, dim, u, about)
@@ -72,7 +73,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         {
             "event": np.arange(1, len(e) + 1), "load": e.load * unit, "displacement": e.monitors[:, 0],
             "equilibrium": e.equilibrium.astype(int), "point": e.point + 1,
-            "kind": [EVENTS.get(int(c), "end") for c in e.code],
+            "kind": [EVENTS.get(int(c), "end" if p >= 0 else "step") for c, p in zip(e.code, e.point, strict=True)],
             "external": e.external, "stored": e.stored, "dissipated": e.dissipated,
         },
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},

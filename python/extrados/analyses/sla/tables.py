@@ -158,6 +158,17 @@ class Sla(BuildingAnalysis):
     crack_closure: bool | None = key(
         None, "cracks that close regain their stiffness; default true for stones, whose joints must, false for walls"
     )
+    solution: Literal["events", "incremental"] = key(
+        "events",
+        "one point after the other; or, to compare, steps of arc length with a secant iteration in which all overloaded "
+        "points lose teeth at once: `events` counts its steps then",
+    )
+    without_equilibrium: Literal["load-unload", "proportional"] = key(
+        "load-unload",
+        "where no multiplier of B suits all points: A stays and the greatest lower limit decides, or all loads of the "
+        "last state in equilibrium go down together (intermittent proportional loading)",
+        source="thesis 4.3.1; Pari, Hendriks and Rots 2020",
+    )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[Annotated[int, Field(ge=1)]] = key(
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
@@ -196,4 +207,6 @@ class Sla(BuildingAnalysis):
             raise ValueError("seeds: a seed stands twice; the same seed gives the same wall")
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
+        if self.solution == "incremental" and (self.without_equilibrium != "load-unload" or self.states):
+            raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
         return self

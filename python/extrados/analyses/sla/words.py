@@ -24,19 +24,23 @@ def answer_of_stones(r: dict[str, Any], both: bool, slide: bool) -> str:
     return text
 
 
-def answer_of_wall(r: dict[str, Any], both: bool) -> str:
-    """The peak, and how the run ended."""
+def answer_of_wall(r: dict[str, Any], both: bool, row: str = "event") -> str:
+    """The peak, and how the run ended; `row`: what the curve consists of."""
     if r["events"] == 0 and r["stop"] == "no point limits the load":
         return "The load is not limited: nothing in the wall cracks or crushes under it, however large it grows."
-    if r["peak_load_N"] is None:
+    if r["events"] == 0 and r["stop"] == "interrupted":
+        return "The run was stopped before the first event of the growing load."
+    if r["greatest_load_N"] is None:
         return f"No state of equilibrium was found in {r['events']} events; the run ended by: {r['stop']}."
-    rises = r["stop"] == "number of events" and r["peak_event"] == r["events"]
+    peaks = r["peak_load_N"] is not None
     text = (
-        f"The load {'still rises: it has reached' if rises else 'peaks at'} {r['peak_load_N'] / 1e3:.4g} kN with a displacement of {r['peak_displacement_m'] * 1e3:.4g} mm "
-        f"(event {r['peak_event']} of {r['events']}; the run ended by: {r['stop']})."
+        f"The load {'peaks at' if peaks else 'has reached'} {r['greatest_load_N'] / 1e3:.4g} kN with a displacement of "
+        f"{r['greatest_load_displacement_m'] * 1e3:.4g} mm{'' if peaks else ' without having passed a peak'} "
+        f"({row} {r['greatest_load_event']} of {r['events']}; the run ended by: {r['stop']})."
     )
-    if both and r.get("minus", {}).get("peak_load_N") is not None:
-        text += f" In the opposite sense it peaks at {r['minus']['peak_load_N'] / 1e3:.4g} kN."
+    if both and (minus := r.get("minus", {})).get("greatest_load_N") is not None:
+        verb = "peaks at" if minus["peak_load_N"] is not None else "has reached"
+        text += f" In the opposite sense it {verb} {minus['greatest_load_N'] / 1e3:.4g} kN."
     lost = r["events_without_equilibrium"]
     if lost:
         text += f" {lost} events had no equilibrium, the first was event {r['first_event_without_equilibrium']}."

@@ -94,8 +94,8 @@ def _document(data: bytes, name: str) -> Any:
     try:
         head = dxf_stream_info(io.StringIO(data[:100_000].decode("latin-1")))
         return read(io.StringIO(data.decode(head.encoding, errors="surrogateescape"), newline=None))
-    except (DXFError, UnicodeError, LookupError, ValueError, OSError) as error:
-        raise BadGeometry(f"{name}: is not a sound DXF file: {error}") from None
+    except (DXFError, UnicodeError, LookupError, ValueError, OSError, StopIteration) as error:
+        raise BadGeometry(f"{name}: is not a sound DXF file: {error or 'it ends too early'}") from None
 
 
 def _unit(name: str, code: int) -> str:
