@@ -5,7 +5,7 @@ module sla_bar
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, &
       linear_bound
-   use sla_tables, only : tooth_tables
+   use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -65,7 +65,9 @@ contains
       group%freedoms = 4
       group%directions = 1
       group%options = options
-      group%teeth = teeth
+      call tooth_tables_copy(teeth, group%teeth, status)
+      if (status /= status_ok) return
+      status = status_out_of_memory
       allocate (group%gradient(4, n), group%volume(n), group%young(n), group%table(n), group%crush_table(n), &
          group%tooth(2, n), group%modulus(n), stat=info)
       if (info /= 0) return

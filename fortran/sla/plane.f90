@@ -31,7 +31,7 @@ module sla_plane
    use sla_group, only : point_group, scan_result, event_vectors, material_options, unbounded, &
       offer_hi, offer_lo, offer_empty, linear_bound
    use sla_interval, only : cone_interval, overload
-   use sla_tables, only : tooth_tables
+   use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -126,7 +126,8 @@ contains
       group%freedoms = 2 * group%rule%nodes
       group%selective = selective
       group%options = options
-      group%teeth = teeth
+      call tooth_tables_copy(teeth, group%teeth, status)
+      if (status /= status_ok) return
       allocate (group%gradient(2, group%rule%nodes, group%points), group%weight(group%points), &
          group%shear_gradient(2, group%rule%nodes, merge(ne, 0, selective)), &
          group%young(ne), group%nu(ne), group%table(ne), group%crush_table(ne), group%lateral(ne), group%axis(ne), &

@@ -4,6 +4,8 @@ import json
 import subprocess
 import sys
 
+import pytest
+
 import trials
 
 #: Lets the process grow by so many MB after the core was loaded, then runs starters
@@ -25,6 +27,7 @@ print(json.dumps([(row["status"], row["reason"]) for row in run.analyses]))
 """
 
 
+@pytest.mark.verify  # where the room is small the threads of OpenBLAS wait for each other for minutes
 def test_memory_that_is_lowered_after_the_start() -> None:
     """Every size from none to plenty: OpenBLAS would wait for ever, or crash, where its buffer finds no room."""
     trial = trials.Trial(

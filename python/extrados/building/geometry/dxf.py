@@ -178,6 +178,8 @@ def _flattened(entity: Any, kind: str, sagitta: float) -> np.ndarray:
 def _bulged(a: np.ndarray, b: np.ndarray, bulge: float, sagitta: float) -> np.ndarray:
     """Points (n, 2) after a up to b along the arc of a polyline; bulge is the tangent of a quarter of its angle."""
     chord = b - a
+    if not np.isfinite([*chord, bulge]).all():
+        raise BadGeometry("a polyline of the drawing holds a number that is not finite")
     if bulge == 0.0 or not chord.any():
         return b[None]
     turn = 4.0 * np.arctan(bulge)
