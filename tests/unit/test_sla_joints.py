@@ -109,7 +109,7 @@ def capacity(structure: dict, friction: float | str, kind: str, **options):
         ("block", 0.7, 1e-4, 1e-4),  # rocks at width over height
         ("block", 0.2, 0.005, 0.002),  # slides
         ("column", 0.2, 0.005, 0.002),
-        ("brickwork", 0.7, 0.06, 0.005),
+        ("brickwork", 0.7, 0.12, 0.005),  # the path is lost among states without equilibrium: docs/sla.md
     ],
 )
 def test_the_load_of_limit_analysis_with_friction(kind: str, friction: float, below: float, above: float) -> None:
