@@ -228,7 +228,7 @@ import os, signal, threading
 import numpy as np
 from extrados.core import rocking
 from extrados.core.ground import Ground
-ground = Ground(breaks=np.array([0.0, 1e6]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[2.0, 0.0, 2.0, 0.0]]]]))
+ground = Ground(breaks=np.array([0.0, 1e6]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[3.0, 0.0, 12.0, 0.0]]]]))
 block = rocking.block_body(1000.0, 1500.0, 2.0, 0.5, 0.5, (0.9, 0.9))
 found = []
 def work():
@@ -237,7 +237,7 @@ thread = threading.Thread(target=work)
 thread.start()
 try:
     while thread.is_alive():
-        thread.join(0.5)
+        thread.join(0.1)
         os.kill(os.getpid(), signal.SIGINT)
     print("no exception")
 except KeyboardInterrupt:
