@@ -10,7 +10,6 @@ import numpy as np
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.inspection import Inspection
 from extrados.decks.reader import Deck
-from extrados.plots.geometry import Mark, draw_survey
 
 
 @dataclass(frozen=True)
@@ -77,6 +76,8 @@ def _places(inspection: Inspection) -> list[Place]:
 
 def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
     """The picture and the list of a survey into a folder: geometry.png (and .svg), geometry.csv."""
+    from extrados.plots.geometry import Mark, draw_survey  # matplotlib takes a third of a second to load
+
     assert checked.inspection is not None
     folder.mkdir(parents=True, exist_ok=True)
     text = io.StringIO()

@@ -3,9 +3,6 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
 from extrados.building.geometry.contacts import box_pairs
 from extrados.building.geometry.polygons import inside, properties, signed_area
@@ -94,6 +91,10 @@ def _knotted(lines: np.ndarray, weight: np.ndarray, tolerance: float) -> tuple[n
 
 def _clusters(points: np.ndarray, tolerance: float) -> tuple[np.ndarray, int]:
     """Number of the knot of each point: points within the tolerance of each other, in steps, are one."""
+    from scipy.sparse import coo_array  # these take a third of a second to load, and few decks name a drawing
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
     pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2)
     count, knot = connected_components(graph, directed=False)
