@@ -10,7 +10,7 @@ from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.core.errors import Cancelled, CoreError
-from extrados.limit.solver import Immovable, NoAnswer
+from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults

@@ -7,23 +7,14 @@ import highspy
 import numpy as np
 from scipy import sparse
 
+from extrados.limit.errors import Immovable as Immovable
+from extrados.limit.errors import NoAnswer as NoAnswer
+from extrados.limit.errors import NoEquilibrium as NoEquilibrium
 from extrados.limit.systems import Constraints, Reduced, Sparse
 
 FEASIBILITY = 1e-10
 BOUND = 1e5  # of the scaled unknowns; reached only where the structure cannot be moved at all
 INFINITY = highspy.kHighsInf
-
-
-class NoEquilibrium(ValueError):
-    """No admissible thrust line exists for the loads asked for."""
-
-
-class Immovable(NoEquilibrium):
-    """No load of the kind asked for brings the structure down: its joints hold it from all sides."""
-
-
-class NoAnswer(RuntimeError):
-    """The solver gave up; never a statement about the structure."""
 
 
 @dataclass(frozen=True)
