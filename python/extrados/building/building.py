@@ -22,6 +22,7 @@ from extrados.building.properties import (
     Supports,
 )
 from extrados.building.structure import Structure
+from extrados.building.ties import Tie
 from extrados.schema.table import Table
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Building:
-    """Geometry, material, joints, supports and the state at the start.
+    """Geometry, material, joints, supports, ties and the state at the start.
 
     The views are made when first asked for and kept, also for buildings made from this one by `having`, as long as
     nothing that they depend on has changed. They raise BadGeometry with the part and the bound where they cannot
@@ -43,6 +44,7 @@ class Building:
     joints: Joints = field(default_factory=Joints)
     supports: Supports = field(default_factory=Supports)
     initial: Initial = field(default_factory=Initial)
+    ties: tuple[Tie, ...] = ()
     folder: Path = field(default_factory=Path.cwd)
     _views: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
 
@@ -51,7 +53,7 @@ class Building:
         return {**self.__dict__, "_views": {}}
 
     def having(self, **tables: Any) -> "Building":
-        """The same building with other tables: structure, material, joints, supports, initial."""
+        """The same building with other tables: structure, material, joints, supports, initial, ties."""
         return replace(self, **tables)
 
     def apart(self) -> "Building":
