@@ -28,6 +28,20 @@ class RuleOutcome(ResultModel):
     outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
 
 
+class RestraintForces(ResultModel):
+    """A tie, damper or added hinge while the structure rocks."""
+
+    name: str = fact("as the deck calls it")
+    least_force_N: float = maybe("least force, tension positive; of a tie or damper", "N")
+    greatest_force_N: float = maybe("greatest force, tension positive; of a tie or damper", "N")
+    permanent_elongation_m: float = maybe("what it has yielded or slid in the end; of a tie or damper", "m")
+    least_moment_Nm: float = maybe(
+        "least moment, counter-clockwise turn of the first stone positive; of an added hinge", "N*m"
+    )
+    greatest_moment_Nm: float = maybe("greatest moment; of an added hinge", "N*m")
+    permanent_turn_rad: float = maybe("what it has yielded in the end; of an added hinge", "rad")
+
+
 class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
@@ -44,6 +58,11 @@ class Rocking(KindResults):
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
+    energy_taken_up_J: float = maybe("what dampers and yielding have taken up, where something holds it", "J")
+    restraints: list[RestraintForces] = maybe("what holds it besides its weight")
+    rebound: float = maybe(
+        "against a wall: rate after over before it is thrown back", source="Sorrentino and others 2011"
+    )
     energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("steps that it tried and refused")

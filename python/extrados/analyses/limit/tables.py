@@ -37,7 +37,7 @@ class LimitAnalysisTable(BuildingAnalysis):
     """What all questions of limit analysis ask."""
 
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
-    bears_ties: ClassVar = True
+    bears: ClassVar = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
         "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",

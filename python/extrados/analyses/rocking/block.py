@@ -24,9 +24,9 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
             "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
         )
     end_time = options.end_time or context.motion.end + 30.0 / float(model.frequency.min())
-    response = run_history(context, options, model.body, end_time, 12, rocker.start_rotation)
+    response = run_history(context, options, rocker.body, end_time, 12, rocker.start_rotation)
 
-    tangential, normal = toe_forces(model, response)
+    tangential, normal = toe_forces(rocker, response)
     friction = np.abs(tangential) / np.maximum(normal, 1e-300)
     flying = normal <= 0.0
     c_v = model.restitution
@@ -35,15 +35,16 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         context,
         response,
         doubts(context, options, rocker, response, end_time),
+        rocker,
         f"the {rocker.word}",
         friction[:, None],
         restitution=c_v[0],
         restitution_to_left=c_v[1],
         energy_ratio=c_v[0] ** 2 * model.block.toe_inertia[0] / model.block.toe_inertia[1],
-        critical_rotation_rad=model.alpha[0],
-        critical_rotation_left_rad=model.alpha[1],
+        critical_rotation_rad=rocker.critical[0],
+        critical_rotation_left_rad=rocker.critical[1],
         frequency_parameter_rad_s=model.frequency[0],
-        uplift_acceleration_g=model.uplift.min(),
+        uplift_acceleration_g=rocker.uplift,
         required_friction=needed,
     )
     if flying.any():
@@ -54,14 +55,15 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = (
-        answer(context, response, f"The {rocker.word}", "overturns", float(model.uplift.min()))
+        answer(context, response, f"The {rocker.word}", "overturns", rocker.uplift)
         + f" It slides instead where friction is below {needed:.2f}."
     )
     return result
 
 
-def toe_forces(model: BlockModel, response: core_rocking.Response) -> tuple[np.ndarray, np.ndarray]:
+def toe_forces(rocker: Rocker, response: core_rocking.Response) -> tuple[np.ndarray, np.ndarray]:
     """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]."""
+    model = rocker.model
     b = model.block
     side = np.where(response.rotation < 0.0, -1.0, 1.0)
     i = (side < 0.0).astype(int)
@@ -73,7 +75,11 @@ def toe_forces(model: BlockModel, response: core_rocking.Response) -> tuple[np.n
     x = side * radius * (np.cos(rest) * acceleration + np.sin(rest) * rate**2)
     y = radius * (np.sin(rest) * acceleration - np.cos(rest) * rate**2)
     mass = b.mass[0]
-    return mass * (response.ground + x), mass * (GRAVITY + response.vertical + y)
+    tangential, normal = mass * (response.ground + x), mass * (GRAVITY + response.vertical + y)
+    if rocker.restraints is not None:
+        pull = rocker.restraints.pull(response.rotation, response.forces)
+        tangential, normal = tangential - pull[:, 0], normal - pull[:, 1]
+    return tangential, normal
 
 
 def pose(model: BlockModel, rotation: np.ndarray) -> np.ndarray:

@@ -45,7 +45,7 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
     period = 2.0 * np.pi * np.sqrt(model.limits.mass * model.limits.critical / model.limits.gravity_moment)
     end_time = options.end_time or context.motion.end + 10.0 * period
     joints = model.arch.voussoirs + 1
-    response = run_history(context, options, model.body, end_time, 8 + 6 * joints, rocker.start_rotation)
+    response = run_history(context, options, rocker.body, end_time, 8 + 6 * joints, rocker.start_rotation)
 
     thrust = _thrust(model, response)
     needed = max(float(thrust.friction.max(initial=0.0)), _onset_friction(model, context, response))
@@ -54,6 +54,7 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
         context,
         response,
         doubt,
+        rocker,
         "link AB",
         thrust.friction,
         restitution=model.restitution,
