@@ -32,6 +32,7 @@ BUILDINGS = {
     "blocks of a drawing": 'kind = "blocks"\nfile = "stones.dxf"\nunit = "m"\nground = {ground}',
     "block": 'kind = "block"\nwidth = 1.0\nheight = 4.0',
     "column": 'kind = "column"\nwidth = 0.8\ntop_width = 0.6\nheight = 4.0\ndrums = 4',
+    "frame": 'kind = "frame"\nwidth = 0.8\nheight = 4.0\nspacing = 3.0\nlintel_height = 0.8',
     "brickwork": 'kind = "brickwork"\nunits = 3\ncourses = 6\nunit_length = 0.5\nunit_height = 0.4\ndepth = 0.3',
     "brickwork with a door": 'kind = "brickwork"\nunits = 5\ncourses = 6\nunit_length = 0.6\nunit_height = 0.4\n'
     "depth = 0.3\nopenings = [{ x = [1.0, 2.0], y = [0.0, 1.6] }]",
@@ -61,6 +62,7 @@ REFUSED = {
     # Stone does not crush here, and a load on a body that stands on all its width, or on a lintel, finds its way down.
     ("block", "moving-load"): PRESSED.format("block"),
     ("column", "moving-load"): PRESSED.format("column"),
+    ("frame", "moving-load"): PRESSED.format("frame"),
     ("brickwork", "moving-load"): PRESSED.format("wall"),
     ("brickwork with a door", "moving-load"): PRESSED.format("wall"),
     ("panel", "moving-load"): PRESSED.format("panel"),

@@ -73,7 +73,7 @@ class Rocking(KindResults):
     energy_ratio: float = maybe("of a block: kinetic energy after over before an impact", source="thesis Eq. 6.2")
     critical_rotation_rad: float = fact("rotation to +x from which gravity takes it down", "rad")
     critical_rotation_left_rad: float = maybe("of a block or a mechanism: the critical rotation to -x", "rad")
-    frequency_parameter_rad_s: float = maybe("of a block: p", "rad/s", source="Housner 1963")
+    frequency_parameter_rad_s: float = maybe("of a block or a frame: p", "rad/s", source="Housner 1963")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     required_friction: float | None = fact(
         "greatest coefficient of friction needed; null where a joint comes under tension"

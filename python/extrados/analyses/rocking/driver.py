@@ -27,7 +27,7 @@ def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
-    result = kinds[type(rocker.model)](context, options, rocker)
+    result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)
     needed, given = result.results.required_friction, context.building.joints.coefficient
     if given is not None and needed is not None and needed > given:
         result.warnings.append(

@@ -7,6 +7,7 @@ from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
+from extrados.building.rockers.frame import FrameModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.results.model import Array, Result
@@ -43,6 +44,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         required_friction=needed if known and np.isfinite(needed) else None,
         hinges=_hinges(model, 0),
         hinges_opposite=_hinges(model, 1),
+        **({"frequency_parameter_rad_s": model.frequency} if isinstance(model, FrameModel) else {}),
     )  # fmt: skip
     if not np.isfinite(needed):
         result.warnings.append(

@@ -8,9 +8,11 @@ import numpy as np
 from extrados.building.errors import NoView
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel, block_model
+from extrados.building.rockers.frame import FrameModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, block_linkages, block_reach, members_of, three_impacts
 from extrados.building.templates.arch import ArchAssembly
+from extrados.building.templates.frame import FrameAssembly
 from extrados.core.rocking import Body, limits
 from extrados.schema.constants import GRAVITY
 
@@ -82,7 +84,8 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
             stones.radius, ratio * limits.critical, tuple(arch.warnings),
         )  # fmt: skip
     rule = building.joints.restitution
-    model = MechanismModel(stones, "energy-safe" if rule == "thesis" else rule)
+    known = FrameModel if isinstance(stones, FrameAssembly) else MechanismModel
+    model = known(stones, "energy-safe" if rule == "thesis" else rule)  # type: ignore[arg-type]
     critical = model.critical
     made = Rocker(
         structure.kind, structure.word, model, model.body, min(model.uplift), critical, model.restitution[0],
