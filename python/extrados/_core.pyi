@@ -7,6 +7,7 @@ api_mechanism: Any
 api_dem: Any
 api_motion: Any
 api_rocking: Any
+api_stack: Any
 api_signal: Any
 api_sla: Any
 api_sla_laws: Any

@@ -38,6 +38,7 @@ STRUCTURES: dict[str, str] = {
     "column": "building.templates.masonry:Column",
     "brickwork": "building.templates.brickwork:Brickwork",
     "frame": "building.templates.frame:Frame",
+    "stack": "building.templates.stack:Stack",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",

@@ -34,10 +34,18 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for sign in (1, -1):
             ground.axhline(sign * r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.7)
         ground.set_ylabel("ground [g]")
-        rotation.plot(t, 1e3 * run.array(name, "rotation"), color=style.THRUST)
+        rotation.plot(
+            t, 1e3 * run.array(name, "rotation"), color=style.THRUST, label="lower block" if r.stack else None
+        )
+        if r.stack:
+            rotation.plot(
+                t, 1e3 * run.array(name, "rotation_upper"), color=style.GROUND, linewidth=0.9, label="upper block"
+            )
         for sign in (1, -1):
             rotation.axhline(1e3 * sign * r.critical_rotation_rad, color=style.EDGE, linestyle=":", linewidth=0.8)
         limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=0.0)
+        if r.stack:
+            limit = max(limit, 1.15e3 * np.abs(run.array(name, "rotation_upper")).max(initial=0.0))
         limit = limit or 1.15e3 * r.critical_rotation_rad  # it has not rocked
         rotation.set_ylim(-limit, limit)
         rotation.plot(

@@ -42,6 +42,25 @@ class RestraintForces(ResultModel):
     permanent_turn_rad: float = maybe("what it has yielded in the end; of an added hinge", "rad")
 
 
+class ModeShare(ResultModel):
+    """How long two stacked blocks rock in a mode."""
+
+    mode: str = fact("which contacts are open, and how", source="Psycharis 1990")
+    share: float = fact("share of the rocking time")
+
+
+class StackRocking(ResultModel):
+    """What two stacked blocks have besides the rotation of the lower one."""
+
+    peak_rotation_upper_rad: float = fact("greatest rotation of the upper block, positive to +x", "rad")
+    critical_rotation_upper_rad: float = fact("slenderness angle of the upper block by itself", "rad")
+    uplift_as_one_g: float = fact("horizontal acceleration at which both as one begin to rock", "g")
+    uplift_upper_g: float = fact("that at which the upper block begins to rock by itself", "g")
+    impacts_on_ground: int = fact("impacts on the ground")
+    impacts_between: int = fact("impacts at the joint between")
+    modes: list[ModeShare] = fact("how long it rocks in each mode")
+
+
 class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
@@ -85,6 +104,7 @@ class Rocking(KindResults):
     restitution_inelastic: float = maybe("of an arch: by a blow without rebound at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe("under each impact rule, where their c_v differ by more than 1.3")
     decided_by_last_digits: bool = fact("whether the motion scaled by 1 +- 1e-6 ends in another outcome")
+    stack: StackRocking = maybe("of two stacked blocks")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -6,6 +6,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
+from extrados.analyses.rocking import stack as stack_rocking
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
@@ -25,6 +26,9 @@ OUTSIDE = 0.01
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
+    structure = context.building.structure
+    if structure is not None and structure.rocks_as == "stack":
+        return stack_rocking.run(context, options)
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
     result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)

@@ -61,6 +61,8 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
     structure, ratio = building.structure, building.initial.rotation_ratio
     if structure is None:
         raise NoView("the deck has no [structure]")
+    if structure.rocks_as == "stack":
+        raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow")
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
     if structure.rocks_as == "block" or (piers is not None and len(piers.mass) == 1):
         block = block_model(building, linear)
