@@ -114,25 +114,22 @@ contains
    end subroutine follow
 
    !> Paths of points and parts as polynomials of q, see mechanism_path
-   subroutine paths(parts, hinges, rows, mass, centroid, inertia, joined, point, row, driver, sense, &
-                    count, sort, ends, place, reach, length, table, status)
+   subroutine paths(parts, hinges, rows, part, joined, point, row, driver, sense, count, ends, place, reach, &
+                    length, table, status)
       use common_status, only : status_ok, status_invalid_argument
       use mechanism_linkage, only : linkage, linkage_new, linkage_state
       use mechanism_path, only : path_new, path_numbers, path_pack, path_table
       integer(c_int), intent(in) :: parts
       integer(c_int), intent(in) :: hinges
       integer(c_int), intent(in) :: rows
-      real(c_double), intent(in) :: mass(parts)
-      real(c_double), intent(in) :: centroid(2, parts)
-      real(c_double), intent(in) :: inertia(parts)
+      real(c_double), intent(in) :: part(4, parts)       !! mass [kg], centroid x, y [m], inertia [kg m^2]
       integer(c_int), intent(in) :: joined(2, hinges)
       real(c_double), intent(in) :: point(2, hinges)
       integer(c_int), intent(in) :: row(2, rows)
       integer(c_int), intent(in) :: driver
       integer(c_int), intent(in) :: sense
       integer(c_int), intent(in) :: count
-      integer(c_int), intent(in) :: sort(count)          !! 1 length, 2 turn
-      integer(c_int), intent(in) :: ends(2, count)       !! parts, 0 = ground
+      integer(c_int), intent(in) :: ends(3, count)       !! parts at both ends, 0 = ground; 1 length, 2 turn
       real(c_double), intent(in) :: place(2, 2, count)   !! [m]
       real(c_double), intent(in) :: reach(2)             !! greatest rotation, scale of the table of the mechanism [rad]
       integer(c_int), intent(in) :: length               !! see path_length
@@ -145,9 +142,11 @@ contains
       table = 0.0_c_double
       status = status_invalid_argument
       if (length /= path_numbers(int(count))) return
-      call linkage_new(mass, centroid, inertia, joined, point, row, driver, real(sense, c_double), mechanism, rest, &
-         status)
-      if (status == status_ok) call path_new(mechanism, rest, sort, ends, place, reach(1), reach(2), found, status)
+      call linkage_new(part(1, :), part(2:3, :), part(4, :), joined, point, row, driver, real(sense, c_double), &
+         mechanism, rest, status)
+      if (status == status_ok) then
+         call path_new(mechanism, rest, ends(3, :), ends(1:2, :), place, reach(1), reach(2), found, status)
+      end if
       if (status == status_ok) call path_pack(found, table)
    end subroutine paths
 

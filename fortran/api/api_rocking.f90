@@ -62,7 +62,7 @@ contains
    end subroutine limits
 
    !> One structure under one motion, with its history and events
-   subroutine history(bodies, motions, member, scale, end_time, tolerance, start, nt, time, room, restraints, &
+   subroutine history(bodies, motions, member, options, start, nt, time, room, restraints, &
                       counts, measures, state, kept, event_kind, event, status)
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take, motion_signal
@@ -75,9 +75,7 @@ contains
       integer(c_int64_t), intent(in) :: bodies
       integer(c_int64_t), intent(in) :: motions
       integer(c_int), intent(in) :: member(2)               !! structure and motion, 1-based
-      real(c_double), intent(in) :: scale
-      real(c_double), intent(in) :: end_time                !! [s]
-      real(c_double), intent(in) :: tolerance
+      real(c_double), intent(in) :: options(3)              !! scale of the motion, end time [s], tolerance
       real(c_double), intent(in) :: start(3)                !! side (+1 or -1), rotation [rad], rate [rad/s]
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: time(nt)                !! output times [s]
@@ -123,13 +121,13 @@ contains
          if (status /= status_ok) return
          call motion_set_take(motions, .false., set, status)
          if (status /= status_ok) return
-         call motion_signal(set, member(2), scale, ground, status)
+         call motion_signal(set, member(2), options(1), ground, status)
          if (status == status_ok) then
             record%time => times
             record%state => states
             record%event_kind => kinds
             record%event => happened
-            call respond(structure, ground, response_options(end_time=end_time, tolerance=tolerance, &
+            call respond(structure, ground, response_options(end_time=options(2), tolerance=options(3), &
                start_q=start(2), start_v=start(3), start_side=merge(1, -1, start(1) > 0.0_c_double)), answer, status, &
                record)
             counts = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected, &

@@ -15,7 +15,7 @@ contains
    end subroutine rows
 
    !> Two blocks under one motion
-   subroutine history(np, parameters, motions, motion, scale, start, end_time, tolerance, nt, time, nrows, room, &
+   subroutine history(np, parameters, motions, motion, options, start, nt, time, nrows, room, &
                       counts, measures, state, event_kind, event, status)
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take, motion_signal
@@ -26,10 +26,8 @@ contains
       real(c_double), intent(in) :: parameters(np)          !! see rocking_stack
       integer(c_int64_t), intent(in) :: motions
       integer(c_int), intent(in) :: motion                  !! 1-based
-      real(c_double), intent(in) :: scale
+      real(c_double), intent(in) :: options(3)              !! scale of the motion, end time [s], tolerance
       real(c_double), intent(in) :: start(4)                !! rotations [rad] and rates [rad/s], lower and upper
-      real(c_double), intent(in) :: end_time                !! [s]
-      real(c_double), intent(in) :: tolerance
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: time(nt)                !! output times [s]
       integer(c_int), intent(in) :: nrows                   !! see rows
@@ -67,13 +65,13 @@ contains
          if (status /= status_ok) return
          call motion_set_take(motions, .false., set, status)
          if (status /= status_ok) return
-         call motion_signal(set, motion, scale, ground, status)
+         call motion_signal(set, motion, options(1), ground, status)
          if (status == status_ok) then
             record%time => times
             record%state => states
             record%event_kind => kinds
             record%event => happened
-            call stack_rock(body, ground, start, end_time, tolerance, record, status)
+            call stack_rock(body, ground, start, options(2), options(3), record, status)
             counts = [record%outcome, record%impacts, record%steps, merge(1_c_int, 0_c_int, record%settled), &
                int(record%points, c_int), int(record%events, c_int)]
             measures = [record%peak, record%stop_time, record%work, record%loss]

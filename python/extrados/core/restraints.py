@@ -53,11 +53,12 @@ def paths(
     [m]; reach: last rotation and scale of the table (numbers 2 and 3 of core.mechanism.Table) [rad].
     """
     n = np.size(sort)
-    (length,) = (_core.api_mechanism.path_length(n),)
+    length = _core.api_mechanism.path_length(n)
+    mass, centroid, inertia, *links = _links(linkage)
     table, status = _core.api_mechanism.paths(
-        *_links(linkage),
-        np.ascontiguousarray(sort, dtype=np.int32),
-        np.asfortranarray(np.transpose(ends), dtype=np.int32),
+        np.asfortranarray(np.vstack([mass, centroid, inertia])),
+        *links,
+        np.asfortranarray(np.vstack([np.transpose(ends), np.ravel(sort)]), dtype=np.int32),
         real("points", np.transpose(points, (2, 1, 0)), (2, 2, n)),
         real("reach", reach, (2,)),
         int(length),

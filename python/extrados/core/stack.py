@@ -76,8 +76,8 @@ def stack_history(
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
     with MotionSet([ground]) as motions:
         counts, measures, state, kinds, event, status = long_call(
-            _core.api_stack.history, real("stack", stack.numbers, (9,)), motions.handle, 1, float(scale),
-            real("start", start, (4,)), float(end_time), float(tolerance), times, rows, int(room),
+            _core.api_stack.history, real("stack", stack.numbers, (9,)), motions.handle, 1,
+            np.array([scale, end_time, tolerance], dtype=float), real("start", start, (4,)), times, rows, int(room),
         )  # fmt: skip
     interrupted = status == status_code("cancelled")
     if not interrupted:
