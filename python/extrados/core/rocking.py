@@ -55,11 +55,12 @@ def block_body(
     toe_left: float,
     restitution: tuple[float, float],
     linear: bool = False,
+    slope: float = 0.0,
 ) -> Body:
     """A rigid block: mass [kg], inertia about its centre of mass [kg m^2], height of that centre and its
     distance from the toes [m], restitution of the impacts after which it rocks to +x and to -x; `linear` for
-    the slender form of the equations."""
-    values = [float(linear), mass, inertia, height, toe_right, toe_left, *restitution]
+    the slender form of the equations; slope of the base up to the right [rad], on which height and distances are counted."""
+    values = [float(linear), mass, inertia, height, toe_right, toe_left, *restitution, slope]
     if not (np.isfinite(values).all() and min(values[1:6]) > 0.0):
         raise ValueError(f"mass, inertia, height and toes of a block must be above zero, got {values[1:6]}")
     if not all(0.0 <= c <= 1.0 for c in restitution):

@@ -8,6 +8,7 @@ from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.restraints import Restraints
 from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.results.model import Array, Result
@@ -26,9 +27,11 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     end_time = options.end_time or context.motion.end + 30.0 / float(model.frequency.min())
     response = run_history(context, options, rocker.body, end_time, 12, rocker.start_rotation)
 
-    tangential, normal = toe_forces(rocker, response)
-    friction = np.abs(tangential) / np.maximum(normal, 1e-300)
-    flying = normal <= 0.0
+    tangential, normal = toe_forces(model, response, rocker.restraints)
+    c, s = np.cos(model.block.slope), np.sin(model.block.slope)
+    along, across = c * tangential + s * normal, c * normal - s * tangential  # on a sloping base
+    friction = np.abs(along) / np.maximum(across, 1e-300)
+    flying = across <= 0.0
     c_v = model.restitution
     needed = float(friction[~flying].max(initial=0.0))
     result = rocking_result(
@@ -61,9 +64,10 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     return result
 
 
-def toe_forces(rocker: Rocker, response: core_rocking.Response) -> tuple[np.ndarray, np.ndarray]:
-    """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]."""
-    model = rocker.model
+def toe_forces(
+    model: BlockModel, response: core_rocking.Response, held: Restraints | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]; held: what holds it."""
     b = model.block
     side = np.where(response.rotation < 0.0, -1.0, 1.0)
     i = (side < 0.0).astype(int)
@@ -76,8 +80,8 @@ def toe_forces(rocker: Rocker, response: core_rocking.Response) -> tuple[np.ndar
     y = radius * (np.sin(rest) * acceleration - np.cos(rest) * rate**2)
     mass = b.mass[0]
     tangential, normal = mass * (response.ground + x), mass * (GRAVITY + response.vertical + y)
-    if rocker.restraints is not None:
-        pull = rocker.restraints.pull(response.rotation, response.forces)
+    if held is not None:
+        pull = held.pull(response.rotation, response.forces)
         tangential, normal = tangential - pull[:, 0], normal - pull[:, 1]
     return tangential, normal
 
@@ -90,7 +94,8 @@ def pose(model: BlockModel, rotation: np.ndarray) -> np.ndarray:
     side = np.where(left, -1.0, 1.0)
     toe = side * b.toes[i]
     rest = b.alpha[i] - np.abs(rotation)
-    return np.stack([toe - side * b.radius[i] * np.sin(rest), b.radius[i] * np.cos(rest), -rotation], axis=1)
+    x, y = toe * np.cos(b.slope), toe * np.sin(b.slope)
+    return np.stack([x - side * b.radius[i] * np.sin(rest), y + b.radius[i] * np.cos(rest), -rotation], axis=1)
 
 
 def _snapshots(
@@ -102,11 +107,11 @@ def _snapshots(
     toe = np.where(rotation < 0.0, -b.toe_left, b.toe_right)
     # From the toe along the force, as far up as the centre of mass; at rest through the middle of the base.
     toe = np.where(rotation == 0.0, 0.0, toe)
+    foot = toe * np.sin(b.slope)
+    toe = toe * np.cos(b.slope)
     rise = b.centre_height
     lean = np.clip(tangential[index] / np.maximum(normal[index], 1e-300), -3.0, 3.0)
-    line = np.stack(
-        [np.stack([toe, 0.0 * toe], axis=1), np.stack([toe + lean * rise, 0.0 * toe + rise], axis=1)], axis=1
-    )
+    line = np.stack([np.stack([toe, foot], axis=1), np.stack([toe + lean * rise, foot + rise], axis=1)], axis=1)
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
         "snapshot_pose": Array(

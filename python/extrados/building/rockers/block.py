@@ -73,7 +73,14 @@ class BlockModel:
     def body(self) -> Body:
         b, (right, left) = self.block, self.restitution
         return block_body(
-            float(b.mass[0]), float(b.inertia[0]), b.centre_height, b.toe_right, b.toe_left, (right, left), self.linear
+            float(b.mass[0]),
+            float(b.inertia[0]),
+            b.centre_height,
+            b.toe_right,
+            b.toe_left,
+            (right, left),
+            self.linear,
+            b.slope,
         )
 
 

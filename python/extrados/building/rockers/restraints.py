@@ -154,15 +154,20 @@ def carried(
 def block_linkages(block: BlockModel, stones: Assembly) -> tuple[Linkage, Linkage]:
     """A block, or all stones taken as one, as a linkage of one part that turns about its right toe (to +x) and its left."""
     b = block.block
-    centre = np.array([0.0, b.centre_height])
-    if not isinstance(stones, BlockAssembly):  # a block has its origin below its centre of mass
-        centre += [stones.mass @ stones.centroid[:, 0] / stones.mass.sum(), min(o[:, 1].min() for o in stones.outlines)]
+    if isinstance(stones, BlockAssembly):
+        centre, toes = stones.centroid[0], (stones.q[0], stones.p[0])
+    else:
+        foot = np.array(
+            [stones.mass @ stones.centroid[:, 0] / stones.mass.sum(), min(o[:, 1].min() for o in stones.outlines)]
+        )
+        centre = foot + np.array([0.0, b.centre_height])
+        toes = foot + np.array([b.toe_right, 0.0]), foot - np.array([b.toe_left, 0.0])
     made = [
         Linkage(
             side, np.ones(len(stones.mass), dtype=int), b.mass, centre[None], b.inertia, np.zeros(1, dtype=int),
-            np.array([[1, 0]]), centre[None] + np.array([[x, -b.centre_height]]), np.array([[1, 1], [1, 2]]), 1, -side,
+            np.array([[1, 0]]), toe[None], np.array([[1, 1], [1, 2]]), 1, -side,
         )
-        for side, x in ((1, b.toe_right), (-1, -b.toe_left))
+        for side, toe in zip((1, -1), toes, strict=True)
     ]  # fmt: skip
     return made[0], made[1]
 

@@ -112,7 +112,7 @@ def _restrained(free: Rocker, building: "Building") -> Rocker:
     if isinstance(model, BlockModel):
         stones = building.pier_blocks() if building.structure.rocks_as == "piers" else building.blocks()
         linkages, reach = block_linkages(model, stones), block_reach(model)
-        drive = model.block.mass[0] * (model.block.radius if model.linear else np.full(2, model.block.centre_height))
+        drive = model.block.mass[0] * model.block.radius * (1.0 if model.linear else np.cos(model.alpha))
         weight = GRAVITY * drive * model.uplift
         if wall is not None:
             rebound = (three_impacts(model, 0), three_impacts(model, 1))
