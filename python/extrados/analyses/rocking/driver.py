@@ -7,6 +7,7 @@ from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
 from extrados.analyses.rocking import stack as stack_rocking
+from extrados.analyses.rocking.common import with_moving_supports
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
@@ -26,6 +27,7 @@ OUTSIDE = 0.01
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
+    context = with_moving_supports(context)
     structure = context.building.structure
     if structure is not None and structure.rocks_as == "stack":
         return stack_rocking.run(context, options)

@@ -133,6 +133,10 @@ def models_at(context: Context, options: Fragility, base: Rocker, draws: np.ndar
 
 def run(context: Context, options: Fragility) -> Result:
     """Histograms, probabilities, curves; see the deck reference."""
+    if context.building.initial.movements:
+        raise Refused(
+            "supports that move while it rocks are followed by `rocking` and `dem`: leave out [[initial.movements]]"
+        )
     base = rocker_of(context, options)
     result = Result("fragility")
     if options.durations is None:
