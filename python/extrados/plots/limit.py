@@ -18,6 +18,8 @@ HATCH = "#cfc6b2"
 LONG = 0.5  # height over length: below it section and mechanism stand one over the other
 MOST_LETTERS = 8  # hinges of a moving load: letters of more would run into each other
 FILL, PAVED, EVEN = "#f3ead6", "#b9b4aa", "#c98a2b"
+TIE = "#2b5d8a"
+MOST_TIES_TOLD = 12  # ties whose forces are written beside them
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
 
@@ -66,6 +68,45 @@ def ground(ax: Axes, run: Stored, name: str, joints: list[int]) -> None:
         ax.plot(*np.array([p[j], q[j]]).T, color=style.EDGE, linewidth=2.2, solid_capstyle="butt", zorder=2)
 
 
+def ties(ax: Axes, run: Stored, name: str, state: str, pose: np.ndarray | None = None) -> None:
+    """Ties, struts and springs with their forces in a state, dashed where they are slack; nothing without them.
+
+    pose (blocks, 3): where the stones have gone; the ties follow them, and tell no forces.
+    """
+    forces = f"{state}_tie_force"
+    if forces not in run.arrays[name]:
+        return
+    ends, force = run.array(name, "tie_point"), run.array(name, forces)
+    if pose is not None:
+        ends = np.stack(
+            [_moved(run, name, ends[:, k], run.array(name, "tie_block")[:, k], pose) for k in (0, 1)], axis=1
+        )
+    taut = np.abs(force) > 1e-6 * max(float(np.abs(force).max(initial=0.0)), 1e-300)
+    for k, (one, two) in enumerate(ends):
+        ax.plot(
+            *np.array([one, two]).T, "-o" if taut[k] else "--o", color=TIE, linewidth=1.3, markersize=3, zorder=4,
+            label="tie" if k == 0 else "_",
+        )  # fmt: skip
+    if pose is not None:
+        return
+    shown = ends[:MOST_TIES_TOLD].mean(axis=1)
+    style.letters(ax, shown, [_pull(f) if t else "slack" for f, t in zip(force, taut, strict=True)], TIE)
+
+
+def _moved(run: Stored, name: str, points: np.ndarray, block: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """Points of blocks, -1 the ground, where these have gone."""
+    arm = points - run.array(name, "centroid")[block]
+    x, y, turn = pose[block].T
+    cos, sin = np.cos(turn), np.sin(turn)
+    gone = np.column_stack([x + cos * arm[:, 0] - sin * arm[:, 1], y + sin * arm[:, 0] + cos * arm[:, 1]])
+    return np.where((block < 0)[:, None], points, gone)
+
+
+def _pull(force: float) -> str:
+    """A force in a tie as drawings tell it."""
+    return f"{force / 1e3:.3g} kN" if force > 0.0 else f"{-force / 1e3:.3g} kN pressed"
+
+
 def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text: str) -> None:
     """A dimension line with arrows at both ends and its length beside it."""
     ax.annotate(
@@ -82,15 +123,23 @@ def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text
     )  # fmt: skip
 
 
-def overall_dimensions(ax: Axes, blocks: list[np.ndarray]) -> None:
-    """Width below and height beside a section."""
+def tie_ends(run: Stored, name: str) -> np.ndarray:
+    """Both ends (k, 2) [m] of all ties; none without them."""
+    return run.array(name, "tie_point").reshape(-1, 2) if "tie_point" in run.arrays[name] else np.empty((0, 2))
+
+
+def overall_dimensions(ax: Axes, blocks: list[np.ndarray], beside: np.ndarray) -> None:
+    """Width below and height beside a section; the drawing has room for points (k, 2) beside it."""
     points = np.concatenate(blocks)
     (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
     away = 0.07 * max(right - left, high - low)
     dimension(ax, (left, low - away), (right, low - away), f"{right - left:.2f} m")
     dimension(ax, (left - away, low), (left - away, high), f"{high - low:.2f} m")
-    ax.set_xlim(left - 2.6 * away, right + 1.2 * away)
-    ax.set_ylim(low - 2.0 * away, high + 1.2 * away)
+    (most_left, lowest), (most_right, highest) = (
+        getattr(np.concatenate([points, beside]), end)(axis=0) for end in ("min", "max")
+    )
+    ax.set_xlim(min(left - 2.6 * away, most_left - away), max(right, most_right) + 1.2 * away)
+    ax.set_ylim(min(low - 2.0 * away, lowest - away), max(high, highest) + 1.2 * away)
 
 
 def thrust_lines(ax: Axes, run: Stored, name: str, state: str, colour: str, label: str) -> None:
@@ -163,14 +212,16 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         stone(axes[0], blocks)
         ground(axes[0], run, name, _standing(run, name))
         thrust_lines(axes[0], run, name, "collapse", style.THRUST, "thrust line")
+        ties(axes[0], run, name, "collapse")
         if polygons:
             funiculars(axes[0], run, name, "collapse")
             style.legend_below(fig, axes[0])
         hinge_marks(axes[0], r.hinges)
-        overall_dimensions(axes[0], blocks)
+        overall_dimensions(axes[0], blocks, tie_ends(run, name))
         axes[0].set_title(f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)")
         stone(axes[1], blocks, ghost=True)
         stone(axes[1], carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        ties(axes[1], run, name, "collapse", run.array(name, "mechanism_pose"))
         axes[1].set_title("Mechanism (finite rotations)")
         for ax in axes[:2]:
             style.section_axes(ax)
@@ -185,6 +236,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ground(ax, run, name, _standing(run, name))
             thrust_lines(ax, run, name, "least", style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}")
             thrust_lines(ax, run, name, "most", style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}")
+            ties(ax, run, name, "least")
             style.legend_below(fig, ax)
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
@@ -262,7 +314,8 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for which, colour in colours.items():
             label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m" if arched else f"{which} state"
             thrust_lines(ax, run, name, which, colour, label)
-        overall_dimensions(ax, blocks)
+        ties(ax, run, name, "central" if r.central is not None else "least")
+        overall_dimensions(ax, blocks, tie_ends(run, name))
         style.legend_below(fig, ax)
         safety = r.geometric_safety_factor
         told = f", safety factor {safety:.2f}" if safety is not None and np.isfinite(safety) else ""
@@ -465,6 +518,7 @@ def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tup
     with style.figure(7.5, 5.2) as (fig, (ax,)):
         stone(ax, blocks, ghost=True)
         stone(ax, carried(blocks, centroid, moved))
+        ties(ax, run, name, "settled", moved)
         sides = run.array(name, "joint_block")
         for o in [o for o in r.openings if o.opening_mm > 0.0][:MOST_OPENINGS]:
             end = (p if openings[o.joint, 0] > openings[o.joint, 1] else q)[o.joint]
@@ -570,6 +624,7 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
             ax.plot(*point[link].T, color=style.THRUST, zorder=3, label="thrust line" if i == 0 else "_")
         _zones(ax, run, name, links)
         _pushes(ax, run, name, size)
+        ties(ax, run, name, "collapse")
         _load_marks(ax, run, name, road, size)
         hinged = [h.joint for h in r.hinges]
         lettered = len(hinged) <= MOST_LETTERS
@@ -580,6 +635,7 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         earth(moved, run, name)
         stone(moved, blocks, ghost=True)
         stone(moved, carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        ties(moved, run, name, "collapse", run.array(name, "mechanism_pose"))
         _load_marks(moved, run, name, road, size)
         moved.set_title("Mechanism (finite rotations)")
         for drawn in (ax, moved):

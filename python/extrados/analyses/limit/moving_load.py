@@ -14,6 +14,9 @@ from extrados.analyses.limit.common import (
     limit_of,
     loads_of,
     push_arrays,
+    spoken_ties,
+    tie_arrays,
+    tie_rows,
     zone_arrays,
 )
 from extrados.analyses.limit.tables import MovingLoad, PartialFactors
@@ -215,7 +218,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         raise Refused(
             f"width: {options.width:g} m is more than the depth of the {structure.word}, {assembly.depth:g} m"
         )
-    dead = factored(assembly, loads_of(assembly, options), factors)
+    dead = factored(assembly, loads_of(assembly, options, building), factors)
     # The whole depth stands for the strip that carries the load: as much heavier is the load on all of it.
     strip = assembly.depth / (options.width or assembly.depth)
     design = factors.live * factors.dynamic * strip if train.known else 1.0
@@ -260,6 +263,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         sliding_joints=mechanism.sliding,
         places_without_limit=int(np.isinf(factor).sum()),
         greatest_compression_N=float(np.nanmax(state.normal)),
+        **tie_rows(building, dead, state),
         duality_gap=gap,
         **asked,
     )
@@ -268,6 +272,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     result.arrays = {
         **geometry_arrays(assembly),
         **push_arrays(assembly, dead, state),
+        **tie_arrays(building, dead, {"collapse": state}),
         **zone_arrays(assembly, state, job.strength),
         "place": Array(places, ("place",), "m", "x of the first axle"),
         "way": Array(ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
@@ -361,4 +366,4 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
         text += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
-    return text
+    return text + spoken_ties(r.ties)
