@@ -157,7 +157,7 @@ def _evaluate(
     """The section under load to +x."""
     try:
         state, mechanism = limit.collapse(1)
-        if state.gamma <= 0.0:
+        if state.gamma <= 0.0 or not limit.stands():  # or only when it is pushed
             raise NoEquilibrium
     except Immovable as error:
         return Outcome(
