@@ -1,6 +1,7 @@
 """What the drivers of limit analysis share: loads, refusals, arrays of geometry, lines and polygons."""
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -227,6 +228,25 @@ def earth_arrays(assembly: Assembly) -> dict[str, Array]:
             "outline of the surfacing",
         )  # fmt: skip
     return made
+
+
+def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, Array]:
+    """The loads of an analysis at rest as figures show them, spread ones in pieces; nothing without them."""
+    point, force, whole = [], [], []
+    for k, load in enumerate(loads):
+        for _, at, share in _pieces(assembly, load):
+            point.append(at)
+            force.append((share * load.horizontal, -share * load.force))
+            whole.append(k)
+    if not point:
+        return {}
+    return {
+        "load_point": Array(
+            np.array(point), ("load_piece", "axis"), "m", "where loads at rest act, spread ones in pieces"
+        ),
+        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "their forces, to +x and upward"),
+        "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, from 0"),
+    }
 
 
 def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Array]:

@@ -8,6 +8,7 @@ from extrados.analyses.limit.common import (
     geometry_arrays,
     graphic_arrays,
     limit_of,
+    load_arrays,
     reaction_rows,
     spoken_ties,
     state_arrays,
@@ -69,6 +70,7 @@ def run(context: Context, options: Thrust) -> Result:
     )
     result.results = r
     result.arrays = geometry_arrays(assembly) | tie_arrays(context.building, answer.loads, states)
+    result.arrays |= load_arrays(assembly, options.load)
     about = {"least": "of least thrust", "most": "of greatest thrust", "central": "that is most central"}
     for name, state in states.items():
         result.arrays.update(state_arrays(assembly, name, state, about[name]))

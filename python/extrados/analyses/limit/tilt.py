@@ -10,6 +10,7 @@ from extrados.analyses.limit.common import (
     graphic_arrays,
     hinge_rows,
     limit_of,
+    load_arrays,
     mended_capacity,
     reaction_rows,
     spoken_ties,
@@ -89,6 +90,7 @@ def run(context: Context, options: Tilt) -> Result:
             "the mechanism carried on: places of the centroids, rotations",
         ),
         **tie_arrays(building, answer.loads, {"collapse": state}),
+        **load_arrays(assembly, options.load),
     }  # fmt: skip
     if answer.least:
         first = next(iter(answer.least))
