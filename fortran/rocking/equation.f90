@@ -81,7 +81,9 @@ contains
       real(wp), intent(in) :: rtol
       real(wp), intent(in) :: fraction        !! first guess, of the step
       type(dense_step), intent(inout) :: step
-      real(wp) :: h, full, change
+      !> A change by this share of the step is followed to rounding by a straight line
+      real(wp), parameter :: straight = 1.0e-7_wp
+      real(wp) :: h, full, change, rate
       integer :: k
 
       if (problem%series) then
@@ -96,6 +98,13 @@ contains
          change = -step%q / step%v
          if (abs(change) <= 4.0_wp * spacing(step%t + h)) exit
          if (h + change <= 0.0_wp .or. h + change > 1.5_wp * full) exit
+         if (abs(change) <= straight * h) then
+            rate = step%v + change * step%a
+            call step%cut(1.0_wp + change / h)
+            step%q = 0.0_wp
+            step%v = rate
+            exit
+         end if
          h = h + change
       end do
    end subroutine polish_impact

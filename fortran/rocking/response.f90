@@ -18,7 +18,7 @@ module rocking_response
    use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
    use rocking_record, only : barrier_of, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
-   use rocking_uplift, only : find_uplift
+   use rocking_uplift, only : find_uplift, last_calm
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -74,6 +74,7 @@ module rocking_response
       procedure :: start
       procedure :: segment_end
       procedure :: wait
+      procedure :: skip_calm
       procedure :: take_step
       procedure :: touch
       procedure :: impact
@@ -204,6 +205,7 @@ contains
          state%t = window
          if (associated(state%history)) call state%history%rest(state%problem, state%t)
          if (state%t >= t_next .and. state%t < state%options%end_time) state%problem%segment = state%problem%segment + 1
+         if (.not. associated(state%history)) call state%skip_calm()
          return
       end if
       if (associated(state%history)) call state%history%rest(state%problem, lifts)
@@ -217,6 +219,19 @@ contains
       state%answer%half_cycles = state%answer%half_cycles + 1
       if (associated(state%history)) call state%history%note(event_uplift, state%t, real(found_side, wp))
    end subroutine wait
+
+   !> Over the segments of a sampled motion that leave the structure at rest, where nothing is recorded of them
+   subroutine skip_calm(state)
+      class(run_state), intent(inout) :: state
+      integer :: calm
+      associate (problem => state%problem)
+         if (.not. associated(problem%ground%samples) .or. problem%segment < 1) return
+         calm = last_calm(problem, problem%segment, state%options%end_time)
+         if (calm < problem%segment) return
+         state%t = problem%ground%break_time(calm + 1)
+         problem%segment = calm + 1
+      end associate
+   end subroutine skip_calm
 
    !> Try one step of at most the way to t_next; where it is refused the next try is shorter
    subroutine take_step(state, t_next, accepted)
