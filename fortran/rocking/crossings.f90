@@ -56,7 +56,8 @@ contains
       s = root_between(step%cq, step%degree, level, 0.0_wp, 1.0_wp)
    end function crossing_fraction
 
-   !> Where a polynomial passes a level, to rounding: Newton's method, by halves where it leaves the bracket
+   !> Where a polynomial passes a level, to rounding: Newton's method from the false position, by halves where it
+   !> leaves the bracket or does not converge
    pure function root_between(c, degree, level, start, finish) result(s)
       real(wp), intent(in) :: c(0:)     !! coefficients of the powers
       integer, intent(in) :: degree
@@ -64,6 +65,8 @@ contains
       real(wp), intent(in) :: start     !! value differs from the level in sign from that at finish
       real(wp), intent(in) :: finish
       real(wp) :: s
+      !> Newton's error after a change is its square times curvature over slope
+      real(wp), parameter :: enough = 1.0e-10_wp
       real(wp) :: low, high, f, slope, change, wide
       logical :: above
       integer :: j
@@ -72,9 +75,11 @@ contains
       high = finish
       call polynomial(low, f, slope)
       above = f > 0.0_wp
+      change = f
       call polynomial(high, f, slope)
       s = high
       wide = 2.0_wp * (high - low)
+      change = -f * (high - low) / (f - change)
       do j = 1, 100
          if (f == 0.0_wp) exit
          if ((f > 0.0_wp) .eqv. above) then
@@ -82,15 +87,15 @@ contains
          else
             high = s
          end if
-         change = -f / slope  ! a slope of zero is caught below: the change then lies outside
          ! Newton's method converges where each change is less than half of that before.
          if (.not. (s + change > low .and. s + change < high .and. abs(change) <= 0.5_wp * wide)) then
             change = 0.5_wp * (low + high) - s
          end if
-         wide = abs(change)
          s = s + change
-         if (wide <= 2.0_wp * spacing(s)) exit
+         if (abs(change) <= enough * s .and. j > 1) exit
+         wide = abs(change)
          call polynomial(s, f, slope)
+         change = -f / slope  ! also where the slope is zero: the change then lies outside
       end do
 
    contains

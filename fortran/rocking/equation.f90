@@ -4,7 +4,7 @@ module rocking_equation
    use common_dopri5, only : oscillator, dopri5_attempt
    use common_kinds, only : wp, gravity
    use common_signal, only : signal
-   use rocking_rocker, only : rocker
+   use rocking_rocker, only : rocker, series_short
    implicit none
    private
    public :: equation_of_motion, attempt, series_factor, polish_impact
@@ -66,8 +66,8 @@ contains
       real(wp) :: factor
       if (.not. step%error <= huge(1.0_wp)) then
          factor = 0.1_wp
-      else if (step%error <= 1.0e-3_wp) then
-         factor = 2.0_wp  ! the series was cut short: a longer step is as cheap
+      else if (step%error <= series_short) then
+         factor = 2.0_wp
       else
          factor = min(2.0_wp, max(0.1_wp, 0.9_wp * step%error**(-1.0_wp / real(step%degree - 2, wp))))
       end if
