@@ -18,7 +18,7 @@ module rocking_response
    use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
    use rocking_record, only : barrier_of, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
-   use rocking_uplift, only : find_uplift
+   use rocking_uplift, only : find_uplift, last_calm
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -65,15 +65,20 @@ module rocking_response
       real(wp) :: atol_q = 0.0_wp
       real(wp) :: atol_v = 0.0_wp
       integer :: attempts = 0
+      integer :: last_whole = 0            !! last segment of the ground motion that ends within the run
       integer(c_int) :: status = status_ok
       logical :: resting = .false.
       logical :: from_rest = .false.       !! no step was accepted since the uplift
       logical :: renew = .true.            !! the acceleration is not that of this state
+      logical :: at_hand = .false.         !! the next step was tried already
       logical :: over = .false.            !! nothing more is to be done
    contains
       procedure :: start
       procedure :: segment_end
       procedure :: wait
+      procedure :: skip_calm
+      procedure :: may_glide
+      procedure :: glide
       procedure :: take_step
       procedure :: touch
       procedure :: impact
@@ -110,6 +115,11 @@ contains
          if (run%resting) then
             call run%wait(t_next)
             if (run%resting .or. run%over) cycle
+         end if
+         if (run%may_glide(t_next)) then
+            call run%glide()
+            if (run%t >= options%end_time .or. run%over) cycle
+            t_next = run%segment_end()
          end if
          call run%take_step(t_next, accepted)
          if (.not. accepted) cycle
@@ -164,6 +174,11 @@ contains
          if (ground%break_time(state%problem%segment + 1) > state%t) exit
          state%problem%segment = state%problem%segment + 1
       end do
+      state%last_whole = ground%segments
+      do while (state%last_whole > 0)
+         if (ground%break_time(state%last_whole + 1) <= options%end_time) exit
+         state%last_whole = state%last_whole - 1
+      end do
       call state%note_peak(state%q)
    end subroutine start
 
@@ -204,6 +219,7 @@ contains
          state%t = window
          if (associated(state%history)) call state%history%rest(state%problem, state%t)
          if (state%t >= t_next .and. state%t < state%options%end_time) state%problem%segment = state%problem%segment + 1
+         if (.not. associated(state%history)) call state%skip_calm()
          return
       end if
       if (associated(state%history)) call state%history%rest(state%problem, lifts)
@@ -217,6 +233,60 @@ contains
       state%answer%half_cycles = state%answer%half_cycles + 1
       if (associated(state%history)) call state%history%note(event_uplift, state%t, real(found_side, wp))
    end subroutine wait
+
+   !> Over the segments of a sampled motion that leave the structure at rest, where nothing is recorded of them
+   subroutine skip_calm(state)
+      class(run_state), intent(inout) :: state
+      integer :: calm
+      associate (problem => state%problem)
+         if (.not. associated(problem%ground%samples) .or. problem%segment < 1) return
+         calm = last_calm(problem, problem%segment, state%options%end_time)
+         if (calm < problem%segment) return
+         state%t = problem%ground%break_time(calm + 1)
+         problem%segment = calm + 1
+      end associate
+   end subroutine skip_calm
+
+   !> Does a whole segment of straight lines lie ahead, with nobody asking for what happens within?
+   pure function may_glide(state, t_next) result(answer)
+      class(run_state), intent(in) :: state
+      real(wp), intent(in) :: t_next
+      logical :: answer
+      associate (problem => state%problem)
+         answer = problem%series .and. associated(problem%ground%samples) .and. .not. associated(state%history)
+         if (answer) answer = problem%segment >= 1 .and. problem%segment <= state%last_whole
+         if (answer) answer = state%t <= problem%ground%break_time(problem%segment) .and. state%h_next >= t_next - state%t
+      end associate
+   end function may_glide
+
+   !> Over the segments in which nothing happens: what take_step and move_on do, without looking into them
+   subroutine glide(state)
+      class(run_state), intent(inout) :: state
+      integer :: last, passed, polls
+
+      associate (problem => state%problem, ground => state%problem%ground)
+         last = min(state%last_whole, problem%segment - 1 + state%options%max_steps - state%attempts)
+         call problem%body%glide(problem%side, ground%start, ground%step, ground%scale, ground%samples, problem%segment, &
+            last, [state%atol_q, state%atol_v, state%options%tolerance], state%q, state%v, passed, &
+            state%step, state%at_hand)
+         if (passed == 0) return
+         problem%segment = problem%segment + passed
+         state%t = ground%break_time(problem%segment)
+         state%h_next = max(state%h_next, 2.0_wp * (state%t - ground%break_time(problem%segment - 1)))
+      end associate
+      state%renew = .false.
+      state%from_rest = .false.
+      state%answer%steps = state%answer%steps + passed
+      polls = state%attempts / poll_every
+      state%attempts = state%attempts + passed
+      if (state%attempts / poll_every > polls) then
+         if (cancel_requested()) then
+            state%status = status_cancelled
+            state%over = .true.
+         end if
+      end if
+      call state%note_peak(state%q)
+   end subroutine glide
 
    !> Try one step of at most the way to t_next; where it is refused the next try is shorter
    subroutine take_step(state, t_next, accepted)
@@ -238,8 +308,9 @@ contains
       end if
       call state%count_attempt()
       if (state%over) return
-      call attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, state%atol_v, &
-         state%options%tolerance, state%step)
+      if (.not. state%at_hand) call attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, &
+         state%atol_v, state%options%tolerance, state%step)
+      state%at_hand = .false.
       if (state%problem%series) then
          factor = series_factor(state%step)
       else
