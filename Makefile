@@ -13,8 +13,9 @@ test: setup
 	@$(PYTHON) -m pytest -q
 	@$(PYTHON) tools/native_tests.py
 
-verify: setup  ## long validation; writes docs/verification.md
-	@$(PYTHON) -m pytest -q -m ""
+verify: setup  ## long validation and whole trials; writes docs/verification.md
+	@EXTRADOS_TRIALS=1 $(PYTHON) -m pytest -q -m ""
+	@$(PYTHON) tools/seeded_faults.py
 	@$(PYTHON) tools/verification_book.py
 
 bench: setup  ## against peers, which it installs; BENCH="arch dem" names some

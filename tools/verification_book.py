@@ -1,14 +1,18 @@
 """Write docs/verification.md: every row of every case with what was found, grouped by kind of proof."""
 
+import json
+import math
 import sys
 from pathlib import Path
 from statistics import mean, stdev
 
 ROOT = Path(__file__).resolve().parents[1]
+BOOK = ROOT / "docs" / "verification.md"
 sys.path.insert(0, str(ROOT / "tests" / "cases"))
 
 from expectations import KINDS, Row, load_cases, pick, results_of  # noqa: E402
 
+TRIALS = "## Trials"
 TITLES = {
     "exact": "Verification: exact solutions",
     "peer": "Verification: independent programs",
@@ -18,6 +22,8 @@ TITLES = {
 }
 
 
+#: Measured numbers of one folder from which on bias and scatter are told
+ENOUGH = 5
 #: What a row of a measured curve compares
 COMPARED = {
     "peak_ratio": "peak", "tail_ratios[0]": "tail at 75 % of the peak", "tail_ratios[1]": "tail at 50 %",
@@ -42,6 +48,38 @@ def line(case: str, row: Row, found: object) -> str:
     )
 
 
+def of_loads(ratios: dict[str, list[float]]) -> list[str]:
+    """Bias and scatter of measured over computed, by folder of cases, where there are enough rows."""
+    rows = []
+    for folder, values in ratios.items():
+        if len(values) >= ENOUGH:
+            logs = [math.log(v) for v in values]
+            middle, spread = math.exp(mean(logs)), math.exp(stdev(logs))
+            rows.append(f"| {folder} | {len(values)} | {middle:.2f} | {spread:.2f} |")
+    if not rows:
+        return []
+    head = "| cases | rows | bias (geometric mean of measured over computed) | scatter (factor of one standard deviation) |"
+    return ["### Bias and scatter of single numbers", "", f"{head}\n|---|---|---|---|", *rows, ""]
+
+
+def trials() -> list[str]:
+    """What was tried and did not hold, as the trials of tests/trials and tools/seeded_faults.py noted it."""
+    notes = sorted((ROOT / "build" / "trials").glob("*.json"))
+    rows = [json.loads(path.read_text(encoding="utf-8")) for path in notes]
+    if not rows:
+        return []
+    lines = [
+        f"| {r['what']} | {r['tried']:,} | {r['failures']} | {'; '.join(r['notes'])} |".replace("\n", " ") for r in rows
+    ]
+    return [TRIALS, "", "From fixed seeds; a failure is one of what the first column says.", "",
+            "| looked for | tried | found | |\n|---|---|---|---|", *lines, ""]  # fmt: skip
+
+
+def with_trials_alone(book: str) -> str:
+    """The book with the section of the trials written anew, and all else as it was."""
+    return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials())
+
+
 def bias(rows: list[tuple[str, Row, object]]) -> list[str]:
     """Bias and scatter of the curves that were compared with measured ones, by what of them was compared."""
     groups: dict[str, list[tuple[str, float]]] = {}
@@ -61,6 +99,7 @@ def bias(rows: list[tuple[str, Row, object]]) -> list[str]:
 def main() -> int:
     """Run all cases; the number of rows that differ."""
     tables: dict[str, list[str]] = {kind: [] for kind in KINDS}
+    ratios: dict[str, list[float]] = {}
     all_rows: list[tuple[str, Row, object]] = []
     wrong = 0
     for case in load_cases():
@@ -69,6 +108,9 @@ def main() -> int:
             for row in (r for r in case.rows if r.change == change):
                 found = pick(results, row.quantity)
                 wrong += not row.fits(found)
+                measured = row.kind == "experiment" and ".measured." not in row.quantity
+                if measured and isinstance(found, float) and row.value > 0.0 and found > 0.0:
+                    ratios.setdefault(case.name.split("/")[0], []).append(row.value / found)
                 tables[row.kind].append(line(case.name, row, found))
                 all_rows.append((case.name, row, found))
         print(case.name, flush=True)
@@ -83,10 +125,16 @@ def main() -> int:
                     "| | tests | bias | scatter | each |\n|---|---|---|---|---|", *found, "",
                 ]  # fmt: skip
             parts += [head, *tables[kind], ""]
-    (ROOT / "docs" / "verification.md").write_text("\n".join(parts), encoding="utf-8")
+        if kind == "experiment":
+            parts += of_loads(ratios)
+    parts += trials()
+    BOOK.write_text("\n".join(parts), encoding="utf-8")
     print(f"docs/verification.md: {sum(map(len, tables.values()))} rows, {wrong} differ")
     return wrong
 
 
 if __name__ == "__main__":
+    if sys.argv[1:] == ["--trials"]:
+        BOOK.write_text(with_trials_alone(BOOK.read_text(encoding="utf-8")), encoding="utf-8")
+        sys.exit()
     sys.exit(min(main(), 1))

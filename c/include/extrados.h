@@ -1,6 +1,7 @@
 /* Functions of the C part, called from Fortran through bind(c) interfaces only.
  * Every function that can fail returns a code of extrados_status.h; none prints,
- * stops the process or keeps state, apart from the cancel flag and the registry of handles. */
+ * stops the process or keeps state, apart from the cancel flag, the
+ * signals that set it and the registry of handles. */
 #ifndef EXTRADOS_H
 #define EXTRADOS_H
 
@@ -31,9 +32,18 @@ EXTRADOS_API int extrados_handle_count(void);
 /* cancel.c: the flag behind Ctrl-C, shared by all threads. */
 EXTRADOS_API void extrados_cancel_set(int value);
 EXTRADOS_API int extrados_cancel_get(void);
+/* While `on` was said more often than off, SIGINT and SIGTERM set the flag before they are answered as ever: for
+ * computations in threads that may not touch Python's handlers. The handlers come back after. */
+EXTRADOS_API void extrados_watch_signals(int on);
 
-/* random.c: GSL returns errors instead of ending the process. */
-EXTRADOS_API void extrados_library_init(void);
+/* blas.c: `enter` before a call of BLAS or LAPACK that may run beside others, `leave` after it; out_of_memory where
+ * there is no room for its buffer. `load`, once at the start, takes the buffer of the first. */
+EXTRADOS_API int extrados_blas_enter(void);
+EXTRADOS_API void extrados_blas_leave(void);
+EXTRADOS_API int extrados_blas_load(void);
+
+/* random.c: GSL returns errors instead of ending the process, BLAS has its first buffer. */
+EXTRADOS_API int extrados_library_init(void);
 
 /* ldl.c: a symmetric sparse system, lower triangle by columns, 0-based. `order` gives the fill-reducing
  * order (ordering 0 AMD, 1 METIS; order[new] = old); everything after it expects equations in that order. */

@@ -84,7 +84,11 @@
   ENTRY(5, close, "closing n") \
   ENTRY(6, close_s, "closing s") \
   ENTRY(7, open, "opening n") \
-  ENTRY(8, open_s, "opening s")
+  ENTRY(8, open_s, "opening s") \
+  ENTRY(9, wear, "cohesion") \
+  ENTRY(10, slide, "sliding") \
+  ENTRY(11, follow, "friction follows") \
+  ENTRY(12, stick, "sticking")
 
 /* Why a run of events ended */
 #define EXTRADOS_SLA_STOP_LIST(ENTRY) \
@@ -94,7 +98,8 @@
   ENTRY(3, all_empty, "all intervals are empty") \
   ENTRY(4, displacement, "target displacement") \
   ENTRY(5, load, "target load") \
-  ENTRY(6, fraction, "load fell below the fraction of its peak")
+  ENTRY(6, fraction, "load fell below the fraction of its peak") \
+  ENTRY(7, lost, "no equilibrium is found any more")
 
 /* Envelopes of generated motions (c/quake/envelope.c) */
 #define EXTRADOS_ENVELOPE_LIST(ENTRY) \

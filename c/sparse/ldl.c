@@ -140,7 +140,10 @@ static int factorise(struct extrados_sparse *self, const double *value, double *
   if (!all_finite((int64_t)self->matrix.nzmax, value)) return EXTRADOS_not_finite;
   self->matrix.x = (void *)(uintptr_t)value;
   self->matrix.xtype = CHOLMOD_REAL;
+  const int room = extrados_blas_enter();
+  if (room != EXTRADOS_ok) return room;
   cholmod_l_factorize(&self->matrix, self->factor, &self->common);
+  extrados_blas_leave();
   if (self->common.status != CHOLMOD_OK) {
     int code = code_of(&self->common);
     *weakest = (int64_t)self->factor->minor;
@@ -367,7 +370,10 @@ int extrados_sparse_plain(void *handle, const double *value, int vectors, double
   b.x = z;
   b.xtype = CHOLMOD_REAL;
   b.dtype = CHOLMOD_DOUBLE;
+  const int room = extrados_blas_enter();
+  if (room != EXTRADOS_ok) return room;
   cholmod_l_solve2(CHOLMOD_A, self->factor, &b, NULL, &self->answer, NULL, &self->y, &self->e, &self->common);
+  extrados_blas_leave();
   if (self->common.status != CHOLMOD_OK) return code_of(&self->common);
   memcpy(z, self->answer->x, b.nzmax * sizeof *z);
   return EXTRADOS_ok;

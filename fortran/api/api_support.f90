@@ -3,7 +3,7 @@ module api_support
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: list_entry, close_handle, handle_count, set_cancel, init_libraries
+   public :: list_entry, close_handle, handle_count, set_cancel, cancel_requested, watch_signals, init_libraries
 
 contains
 
@@ -44,10 +44,26 @@ contains
       call cancel_set(value)
    end subroutine set_cancel
 
-   !> Once per process: GSL's aborting error handler is turned off
-   subroutine init_libraries()
+   !> Whether the running loops were asked to stop (1)
+   subroutine cancel_requested(value)
+      use common_cancel, only : cancel => cancel_requested
+      integer(c_int), intent(out) :: value
+      value = merge(1, 0, cancel())
+   end subroutine cancel_requested
+
+   !> From now on (1) Ctrl-C and SIGTERM also set the flag, for calls from threads that may not touch Python's handlers;
+   !> until it was said as often that they need not (0)
+   subroutine watch_signals(on)
+      use common_c_bindings, only : extrados_watch_signals
+      integer(c_int), intent(in) :: on
+      call extrados_watch_signals(on)
+   end subroutine watch_signals
+
+   !> Once per process: GSL's aborting error handler is turned off, BLAS takes its first buffer
+   subroutine init_libraries(status)
       use common_c_bindings, only : extrados_library_init
-      call extrados_library_init()
+      integer(c_int), intent(out) :: status
+      status = extrados_library_init()
    end subroutine init_libraries
 
 end module api_support

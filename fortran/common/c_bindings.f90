@@ -4,7 +4,7 @@ module common_c_bindings
    implicit none
    private
    public :: extrados_list_entry, extrados_library_init
-   public :: extrados_cancel_set, extrados_cancel_get
+   public :: extrados_cancel_set, extrados_cancel_get, extrados_watch_signals
    public :: extrados_handle_new, extrados_handle_take, extrados_handle_leave, extrados_handle_close
    public :: extrados_handle_count
 
@@ -20,6 +20,12 @@ module common_c_bindings
          implicit none (type, external)
          integer(c_int) :: value
       end function extrados_cancel_get
+
+      subroutine extrados_watch_signals(on) bind(c)
+         import :: c_int
+         implicit none (type, external)
+         integer(c_int), value, intent(in) :: on
+      end subroutine extrados_watch_signals
 
       function extrados_list_entry(index, code, name_size, name, text_size, text) bind(c) result(found)
          import :: c_int, c_char
@@ -69,9 +75,11 @@ module common_c_bindings
          integer(c_int) :: count
       end function extrados_handle_count
 
-      subroutine extrados_library_init() bind(c)
+      function extrados_library_init() bind(c) result(status)
+         import :: c_int
          implicit none (type, external)
-      end subroutine extrados_library_init
+         integer(c_int) :: status
+      end function extrados_library_init
    end interface
 
 end module common_c_bindings

@@ -6,14 +6,16 @@
 module sla_events
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
-   use common_lists, only : stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
+   use common_lists, only : code_stick => sla_event_stick, &
+      stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
       stop_unbounded => sla_stop_unbounded, stop_all_empty => sla_stop_all_empty, &
-      stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction
+      stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction, &
+      stop_lost => sla_stop_lost
    use common_status, only : status_ok, status_cancelled, status_not_positive_definite, status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_event, extrados_sparse_rank1, extrados_sparse_solve
    use sla_group, only : below, bound, point_group, scan_result, unbounded, most_entries, most_rank
-   use sla_model, only : element_model, model_factor, model_solve
+   use sla_model, only : element_model, model_factor, model_solve, held_work
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -21,6 +23,8 @@ module sla_events
 
    integer, parameter :: log_reals = 9, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
+   !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
+   real(wp), parameter :: farthest = 1.0e3_wp
    integer, parameter :: guard_every = 500
    real(wp), parameter :: most_residual = 1.0e-8_wp
 
@@ -113,7 +117,15 @@ contains
                 model%lambda < rules%fraction * model%peak .and. &
                 (log%monitors(1, log%count) - model%peak_displacement) * model%slope > 0.0_wp) reason = stop_fraction
          end if
-         if (model%work(3) > rules%compliance * model%first_compliance) reason = stop_mechanism
+         ! Where no multiplier brings a state back, limits run away
+         if (model%peak > 0.0_wp .and. .not. equilibrium) then
+            if (.not. abs(model%lambda) <= farthest * model%peak) reason = stop_lost
+         end if
+         ! Friction makes the structure unsymmetric: beyond its limit it may answer the load the other way; but what
+         ! slides back sticks at once
+         if (.not. abs(model%work(3)) <= rules%compliance * model%first_compliance) then
+            if (model%pending(3) /= code_stick) reason = stop_mechanism
+         end if
          if (reason /= stop_none) return
       end do
    end subroutine run_events
@@ -214,7 +226,7 @@ contains
          if (r == 0) return
          do i = 1, r
             model%before(i) = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
-               model%lambda * model%ub(event%index(1:event%entries)))
+               model%lambda * model%ub(event%index(1:event%entries))) - event%origin(i)
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -226,6 +238,7 @@ contains
             end if
             return
          end if
+         model%origin_energy = model%origin_energy + event%shift
          index0 = event%index - 1_c_int
          status = extrados_sparse_event(model%handle, int(r, c_int), int(event%entries, c_int), index0, &
             reshape(event%w(1:event%entries, 1:r), [event%entries * r]), model%z)
@@ -235,8 +248,15 @@ contains
                m(i, j) = -dot_product(event%w(1:event%entries, i), model%z(event%index(1:event%entries), j))
             end do
             m(j, j) = m(j, j) + event%sign(j)
-            wa(j) = dot_product(event%w(1:event%entries, j), model%ua(event%index(1:event%entries)))
-            wb(j) = dot_product(event%w(1:event%entries, j), model%ub(event%index(1:event%entries)))
+            wa(j) = dot_product(event%w(1:event%entries, j), model%ua(event%index(1:event%entries))) - &
+               event%origin(j) - event%hold(1, j)
+            model%fo(event%index(1:event%entries)) = model%fo(event%index(1:event%entries)) - &
+               event%sign(j) * event%origin(j) * event%w(1:event%entries, j)
+            do i = 1, 2
+               model%fh(event%index(1:event%entries), i) = model%fh(event%index(1:event%entries), i) - &
+                  event%sign(j) * event%hold(i, j) * event%w(1:event%entries, j)
+            end do
+            wb(j) = dot_product(event%w(1:event%entries, j), model%ub(event%index(1:event%entries))) - event%hold(2, j)
          end do
          call small(m, wa, wb, r, all(event%sign(1:r) > 0.0_wp), reason)
          if (reason /= stop_none) return
@@ -328,8 +348,8 @@ contains
             if (k == 1) call model%holders(g)%group%force(model%ua, model%force)
             if (k == 2) call model%holders(g)%group%force(model%ub, model%force)
          end do
-         if (k == 1) model%z(:, k) = model%fa(1:n) - model%force(1:n)
-         if (k == 2) model%z(:, k) = model%fb(1:n) - model%force(1:n)
+         if (k == 1) model%z(:, k) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1) - model%force(1:n)
+         if (k == 2) model%z(:, k) = model%fb(1:n) + model%fh(1:n, 2) - model%force(1:n)
          load = merge(norm2(model%fa), norm2(model%fb), k == 1)
          if (load > 0.0_wp) model%residual = max(model%residual, norm2(model%z(:, k)) / load)
       end do
@@ -340,31 +360,45 @@ contains
    subroutine account(model, lambda)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: lambda
-      real(wp) :: new(3), after, was
+      real(wp) :: new(3), held(2), after, was, change, cross
       integer :: i
 
       was = model%lambda_recorded
+      held = held_work(model, lambda)
+      cross = dot_product(model%fb, model%ua)   ! fa.ub too, but for friction that slides
+      change = 0.0_wp
       new = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), dot_product(model%fb, model%ub)]
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
          if (.not. model%carried) model%external = model%external + 0.5_wp * new(1)
-         model%external = model%external + lambda * new(2) + 0.5_wp * lambda**2 * new(3)
+         model%external = model%external + 0.5_wp * lambda * (new(2) + cross) + 0.5_wp * lambda**2 * new(3)
          model%recorded = .true.
       else
          associate (event => model%event)
             do i = 1, event%rank
                after = dot_product(event%w(1:event%entries, i), model%ua(event%index(1:event%entries)) + &
-                  lambda * model%ub(event%index(1:event%entries)))
-               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i) * after
+                  lambda * model%ub(event%index(1:event%entries))) - event%origin(i)
+               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * (model%before(i) * after - &
+                  event%origin(i)**2)
+               ! What the change of the held forces did at the old and at the new displacements
+               change = change + event%sign(i) * ( &
+                  (event%hold(1, i) + was * event%hold(2, i)) * (after + event%origin(i)) &
+                  + (event%hold(1, i) + lambda * event%hold(2, i)) * (model%before(i) + event%origin(i)))
             end do
+            model%dissipated = model%dissipated - event%shift
          end associate
+         ! Work of the held forces, (fh_old + fh_new) . (u_new - u_old) / 2
+         model%dissipated = model%dissipated - 0.5_wp * (2.0_wp * held(1) + (lambda + was) * held(2) &
+            - 2.0_wp * model%held(1) - (lambda + was) * model%held(2) + change)
          ! (f_old + f_new) . (u_new - u_old) / 2 with f = A + lambda B, u = ua + lambda ub
          model%external = model%external + 0.5_wp * ( &
-            2.0_wp * new(1) + (was + 3.0_wp * lambda) * new(2) + (was * lambda + lambda**2) * new(3) &
-            - 2.0_wp * model%work(1) - (lambda + 3.0_wp * was) * model%work(2) &
+            2.0_wp * new(1) + 2.0_wp * lambda * new(2) + (was + lambda) * cross + (was * lambda + lambda**2) * new(3) &
+            - 2.0_wp * model%work(1) - 2.0_wp * was * model%work(2) - (lambda + was) * model%cross &
             - (was * lambda + was**2) * model%work(3))
       end if
       model%event%rank = 0
+      model%held = held
+      model%cross = cross
       model%work = new
       model%lambda_recorded = lambda
       model%lambda = lambda
@@ -383,7 +417,10 @@ contains
       integer :: k, i, offset
 
       log%count = log%count + 1
-      stored = 0.5_wp * (model%work(1) + model%lambda * (2.0_wp * model%work(2) + model%lambda * model%work(3)))
+      stored = 0.5_wp * (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
+      ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
+      stored = stored + model%origin_energy + 0.5_wp * (model%held(1) + model%lambda * model%held(2) &
+         - dot_product(model%fo, model%ua + model%lambda * model%ub))
       log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored, model%external, &
          model%dissipated, model%cracked, model%work(3), model%residual]
       offset = 0

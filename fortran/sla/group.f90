@@ -41,6 +41,9 @@ module sla_group
       integer(c_int) :: index(most_entries) = 0      !! equations, 1-based
       real(wp) :: w(most_entries, most_rank) = 0.0_wp
       real(wp) :: sign(most_rank) = 0.0_wp           !! +1 softens, -1 stiffens
+      real(wp) :: origin(most_rank) = 0.0_wp         !! value of w.u at which the part that changes carries nothing
+      real(wp) :: hold(2, most_rank) = 0.0_wp        !! change of a held force along w, constant and per multiplier
+      real(wp) :: shift = 0.0_wp                     !! change of the energy of `origins` [J]
    end type event_vectors
 
    !> How cracked material behaves, the same for the whole model
@@ -77,6 +80,7 @@ module sla_group
       procedure(damage_interface), deferred :: damage
       procedure(report_interface), deferred :: report
       procedure(state_interface), deferred :: state
+      procedure :: origins
    end type point_group
 
    type :: group_holder
@@ -159,6 +163,16 @@ module sla_group
    end interface
 
 contains
+
+   !> Points whose stress is k d - k0 + h: add the forces of k0 and of -h, and the energy that k0 alone leaves
+   pure subroutine origins(group, springs, held, energy)
+      class(point_group), intent(in) :: group
+      real(wp), intent(inout) :: springs(0:)    !! [N]
+      real(wp), intent(inout) :: held(0:, :)    !! (0:, 2) constant and per unit multiplier [N]
+      real(wp), intent(inout) :: energy         !! [J]
+      associate (none => group, same => springs, likewise => held, unchanged => energy)   ! most groups have none
+      end associate
+   end subroutine origins
 
    !> Displacements of an element's own freedoms
    pure subroutine gather(group, element, u, local)

@@ -3,6 +3,7 @@
 !> Equations are renumbered once into the order of the factor, so that vectors need no permutation after.
 module sla_model
    use common_kinds, only : wp
+   use common_lists, only : sla_event_stick
    use common_status, only : status_ok, status_bad_index, status_out_of_memory, status_invalid_argument, &
       status_too_large, status_not_positive_definite
    use sla_assembly, only : build_pattern, assemble
@@ -15,7 +16,7 @@ module sla_model
    implicit none
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
-   public :: model_damage, model_standing, model_resume, standing_values
+   public :: held_work, model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
@@ -41,6 +42,10 @@ module sla_model
       integer(c_int64_t) :: factor_values = 0
       integer, allocatable :: piece(:, :)                !! (3, pieces) group, first and last element of a scan
       real(wp), allocatable :: fa(:), fb(:)              !! (0:n) constant and reference load [N]
+      real(wp), allocatable :: fo(:)                     !! (0:n) forces of origins that moved, see group [N]
+      real(wp), allocatable :: fh(:, :)                  !! (0:n, 2) held forces, constant and per multiplier [N]
+      real(wp) :: held(2) = 0.0_wp                       !! fh.u of the last state [J]
+      real(wp) :: origin_energy = 0.0_wp                 !! [J]
       real(wp), allocatable :: ua(:), ub(:)              !! (0:n) their displacements [m]
       real(wp), allocatable :: z(:, :)                   !! (n, most_rank)
       real(wp), allocatable :: force(:)                  !! (0:n) of the residual
@@ -54,6 +59,7 @@ module sla_model
       real(wp) :: lambda = 0.0_wp
       real(wp) :: noise = 0.0_wp                         !! stress under B that counts as none [Pa]
       real(wp) :: work(3) = 0.0_wp                       !! fa.ua, fa.ub, fb.ub of the last state [J]
+      real(wp) :: cross = 0.0_wp                         !! fb.ua of the last state [J]
       real(wp) :: before(most_rank) = 0.0_wp             !! w.u before the last event
       real(wp) :: external = 0.0_wp                      !! [J]
       real(wp) :: dissipated = 0.0_wp                    !! [J] along the straight way between events
@@ -186,7 +192,8 @@ contains
          status = status_too_large
          return
       end if
-      allocate (model%value(model%start(n + 1)), model%fa(0:n), model%fb(0:n), model%ua(0:n), model%ub(0:n), &
+      allocate (model%value(model%start(n + 1)), model%fa(0:n), model%fb(0:n), model%fo(0:n), model%fh(0:n, 2), &
+         model%ua(0:n), model%ub(0:n), &
          model%z(n, most_rank), model%force(0:n), model%piece(3, pieces), model%part(pieces), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
@@ -194,6 +201,8 @@ contains
       end if
       model%fa = 0.0_wp
       model%fb = 0.0_wp
+      model%fo = 0.0_wp
+      model%fh = 0.0_wp
       model%ua = 0.0_wp
       model%ub = 0.0_wp
       k = 0
@@ -234,10 +243,21 @@ contains
    subroutine model_solve(model, status)
       type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
-      integer :: n
+      integer :: n, g
       n = model%equations
-      model%z(:, 1) = model%fa(1:n)
-      model%z(:, 2) = model%fb(1:n)
+      model%fo = 0.0_wp
+      model%fh = 0.0_wp
+      model%origin_energy = 0.0_wp
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
+         class is (point_group)
+            call group%origins(model%fo, model%fh, model%origin_energy)
+         end select
+      end do
+      model%fo(0) = 0.0_wp
+      model%fh(0, :) = 0.0_wp
+      model%z(:, 1) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1)
+      model%z(:, 2) = model%fb(1:n) + model%fh(1:n, 2)
       if (model%refactor) then
          status = extrados_sparse_plain(model%handle, model%value, 2_c_int, model%z)
       else
@@ -318,7 +338,7 @@ contains
       if (.not. all(abs([values(1:3), values(17:20), values(24:27)]) <= real(huge(1), wp))) return
       if (.not. (is_point(model, nint(values(1:2))) .and. is_point(model, nint(values(24:25))) .and. &
          is_point(model, nint(values(26:27))))) return
-      if (nint(values(3)) < 0 .or. nint(values(3)) > 8) return
+      if (nint(values(3)) < 0 .or. nint(values(3)) > sla_event_stick) return
       model%pending = nint(values(1:3))
       model%lambda = values(4)
       model%noise = values(5)
@@ -339,7 +359,20 @@ contains
       model%hot = reshape(nint(values(24:27)), [2, 2])
       model%event%rank = 0
       call model_solve(model, status)
+      model%held = held_work(model, model%lambda_recorded)
+      model%cross = dot_product(model%fb, model%ua)
    end subroutine model_resume
+
+   !> Products of the held forces, constant and per multiplier, with the displacements at a multiplier [J]
+   pure function held_work(model, lambda) result(work)
+      type(element_model), intent(in) :: model
+      real(wp), intent(in) :: lambda
+      real(wp) :: work(2)
+      integer :: i
+      do i = 1, 2
+         work(i) = dot_product(model%fh(:, i), model%ua) + lambda * dot_product(model%fh(:, i), model%ub)
+      end do
+   end function held_work
 
    !> Is this the number of a group and of one of its points, or none?
    pure function is_point(model, place) result(yes)
@@ -364,7 +397,10 @@ contains
       status = status_invalid_argument
       if (.not. store) then
          if (.not. all(abs(values) <= most_damage)) return
-         if (any(values(4:11, :) < 0.0_wp) .or. any(abs(values(3:, :) - anint(values(3:, :))) > 0.0_wp)) return
+         ! Rows 7 and 9 are those of a second direction, and lengths of joints
+         if (any(values([4, 5, 6, 8, 10, 11], :) < 0.0_wp)) return
+         if (any(abs(values([3, 4, 5, 6, 8], :) - anint(values([3, 4, 5, 6, 8], :))) > 0.0_wp)) return
+         if (any(abs(values(10:11, :) - anint(values(10:11, :))) > 0.0_wp)) return
          do g = 1, size(model%holders)
             select type (group => model%holders(g)%group)
             class is (point_group)   ! teeth count from 1

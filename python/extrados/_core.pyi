@@ -10,5 +10,6 @@ api_rocking: Any
 api_signal: Any
 api_sla: Any
 api_sla_laws: Any
+api_sla_joints: Any
 api_sla_model: Any
 api_support: Any

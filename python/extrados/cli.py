@@ -1,10 +1,13 @@
-"""The command line. Exit codes: 0 done; 2 the deck is wrong; 3 refused or failed; 130 interrupted."""
+"""The command line. Exit codes: 0 done; 2 the deck is wrong; 3 refused or failed; 130 or 143 interrupted (Ctrl-C, SIGTERM)."""
 
+import functools
 import json
 import logging
+import os
 import signal
 import sys
 import time
+from collections.abc import Callable
 from contextlib import contextmanager
 from functools import cached_property
 from pathlib import Path
@@ -13,13 +16,36 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from extrados._build_info import VERSION
+from extrados.schema.text import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from extrados.running.check import Checked
 
-app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
+
+class _Commands(typer.Typer):
+    """Commands that a signal ends without a traceback, whatever they are doing, be it an import."""
+
+    def command(self, *words: Any, **options: Any) -> Callable[[Callable], Callable]:
+        add = super().command(*words, **options)
+
+        def guarded(function: Callable) -> Callable:
+            @functools.wraps(function)
+            def call(*args: Any, **keywords: Any) -> Any:
+                try:
+                    return function(*args, **keywords)
+                except KeyboardInterrupt:
+                    err_console.say("interrupted")
+                    raise typer.Exit(interrupted()) from None
+
+            add(call)
+            return function
+
+        return guarded
+
+
+app = _Commands(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 
 
 class _Console:
@@ -34,13 +60,30 @@ class _Console:
 
         return Console(stderr=self._stderr, highlight=False, soft_wrap=True)
 
+    def say(self, text: str, style: str | None = None) -> None:
+        """Print words, some of which others wrote: nothing in them is obeyed by the terminal."""
+        self._rich.print(printable(text, keep="\n"), style=style, markup=False)
+
     def __getattr__(self, name: str) -> Any:
         return getattr(self._rich, name)
 
 
 out_console, err_console = _Console(stderr=False), _Console(stderr=True)
 
-WRONG_DECK, NOT_DONE, INTERRUPTED = 2, 3, 130
+WRONG_DECK, NOT_DONE = 2, 3
+_signals: list[int] = []
+
+
+def _stop(number: int, _: object) -> None:
+    _signals.append(number)
+    raise KeyboardInterrupt
+
+
+def interrupted() -> int:
+    """The exit code after a signal: 130 after Ctrl-C, 143 after SIGTERM."""
+    calls = sys.modules.get("extrados.core.calls")  # where a signal goes while the core computes
+    number = _signals[-1] if _signals else (calls.stopped_by() if calls else 0)
+    return 128 + (number or signal.SIGINT)
 
 
 class _Progress:
@@ -66,7 +109,7 @@ class _Progress:
                 self.task = self.bar.add_task(text, total=total)
             self.bar.update(self.task, completed=done, total=total, description=text, refresh=True)
         elif now - self.last > 5.0:
-            err_console.print(f"{text}: {100 * done / max(total, 1e-300):.0f} %", markup=False)
+            err_console.say(f"{text}: {100 * done / max(total, 1e-300):.0f} %")
             self.last = now
 
     def stop(self) -> None:
@@ -82,10 +125,10 @@ def _errors(json_out: bool = False):
 
     def tell(lines: list[str], code: int) -> None:
         if json_out:
-            out_console.print_json(json.dumps({"error": lines, "exit": code}))
+            print(json.dumps({"error": lines, "exit": code}, indent=2))
         else:
             for line in lines:
-                err_console.print(line, markup=False)
+                err_console.say(line)
         raise typer.Exit(code)
 
     try:
@@ -95,7 +138,7 @@ def _errors(json_out: bool = False):
     except StoreError as error:
         tell([str(error)], NOT_DONE)
     except KeyboardInterrupt:
-        tell(["interrupted"], INTERRUPTED)
+        tell(["interrupted"], interrupted())
 
 
 @app.command()
@@ -110,12 +153,12 @@ def run(
     as_json: Annotated[bool, typer.Option("--json", help="print summary.json instead of words")] = False,
 ) -> None:
     """Run decks: print the answer, write results, figures and report."""
-    from extrados.analyses.context import Context, default_threads
+    from extrados.analyses.context import Context
     from extrados.decks.reader import DeckError, read_deck
     from extrados.running.run import default_out, run_to
 
     if out is not None and len(decks) > 1:
-        err_console.print("--out takes one deck at a time")
+        err_console.say("--out takes one deck at a time")
         raise typer.Exit(WRONG_DECK)
     worst = 0
     with _errors(as_json):
@@ -126,42 +169,70 @@ def run(
             raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
         for deck in checked:
             progress = _Progress(quiet or as_json)
-            context = Context(deck, threads or default_threads(), progress, resume=resume, scheduler=scheduler)
+            context = Context(deck, _threads(threads), progress, resume=resume, scheduler=scheduler)
             try:
-                found = run_to(context, out or default_out(deck), figures)
+                found = run_to(context, out or default_out(deck), figures=False)
             finally:
                 progress.stop()
             if as_json:
-                out_console.print_json((found.folder / "summary.json").read_text(encoding="utf-8"))
+                print(json.dumps(json.loads((found.folder / "summary.json").read_bytes()), indent=2))
             elif not quiet:
-                _tell(found, deck.title, figures)
-            codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": INTERRUPTED}
+                _tell(found, deck.title)
+            codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": interrupted()}
             for result in found.results:
                 if quiet and result.status != "ok":
-                    err_console.print(f"{result.kind}: {result.status}: {result.reason}", markup=False)
+                    err_console.say(f"{result.kind}: {result.status}: {result.reason}")
                 worst = max(worst, codes[result.status])
-            if worst == INTERRUPTED:
+            stopped = any(result.status == "interrupted" for result in found.results)
+            _draw(found.folder, figures and not stopped, quiet or as_json)
+            if stopped:
                 break
     raise typer.Exit(worst)
 
 
-def _tell(run, title: str, figures: bool) -> None:
-    """The answers of a run that has been written, and where it lies."""
+def _threads(asked: int | None) -> int:
+    """As many threads as asked for, but no more than there are cores."""
+    from extrados.analyses.context import default_threads
+
+    cores = default_threads()
+    if asked is not None and asked > cores:
+        err_console.say(f"--threads {asked}: this process may use {cores} cores, and starts no more threads than that")
+    return min(asked or cores, cores)
+
+
+def _tell(run, title: str) -> None:
+    """The answers of a run."""
     if title:
-        out_console.print(title, style="bold", markup=False)
+        out_console.say(title, "bold")
     for row in run.analyses:
         if row["status"] != "ok":
-            out_console.print(f"{row['name']}: {row['status']}: {row['reason']}", markup=False)
+            out_console.say(f"{row['name']}: {row['status']}: {row['reason']}")
         if row["answer"]:
-            out_console.print(f"{row['name']}: {row['answer']}", markup=False)
+            out_console.say(f"{row['name']}: {row['answer']}")
         for warning in row["warnings"]:
-            out_console.print(f"{row['name']}: warning: {warning}", markup=False)
+            out_console.say(f"{row['name']}: warning: {warning}")
+
+
+def _draw(folder: Path, figures: bool, quiet: bool) -> None:
+    """Draw figures and report of a run whose answer has been told, and say where all lies."""
+    sys.stdout.flush()
+    report = None
     if figures:
-        out_console.print(f"Report:  {run.folder / 'report.html'}", markup=False)
-        if (run.folder / "figures").is_dir():
-            out_console.print(f"Figures: {run.folder / 'figures'}", markup=False)
-    else:
-        out_console.print(f"Results: {run.folder}", markup=False)
+        try:
+            from extrados.plots.report import write_report
+
+            report = write_report(folder)[0]
+        except KeyboardInterrupt:
+            err_console.say(f"interrupted while drawing; the results are in {folder}: extrados report draws them")
+            raise typer.Exit(interrupted()) from None
+    if quiet:
+        return
+    if report is None:
+        out_console.say(f"Results: {folder}")
+        return
+    out_console.say(f"Report:  {report}")
+    if (folder / "figures").is_dir():
+        out_console.say(f"Figures: {folder / 'figures'}")
 
 
 @app.command()
@@ -189,17 +260,19 @@ def motion(
     }
     record |= {k: v for k, v in {"time_step": time_step, "unit": unit}.items() if v is not None}
     if channel is not None:
-        record["channel"] = int(channel) if channel.isdigit() else channel
+        record["channel"] = int(channel) if channel.isascii() and channel.isdigit() and len(channel) < 10 else channel
     with _errors(as_json):
-        deck = make_deck({"title": Path(file).name, "motion": record, "analysis": {"kind": "motion"}})
+        deck = make_deck({"title": printable(Path(file).name), "motion": record, "analysis": {"kind": "motion"}})
         folder = out or Path("results") / Path(file.removeprefix("extrados:")).stem
-        found = run_to(Context(deck, default_threads()), folder, figures)
+        found = run_to(Context(deck, default_threads()), folder, figures=False)
         if as_json:
-            out_console.print_json((found.folder / "summary.json").read_text(encoding="utf-8"))
+            print(json.dumps(json.loads((found.folder / "summary.json").read_bytes()), indent=2))
         else:
             _motion_page(found.results[0])
-            _tell(found, deck.title, figures)
-    raise typer.Exit(0 if found.results[0].status == "ok" else NOT_DONE)
+            _tell(found, deck.title)
+        status = found.results[0].status
+        _draw(found.folder, figures and status != "interrupted", as_json)
+    raise typer.Exit({"ok": 0, "interrupted": interrupted()}.get(status, NOT_DONE))
 
 
 def _motion_page(result) -> None:
@@ -236,7 +309,7 @@ def check(
     from extrados.running.run import default_out
 
     if out is not None and len(decks) > 1:
-        err_console.print("--out takes one deck at a time")
+        err_console.say("--out takes one deck at a time")
         raise typer.Exit(WRONG_DECK)
     complaints = []
     for path in decks:
@@ -251,7 +324,7 @@ def check(
             folder = out or default_out(deck).with_name(f"{default_out(deck).name}-check")
             _tell_survey(checked, folder, asked=out is not None)
     for line in complaints:
-        err_console.print(line, markup=False)
+        err_console.say(line)
     if complaints:
         raise typer.Exit(WRONG_DECK)
     print("ok" if len(decks) == 1 else f"{len(decks)} decks ok")
@@ -269,7 +342,7 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
 
     inspection = checked.inspection
     for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
-        out_console.print(line, markup=False)
+        out_console.say(line)
     amiss = [row for row in checked.places if row.status != "closed"]
     if amiss:
         table = Table(box=None, pad_edge=False)
@@ -280,21 +353,20 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
             table.add_row(str(k), row.what, row.between, depth, *(f"{v:.3f}" for v in row.place), row.mended_by)
         out_console.print(table)
         if len(amiss) > MOST_PLACES:
-            out_console.print(f"and {len(amiss) - MOST_PLACES} more", markup=False)
+            out_console.say(f"and {len(amiss) - MOST_PLACES} more")
     grounded = int((inspection.contacts.b < 0).sum())
-    out_console.print(
+    out_console.say(
         f"{len(inspection.outlines)} stones, {len(inspection.contacts.a)} joints, {grounded} of them on the ground; "
-        f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance", markup=False,
-    )  # fmt: skip
+        f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance")  # fmt: skip
     if not checked.places and not asked:
         return
     try:
         picture, table = write_check(checked, folder)
     except OSError as error:
-        err_console.print(f"{folder}: the picture could not be written: {error.strerror or error}", markup=False)
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
         return
-    out_console.print(f"Picture: {picture}", markup=False)
-    out_console.print(f"List:    {table}", markup=False)
+    out_console.say(f"Picture: {picture}")
+    out_console.say(f"List:    {table}")
 
 
 @app.command()
@@ -333,7 +405,7 @@ def explain(
     try:
         print(explanation.explain(key))
     except KeyError as error:
-        err_console.print(error.args[0], markup=False)
+        err_console.say(error.args[0])
         raise typer.Exit(WRONG_DECK) from None
 
 
@@ -349,12 +421,12 @@ def new(
 
     if kind is None:
         for section, known in kinds.TABLES.items():
-            out_console.print(f"{section}: {', '.join(known)}", markup=False)
+            out_console.say(f"{section}: {', '.join(known)}")
         return
     try:
         print(starter(kind))
     except KeyError as error:
-        err_console.print(error.args[0], markup=False)
+        err_console.say(error.args[0])
         raise typer.Exit(WRONG_DECK) from None
 
 
@@ -374,10 +446,10 @@ def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("
             title = tomllib.loads(files.read(path, LARGEST).text()).get("title", "")
         except (ValueError, RecursionError):
             title = "(cannot be read)"
-        out_console.print(f"{path}: {title}", markup=False)
+        out_console.say(f"{path}: {title}")
         found = True
     if not found:
-        err_console.print(f"no decks below {folder}", markup=False)
+        err_console.say(f"no decks below {folder}")
         raise typer.Exit(NOT_DONE)
 
 
@@ -387,7 +459,7 @@ def report(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> 
     from extrados.plots.report import write_report
 
     with _errors():
-        out_console.print(f"Report:  {write_report(folder)[0]}", markup=False)
+        out_console.say(f"Report:  {write_report(folder)[0]}")
 
 
 @app.command()
@@ -398,7 +470,7 @@ def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> No
     with _errors():
         for figures in write_report(folder)[1].values():
             for name, caption in figures:
-                out_console.print(f"{folder / 'figures' / name}.png: {caption}", markup=False)
+                out_console.say(f"{folder / 'figures' / name}.png: {caption}")
 
 
 @app.command()
@@ -411,14 +483,30 @@ def version() -> None:
 
 
 def main() -> None:
-    """Entry point of the `extrados` command."""
+    """Run a command; see `extrados.__main__` for what comes before."""
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # a request to end is answered like Ctrl-C
+    for stream in (sys.stdout, sys.stderr):
+        stream.reconfigure(errors="backslashreplace")  # a terminal may know ASCII alone
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, _stop)
+    code: int | str | None = 0
     try:
-        app()
-    except BrokenPipeError:  # the reader of our output went away, as in `extrados cases | head`
-        sys.stderr.close()
-        sys.exit(NOT_DONE)
+        try:
+            app()
+        except SystemExit as left:
+            code = left.code
+        except KeyboardInterrupt:
+            code = interrupted()
+        for number in (signal.SIGINT, signal.SIGTERM):  # what is to be done is done
+            signal.signal(number, signal.SIG_IGN)
+        sys.stdout.flush()
+    except OSError as error:
+        # the reader of our output went away, as in `extrados cases | head`, or what it goes to is full
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            os.write(2, f"the output could not be written: {error.strerror}\n".encode())
+        code = code or NOT_DONE
+    sys.exit(code)
 
 
 if __name__ == "__main__":

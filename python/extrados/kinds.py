@@ -31,6 +31,7 @@ STRUCTURES: dict[str, str] = {
     "aisled-vault": "building.templates.aisled_vault:AisledVault",
     "pointed-arch": "building.templates.arches:PointedArch",
     "elliptical-arch": "building.templates.arches:EllipticalArch",
+    "bridge": "building.templates.bridge:Bridge",
     "blocks": "building.templates.blocks:Blocks",
     "panel": "building.templates.walls:Panel",
     "mesh": "building.templates.walls:MeshFile",

@@ -2,7 +2,7 @@
 
 Each [[expect]] row has quantity ("rocking.impact_times_s[0]"), value (null cannot be written in TOML: use
 "none"), tolerance (absolute) or relative_tolerance, kind (exact | thesis | experiment | peer | regression),
-source, and optionally `change`, deck keys with other values ("structure.thickness" = 0.12). `slow = true` at
+source, and optionally `change`, deck keys with other values ("structure.thickness" = 0.12, "none" leaves one out). `slow = true` at
 the top moves a case to `make verify`.
 """
 
@@ -95,14 +95,17 @@ def load_cases() -> list[Case]:
 
 
 def changed(data: dict[str, Any], change: tuple[tuple[str, Any], ...]) -> dict[str, Any]:
-    """A deck's data with other values; "analysis.0.friction" reaches into the array of analyses."""
+    """A deck's data with other values, "none" leaves a key out; "analysis.0.friction" reaches into the array of analyses."""
     data = deepcopy(data)
     for dotted, value in change:
         place: Any = data
         *way, last = dotted.split(".")
         for part in way:
             place = place[int(part)] if isinstance(place, list) else place.setdefault(part, {})
-        place[last] = value
+        if value == "none":
+            place.pop(last)
+        else:
+            place[last] = value
     return data
 
 

@@ -23,7 +23,7 @@ end module pendulum_case
 program test_dopri5
    use common_kinds, only : wp
    use common_dense_step, only : dense_step
-   use common_dopri5, only : dopri5_attempt
+   use common_dopri5, only : dopri5_attempt, dopri5_factor, step_memory
    use pendulum_case, only : linear_oscillator, frequency
    implicit none (type, external)
    real(wp) :: error(2), dense_error(2), order
@@ -38,8 +38,39 @@ program test_dopri5
    order = log(dense_error(1) / dense_error(2)) / log(2.0_wp)
    print '(a, f6.3)', 'order of dense output  ', order
    if (order < 3.8_wp) error stop 'the dense output is not of order 4'
+   call check_control()
 
 contains
+
+   !> The PI controller (Hairer, Norsett and Wanner 1993, II.4 and IV.2): 0.9 before^0.04 / error^0.17 after an accepted
+   !> step, within 0.2 to 5; 0.9 / error^0.17 after a refused one, not below 0.1; no longer step right after that
+   subroutine check_control()
+      use, intrinsic :: ieee_arithmetic, only : ieee_value, ieee_quiet_nan
+      type(step_memory) :: memory
+      real(wp) :: factor
+      call dopri5_factor(0.37_wp, memory, factor)
+      call near(factor, 0.9_wp * 1.0e-4_wp**0.04_wp / 0.37_wp**0.17_wp)
+      if (memory%rejected) error stop 'an accepted step is remembered as refused'
+      call dopri5_factor(0.61_wp, memory, factor)
+      call near(factor, 0.9_wp * 0.37_wp**0.04_wp / 0.61_wp**0.17_wp)
+      call dopri5_factor(7.3_wp, memory, factor)
+      call near(factor, 0.9_wp / 7.3_wp**0.17_wp)
+      if (.not. memory%rejected) error stop 'a refused step is forgotten'
+      call dopri5_factor(1.0e-9_wp, memory, factor)
+      call near(factor, 1.0_wp)
+      call dopri5_factor(1.0e-9_wp, memory, factor)
+      call near(factor, 5.0_wp)
+      call dopri5_factor(1.0e9_wp, memory, factor)
+      call near(factor, 0.1_wp)
+      call dopri5_factor(ieee_value(factor, ieee_quiet_nan), memory, factor)
+      call near(factor, 0.1_wp)
+   end subroutine check_control
+
+   subroutine near(found, expected)
+      real(wp), intent(in) :: found
+      real(wp), intent(in) :: expected
+      if (abs(found - expected) > 1.0e-12_wp * expected) error stop 'the step control is not that of the book'
+   end subroutine near
 
    subroutine run(steps, error_end, error_dense)
       integer, intent(in) :: steps

@@ -25,7 +25,7 @@ MAY_IMPORT = {
     "motions": {"core", "schema"},
     "tables": {"building", "schema"},
     "decks": {"kinds", "tables", "building", "schema"},
-    "results": {"kinds", "schema"},
+    "results": {"kinds", "schema", "_build_info"},
     "analyses": {
         "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
         "schema",
@@ -33,6 +33,7 @@ MAY_IMPORT = {
     "plots": {"kinds", "results", "schema"},
     "running": {"analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
     "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "schema", "_build_info"},
+    "__main__": {"cli"},
     "": {"analyses", "decks", "running"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit

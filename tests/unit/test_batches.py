@@ -19,6 +19,7 @@ from extrados.analyses.batches import Chain, sweep
 from extrados.analyses.context import Context
 from extrados.core import calls
 from extrados.decks.reader import make_deck
+from extrados.results import checkpoint
 from extrados.results.checkpoint import Checkpoint, fingerprint, folder_of
 from extrados.results.store import StoreError
 
@@ -147,6 +148,66 @@ def test_a_chain_goes_on_from_its_newest_state(tmp_path: Path) -> None:
     assert step == 2 and state["x"] == 2 and "damaged" in again.warnings[0]
     assert Chain(context(out, resume=True), "c", Squares(3)).state is None
     assert Chain(context(), "c", Squares()).state is None
+
+
+def test_a_copied_batch_counts_for_no_other_place(tmp_path: Path) -> None:
+    """Neither for other members of its sweep nor for those of another one."""
+    out = tmp_path / "run"
+    n = 200
+    sweep(context(out), "t", Squares(), n, "squares")
+    first, *_, last = sorted(folder_of(out).glob("t-*/*.npz"))
+    digest = first.stem.partition("-")[2]
+    last.unlink()
+    shutil.copy(first, last.with_name(f"{last.stem.partition('-')[0]}-{digest}.npz"))
+    again = context(out, resume=True)
+    s = sweep(again, "t", Squares(), n, "squares")
+    assert np.array_equal(s["value"], np.arange(n) ** 2) and "computed again" in again.warnings[0]
+    sweep(context(out, resume=True), "t", Squares(3), n, "cubes")
+    (cubes,) = (f for f in folder_of(out).glob("t-*") if f != first.parent)
+    for path in cubes.iterdir():
+        path.unlink()
+    shutil.copy(first, cubes)
+    again = context(out, resume=True)
+    assert np.array_equal(sweep(again, "t", Squares(3), n, "cubes")["value"], np.arange(n) ** 3)
+    assert len(again.warnings) == 1
+
+
+def test_batches_of_two_runs_at_a_time_do_not_count_twice(tmp_path: Path) -> None:
+    """Two runs that go on from one checkpoint cut their members into other batches."""
+    out = tmp_path / "run"
+    n = 100
+    sweep(context(out), "t", Squares(), n, "squares")
+    (folder,) = folder_of(out).glob("t-*")
+    keeper = context(out, resume=True).checkpoint
+    for first, end in ((1, 4), (16, 90), (90, 120)):
+        keeper.keep(folder.name, first, {"value": np.arange(first, end) ** 2})
+    again = context(out, resume=True)
+    s = sweep(again, "t", Squares(), n, "squares")
+    assert np.array_equal(s.members, np.arange(n)) and np.array_equal(s["value"], np.arange(n) ** 2)
+    assert again.warnings and all("overlaps" in w for w in again.warnings)
+
+
+def test_another_version_resumes_nothing(tmp_path: Path, monkeypatch) -> None:
+    out = tmp_path / "run"
+    sweep(context(out), "t", Squares(), 10, "squares")
+    monkeypatch.setattr(checkpoint, "program", lambda: "9.9.9 another")
+    with pytest.raises(StoreError, match=r"begun by extrados .*, this one is 9\.9\.9 another"):
+        sweep(context(out, resume=True), "t", Squares(), 10, "squares")
+
+
+def test_files_of_a_user_among_the_batches_stay(tmp_path: Path, caplog) -> None:
+    """When the run has finished, and when it begins anew; so does a batch that was changed."""
+    out = tmp_path / "run"
+    sweep(context(out), "t", Squares(), 200, "squares")
+    changed, *_ = sorted(folder_of(out).glob("t-*/*.npz"))
+    changed.write_bytes(b"mine")
+    mine = [folder_of(out) / "notes.txt", changed.parent / "mine.npz", changed]
+    for path in mine[:2]:
+        path.write_bytes(b"mine")
+    context(out, resume=False).checkpoint  # noqa: B018
+    checkpoint.discard(out)
+    assert all(path.read_bytes() == b"mine" for path in mine) and "did not write" in caplog.text
+    assert {p for p in folder_of(out).rglob("*") if p.is_file()} == set(mine)
 
 
 def test_another_job_takes_nothing(tmp_path: Path) -> None:

@@ -2,18 +2,23 @@
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from extrados.results import store
+from extrados.results.model import TableData
+
 ROOT = Path(__file__).resolve().parents[2]
 ARCH = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n'
 
 
-def extrados(*args: str, cwd: Path | None = None) -> subprocess.CompletedProcess:
-    return subprocess.run([sys.executable, "-m", "extrados.cli", *args], capture_output=True, text=True, cwd=cwd)
+def extrados(*args: str | bytes, cwd: Path | None = None, **more) -> subprocess.CompletedProcess:
+    how = {"capture_output": True, "text": True, "cwd": cwd, **more}
+    return subprocess.run([sys.executable, "-m", "extrados", *args], **how)
 
 
 def deck(tmp_path: Path, text: str) -> str:
@@ -104,3 +109,150 @@ def test_ctrl_c_in_a_compiled_loop(tmp_path) -> None:
     assert "Traceback" not in run.stderr
     analysis = json.loads((tmp_path / "o" / "summary.json").read_text())["analyses"][0]
     assert analysis["status"] == "interrupted" and analysis["results"]["steps"] > 0
+
+
+TILT = ARCH + '[analysis]\nkind = "tilt"\n'
+
+
+def test_a_deck_gives_no_orders_to_the_terminal(tmp_path) -> None:
+    """Titles, names of files, keys and complaints are shown, not obeyed; nor are they in tables."""
+    nasty = "\\u001b]0;owned\\u0007\\u009b31m\\u202e"
+    fine = extrados("run", deck(tmp_path, f'title = "{nasty}"\n' + TILT), "--out", str(tmp_path / "o"), "--no-figures")
+    assert fine.returncode == 0 and "\\x1b]0;owned\\x07\\x9b31m\\u202e" in fine.stdout
+    wrong = extrados("check", deck(tmp_path, f'"{nasty}" = 1\n' + TILT.replace("tilt", nasty)))
+    (tmp_path / "a\x1b[31m.toml").write_text("")
+    listed = extrados("cases", str(tmp_path))
+    unknown = extrados("explain", "\x1b[31m")
+    as_json = extrados("run", deck(tmp_path, f'title = "{nasty}"\n' + TILT), "--json", "--out", str(tmp_path / "o"))
+    for run in (fine, wrong, listed, unknown, as_json):
+        said = run.stdout + run.stderr
+        assert said and not set(said) & {"\x1b", "\x07", "\x9b", "\u202e"}, said
+
+
+def test_names_and_headers_of_tables_are_no_formulas(tmp_path) -> None:
+    table = store.csv_text(TableData({"=cmd": ["@x", "\x1b[31m"], "+1": [1.0, 2.0]}, {"+1": "m"}))
+    assert table.splitlines() == ["'=cmd,'+1 [m]", "'@x,1.0", "\\x1b[31m,2.0"]
+
+
+@pytest.mark.parametrize("text", ['"a"\n' + "a = " + "[" * 5000, "title = [\x00]"])
+def test_decks_that_cannot_be_read_are_listed(tmp_path, text) -> None:
+    deck(tmp_path, text)
+    (tmp_path / "pipe.toml").symlink_to("/dev/zero")
+    run = extrados("cases", str(tmp_path))
+    assert run.returncode == 0 and run.stdout.count("(cannot be read)") == 2, run.stderr
+
+
+def test_a_terminal_that_knows_ascii_alone(tmp_path) -> None:
+    path = deck(tmp_path, 'title = "Gewölbe über dem Fluß, 拱"\n' + TILT)
+    run = extrados("run", path, "--out", str(tmp_path / "o"), env={**os.environ, "PYTHONIOENCODING": "ascii"})
+    assert run.returncode == 0 and "Gew\\xf6lbe" in run.stdout and "mechanism" in run.stdout, run.stderr
+
+
+@pytest.mark.skipif(not os.path.exists("/dev/full"), reason="Linux has a full device")
+@pytest.mark.parametrize("words", [["cases"], ["schema"], ["explain"], ["version"], ["new", "tilt"], ["run"]])
+def test_output_to_a_full_device(tmp_path, words) -> None:
+    if words == ["run"]:
+        words = ["run", deck(tmp_path, TILT), "--out", str(tmp_path / "o"), "--no-figures"]
+    with open("/dev/full", "w") as full:
+        run = extrados(*words, cwd=ROOT, capture_output=False, stdout=full, stderr=subprocess.PIPE)
+    assert run.returncode == 3 and "Traceback" not in run.stderr and "No space left" in run.stderr
+    assert words[0] != "run" or (tmp_path / "o" / "summary.json").exists()
+
+
+def test_names_that_are_no_text(tmp_path) -> None:
+    """Names of files are bytes; a deck, a record and the members of a suite may be called anything."""
+    name = os.fsencode(tmp_path) + b"/d\xff\xfe.toml"
+    record = b"0.1\n-0.2\n0.3\n" * 30
+    suite = '[motion]\nkind = "suite"\nfolder = "."\nunit = "m/s^2"\ntime_step = 0.01\n[analysis]\nkind = "motion"\n'
+    for file, content in ((name, suite.encode()), (os.fsencode(tmp_path) + b"/r\xff.csv", record)):
+        with open(file, "wb") as handle:
+            handle.write(content)
+    run = extrados(b"run", name, cwd=tmp_path)
+    assert (
+        run.returncode == 0
+        and "d\\udcff" in (tmp_path / "results").joinpath(*os.listdir(tmp_path / "results"), "summary.json").read_text()
+    )
+    assert len(list(tmp_path.glob("results/*/report.html"))) == 1
+    named = extrados(
+        b"motion", os.fsencode(tmp_path) + b"/r\xff.csv", "--time-step", "0.01", "--unit", "g", cwd=tmp_path
+    )
+    assert named.returncode == 2 and "motion.file" in named.stderr and "Traceback" not in named.stderr
+
+
+@pytest.mark.parametrize("channel", ["²", "٣", "9" * 5000, "-1"])
+def test_a_channel_with_an_odd_digit(tmp_path, channel) -> None:
+    run = extrados("motion", "extrados:el-centro-1940", "--channel", channel, cwd=tmp_path)
+    assert run.returncode == 3 and "channel" in run.stdout and "Traceback" not in run.stderr
+
+
+#: Where a signal comes: the line of Python that sends it to its own process
+MOMENTS = {
+    "as the first module is loaded": "import typer",
+    "as the core is loaded": "import extrados._core",
+    "as figures are drawn": "import extrados.plots.report",
+}
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("moment", MOMENTS)
+def test_signals_while_modules_are_loaded(tmp_path, moment, number) -> None:
+    """No traceback, one code; once the answer has been printed it is there."""
+    module = MOMENTS[moment].split()[1]
+    code = f"""
+import builtins, os, sys
+real = builtins.__import__
+def loads(name, globals=None, locals=None, fromlist=(), level=0):
+    if name == {module!r} or (name, {module.rpartition(".")[2]!r}) == ({module.rpartition(".")[0]!r}, *(fromlist or ("",)))[:2]:
+        builtins.__import__ = real
+        os.kill(os.getpid(), {int(number)})
+    return real(name, globals, locals, fromlist, level)
+builtins.__import__ = loads
+sys.argv = ["extrados", "run", {deck(tmp_path, TILT)!r}, "--out", {str(tmp_path / "o")!r}]
+from extrados.__main__ import main
+main()
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert run.returncode == 128 + number and "Traceback" not in run.stderr, run.stderr
+    assert "interrupted" in run.stderr
+    if moment == "as figures are drawn":
+        assert "mechanism" in run.stdout and "interrupted while drawing" in run.stderr
+        assert (tmp_path / "o" / "summary.json").exists()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
+def test_ctrl_c_ends_a_computation_in_another_thread() -> None:
+    """Python answers it in the main thread; the computation does not go on unseen, and the handlers come back."""
+    code = """
+import os, signal, threading
+import numpy as np
+from extrados.core import rocking
+from extrados.core.ground import Ground
+ground = Ground(breaks=np.array([0.0, 1e6]), linear=np.zeros((1, 1, 2)), harmonic=np.array([[[[2.0, 0.0, 2.0, 0.0]]]]))
+block = rocking.block_body(1000.0, 1500.0, 2.0, 0.5, 0.5, (0.9, 0.9))
+found = []
+def work():
+    found.append(rocking.history(block, ground, 1e6, 1.0, start_side=1, start_rotation=0.01, tolerance=1e-12))
+thread = threading.Thread(target=work)
+thread.start()
+try:
+    while thread.is_alive():
+        thread.join(0.5)
+        os.kill(os.getpid(), signal.SIGINT)
+    print("no exception")
+except KeyboardInterrupt:
+    thread.join()
+    print(found[0].interrupted, signal.getsignal(signal.SIGINT) is signal.default_int_handler)
+"""
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert run.stdout == "True True\n", run.stdout + run.stderr
+
+
+def test_more_threads_than_cores_are_not_started(tmp_path) -> None:
+    words = ["--threads", "100000", "--out", str(tmp_path / "o"), "--no-figures"]
+    run = extrados(
+        "run",
+        deck(tmp_path, ARCH + '[analysis]\nkind = "sweep"\nvary = "thickness"\nstart = 1.2\nstop = 2.0\ncount = 9\n'),
+        *words,
+    )
+    assert run.returncode == 0 and "--threads 100000: this process may use" in run.stderr

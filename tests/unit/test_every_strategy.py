@@ -19,6 +19,12 @@ BUILDINGS = {
     "arch": 'kind = "arch"\nradius = 1.0\nthickness = 0.18\nembrace = 150\nvoussoirs = 12',
     "pointed arch": 'kind = "pointed-arch"\nspan = 6.0\nradius = 4.5\nthickness = 0.9\nvoussoirs = 12',
     "elliptical arch": 'kind = "elliptical-arch"\nspan = 8.0\nrise = 3.0\nthickness = 0.9\nvoussoirs = 12',
+    "bridge": 'kind = "bridge"\ndepth = 3.0\nspans = [{ span = 6.0, rise = 1.5, thickness = 0.6, rings = 2, voussoirs = 12 }]\n'
+    "fill = { cover = 0.3 }",
+    "viaduct": 'kind = "bridge"\ndepth = 3.0\nspans = [{ span = 6.0, rise = 2.0, thickness = 0.5, voussoirs = 10 }, '
+    '{ shape = "three-centred", span = 5.0, rise = 2.0, thickness = 0.5, voussoirs = 10 }]\n'
+    "piers = [{ width = 1.6, height = 3.0 }]\nabutments = { width = 2.0, height = 2.0 }\nbacking = { height = 1.0 }\n"
+    "fill = { cover = 0.3, passive = 0.5 }\nsurfacing = { thickness = 0.1 }",
     "vault": 'kind = "vault"\npreset = "dejong-a"\nvoussoirs = 10',
     "aisled vault": 'kind = "aisled-vault"\npreset = "vezelay-like"\nvoussoirs = 10\naisle_voussoirs = 8',
     "blocks": 'kind = "blocks"\nground = {ground}\nblock = {blocks}',

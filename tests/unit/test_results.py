@@ -204,7 +204,7 @@ def test_series_of_arrays_keep_their_order(tmp_path) -> None:
     )  # fmt: skip
     result = Result("rocking-spectrum", results=values)
     result.arrays = {f"part_{k}": Array(np.full(2, k), (f"n_{k}",), series="part") for k in range(12)}
-    with store.new_folder(tmp_path / "o") as folder:
+    with store.NewFolder(tmp_path / "o") as folder:
         head = {"extrados": {"version": ""}, "deck": {"path": "", "sha256": "", "resolved": {}}}
         store.write(folder, head, [result])
     found = store.read(tmp_path / "o").series("rocking-spectrum", "part")

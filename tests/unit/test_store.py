@@ -2,12 +2,16 @@
 
 import json
 import os
+import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import extrados
+from extrados.plots.report import write_report
 from extrados.results import store
 from extrados.results.model import Array, Result, TableData
 from extrados.results.statistics import RockingSpectrum
@@ -37,7 +41,7 @@ HEAD = {"extrados": {"version": "0"}, "deck": {"path": "d", "sha256": "", "title
 
 def test_round_trip(tmp_path) -> None:
     out = tmp_path / "run"
-    with store.new_folder(out) as folder:
+    with store.NewFolder(out) as folder:
         store.write(folder, HEAD, [sample(), sample()])
     run = store.read(out)
     assert (
@@ -61,7 +65,7 @@ def test_round_trip(tmp_path) -> None:
 def test_opens_in_xarray(tmp_path) -> None:
     xarray = pytest.importorskip("xarray")
     out = tmp_path / "run"
-    with store.new_folder(out) as folder:
+    with store.NewFolder(out) as folder:
         store.write(folder, HEAD, [sample()])
     data = xarray.open_dataset(out / "results.h5", group="rocking-spectrum", engine="h5netcdf", phony_dims="sort")
     assert data["x"].dims == ("time", "joint") and data["x"].attrs["units"] == "m"
@@ -70,40 +74,145 @@ def test_opens_in_xarray(tmp_path) -> None:
 
 def test_old_folder_survives_a_failure(tmp_path) -> None:
     out = tmp_path / "run"
-    with store.new_folder(out) as folder:
+    with store.NewFolder(out) as folder:
         store.write(folder, HEAD, [sample()])
     before = (out / "summary.json").read_bytes()
-    with pytest.raises(RuntimeError), store.new_folder(out):
+    with pytest.raises(RuntimeError), store.NewFolder(out):
         raise RuntimeError
     assert (out / "summary.json").read_bytes() == before
     assert [p.name for p in tmp_path.iterdir()] == ["run"]
-    with store.new_folder(out) as folder:
+    with store.NewFolder(out) as folder:
         store.write(folder, HEAD, [sample(), sample()])
     assert len(json.loads((out / "summary.json").read_text())["analyses"]) == 2
     assert [p.name for p in tmp_path.iterdir()] == ["run"]
 
 
-def test_never_replaces_what_is_not_ours(tmp_path) -> None:
-    (tmp_path / "home").mkdir()
-    (tmp_path / "home" / "thesis.tex").write_text("x")
-    (tmp_path / "file").write_text("x")
-    (tmp_path / "other").mkdir()
-    (tmp_path / "other" / "summary.json").write_text('{"mine": 1}')
-    with store.new_folder(tmp_path / "run") as folder:
+def put(out: Path) -> Path:
+    """Results in a folder; where they came to lie."""
+    making = store.NewFolder(out)
+    with making as folder:
         store.write(folder, HEAD, [sample()])
-    (tmp_path / "run" / "figures").mkdir()
-    (tmp_path / "run" / "figures" / "tilt.png").write_text("x")
-    store.prepare(tmp_path / "run")
-    (tmp_path / "run" / "my-notes.txt").write_text("x")
-    for bad in (tmp_path / "home", tmp_path / "file", tmp_path / "other", tmp_path / "run"):
-        with pytest.raises(store.StoreError):
+    return making.place
+
+
+def everything(folder: Path) -> dict[str, bytes]:
+    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_what_is_no_folder_is_refused(tmp_path) -> None:
+    (tmp_path / "file").write_text("x")
+    (tmp_path / "link").symlink_to(tmp_path)
+    for bad in (tmp_path / "file", tmp_path / "link"):
+        with pytest.raises(store.StoreError, match="is not a folder"):
             store.prepare(bad)
-    assert (tmp_path / "home" / "thesis.tex").exists()
+        with pytest.raises(store.StoreError, match="is not a folder"):
+            put(bad)
+
+
+#: What a user may do with a results folder between two runs
+CHANGES = {
+    "a file": lambda run: (run / "notes.txt").write_text("mine"),
+    "a file among the figures": lambda run: (run / "figures" / "mine.png").write_text("mine"),
+    "a folder": lambda run: (run / "mine").mkdir(),
+    "an edited report": lambda run: (run / "report.html").write_text("mine"),
+    "an edited table": lambda run: (run / "tilt.csv").write_text("mine"),
+    "an edited figure": lambda run: next((run / "figures").iterdir()).write_text("mine"),
+    "a link": lambda run: (run / "mine").symlink_to("/etc/hostname"),
+    "a link to a folder": lambda run: (run / "mine").symlink_to("/etc"),
+    "a file in the place of its list": lambda run: (run / ".written.json").write_text("mine"),
+    "a damaged list": lambda run: (run / ".written.json").write_bytes((run / ".written.json").read_bytes()[:100]),
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def with_figures(tmp_path_factory) -> Path:
+    """The folder of a whole run, to be copied."""
+    out = tmp_path_factory.mktemp("whole") / "run"
+    deck = {
+        "structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 7},
+        "analysis": {"kind": "tilt"},
+    }
+    extrados.run(deck, out, figures=True)
+    return out
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_what_a_user_put_or_changed_is_never_lost(what, tmp_path, with_figures, caplog) -> None:
+    """The new results are put beside it, which is said."""
+    run = tmp_path / "run"
+    shutil.copytree(with_figures, run)
+    (run / "tilt.csv").exists() or (run / "tilt.csv").write_text("")
+    CHANGES[what](run)
+    before = everything(run)
+    assert put(run) == tmp_path / "run-2" and "the results are in" in caplog.text
+    assert everything(run) == before
+    assert put(run) == tmp_path / "run-3"
+
+
+def test_unchanged_results_are_replaced(tmp_path, with_figures) -> None:
+    run = tmp_path / "run"
+    shutil.copytree(with_figures, run)
+    assert put(run) == run and not (run / "report.html").exists()
+    assert [p.name for p in tmp_path.iterdir()] == ["run"]
+
+
+def test_what_is_saved_while_results_are_written_is_kept(tmp_path, with_figures, monkeypatch, caplog) -> None:
+    run = tmp_path / "run"
+    shutil.copytree(with_figures, run)
+    real = store._exchange
+
+    def exchange(scratch: Path, place: Path) -> Path | None:
+        (place / "notes.txt").write_text("mine")
+        (place / "tilt.png").mkdir()
+        return real(scratch, place)
+
+    monkeypatch.setattr(store, "_exchange", exchange)
+    assert put(run) == run and "run-2" in caplog.text
+    assert (tmp_path / "run-2" / "notes.txt").read_text() == "mine" and store.read(run)
+
+
+def test_a_report_is_put_beside_one_that_was_edited(tmp_path, with_figures, caplog) -> None:
+    run = tmp_path / "run"
+    shutil.copytree(with_figures, run)
+    edited = min((run / "figures").iterdir())
+    for path in (run / "report.html", edited, run / "figures" / "mine.txt"):
+        path.write_text("mine")
+    before = everything(run)
+    assert write_report(run)[0].name == "report-2.html"
+    after = everything(run)
+    new = {"report-2.html", f"figures/{edited.stem}-2{edited.suffix}"}
+    assert new <= set(after) and set(after) - set(before) == new
+    for name in ("report.html", f"figures/{edited.name}", "figures/mine.txt"):
+        assert after[name] == b"mine"
+    (run / "report.html").unlink()
+    assert write_report(run)[0].name == "report.html" and (run / "figures" / "mine.txt").exists()
+
+
+def test_a_report_killed_while_it_is_put_in_place_leaves_nothing_strange(tmp_path, with_figures, monkeypatch) -> None:
+    """The list says beforehand what is coming."""
+    run = tmp_path / "run"
+    shutil.copytree(with_figures, run)
+    for path in (run / "figures").iterdir():
+        path.unlink()
+    moved, real = [], Path.replace
+
+    def replace(self: Path, target: Path) -> Path:
+        if ".drawing-" in str(self):
+            moved.append(target)
+            if len(moved) == 2:
+                raise KeyboardInterrupt
+        return real(self, target)
+
+    monkeypatch.setattr(Path, "replace", replace)
+    with pytest.raises(KeyboardInterrupt):
+        write_report(run)
+    monkeypatch.undo()
+    assert len(moved) == 2 and put(run) == run
 
 
 def test_damage_is_seen(tmp_path) -> None:
     out = tmp_path / "run"
-    with store.new_folder(out) as folder:
+    with store.NewFolder(out) as folder:
         store.write(folder, HEAD, [sample()])
     raw = bytearray((out / "results.h5").read_bytes())
     raw[len(raw) // 2] ^= 1

@@ -18,7 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.core.calls import cancel_requested, interruptible
+from extrados.core.calls import cancel_requested, interruptible, thread_count
 from extrados.core.errors import Cancelled, status_code
 from extrados.results.checkpoint import fingerprint
 
@@ -78,7 +78,11 @@ def stop_if_asked() -> None:
 
 def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int) -> dict[str, np.ndarray]:
     """The rows of a batch from those of single members: for jobs whose members take long."""
-    found = [rows(k) for k in range(first, first + count)]
+    found = []
+    for k in range(first, first + count):
+        if cancel_requested():
+            raise Cancelled(status_code("cancelled"), "interrupted")
+        found.append(rows(k))
     return {name: np.stack([one[name] for one in found]) for name in found[0]}
 
 
@@ -92,8 +96,13 @@ class _Batches:
         self.again = "; --resume goes on from here" if context.checkpoint is not None else ""
         if context.checkpoint is not None:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
+            end = 0
             for first, arrays in context.checkpoint.load(self.name, context.warnings):
-                self.parts[first] = arrays
+                if end <= first <= count - _rows(arrays):
+                    self.parts[first] = arrays
+                    end = first + _rows(arrays)
+                else:  # of another run that was going on at the same time
+                    context.warnings.append(f"a kept batch overlaps others and is left out: member {first} on")
         self.done = sum(_rows(p) for p in self.parts.values())
         tell(self.done)
 
@@ -182,7 +191,7 @@ def _in_turn(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swep
 def _in_threads(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:
     """A batch for each thread at a time, kept as they come; few members have several threads each."""
     todo = _pieces(batches.missing(), lambda: pace.size)
-    threads = max(1, context.threads)
+    threads = thread_count(max(1, context.threads))
     each = max(1, threads // (batches.count - batches.done))
     pending: dict[Future, int] = {}
     stopped = False
@@ -190,7 +199,10 @@ def _in_threads(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     try:
         while True:
             while not stopped and len(pending) < threads and (piece := next(todo, None)):
-                pending[pool.submit(_timed, job, *piece, each)] = piece[0]
+                try:
+                    pending[pool.submit(_timed, job, *piece, each)] = piece[0]
+                except RuntimeError as error:  # the system has no room for the stack of another thread
+                    raise MemoryError(f"not enough memory: {error}") from None
             if not pending:
                 break
             finished, _ = wait(pending, timeout=0.1, return_when=FIRST_COMPLETED)

@@ -10,7 +10,7 @@ from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.core.errors import Cancelled, CoreError
-from extrados.limit.solver import NoAnswer
+from extrados.limit.solver import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
@@ -48,7 +48,7 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]
-    except (Refused, BadGeometry) as error:
+    except (Refused, BadGeometry, Immovable) as error:
         result = Result(options.kind, "refused", str(error))
     except Unfinished as error:
         result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))
@@ -58,8 +58,11 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = Result(options.kind, "failed", str(error) or "not enough memory")
     except (CoreError, NoAnswer) as error:
         result = Result(options.kind, "failed", str(error))
-    except Exception as error:  # a fault of ours: the other analyses of the deck still count
-        result = faulty(options.kind, error)
+    except Exception as error:
+        if isinstance(error, ImportError) and "failed to map" in str(error):  # a library that is loaded when needed
+            result = Result(options.kind, "failed", f"not enough memory: {error}")
+        else:  # a fault of ours: the other analyses of the deck still count
+            result = faulty(options.kind, error)
     remarks, _ = building.told()
     result.warnings = [*remarks, *result.warnings]
     result.seconds = time.perf_counter() - begin

@@ -80,7 +80,9 @@ class Building:
     def pier_blocks(self) -> Assembly:
         """A wall as few rigid bodies: piers between its openings, spandrels over them."""
         return self._view(
-            "piers", (self.structure, self.material.density), lambda: self._structure().piers(self.material.density)
+            "piers",
+            (self.structure, self.material.density),
+            lambda: self._structure().pier_assembly(self.material.density),
         )
 
     def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
@@ -151,10 +153,8 @@ class Building:
                     yield np.array(assembly.groups[name], dtype=int), kind
                 else:
                     known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
-                    layers = f", layers {', '.join(assembly.groups)}" if assembly.groups else ""
-                    raise BadGeometry(
-                        f"joints.types {k} names no joint '{name}'; there are {known}{layers}, and ground"
-                    )
+                    groups = ", ".join([*assembly.groups, "ground"])
+                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}")
 
     def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that

@@ -91,8 +91,8 @@ class JointType(Table):
     """Some joints that differ from the others."""
 
     joints: list[str] = key(
-        about='names of joints; "ground" means all joints to the ground; the name of a layer of a drawing, those between its '
-        "stones or along its lines",
+        about='names of joints; "ground" means all joints to the ground, "rings" and "backing" those of a bridge; the name '
+        "of a layer of a drawing, those between its stones or along its lines",
         min_length=1,
         max_length=10000,
     )
@@ -101,6 +101,9 @@ class JointType(Table):
     cohesion: Stress | None = key(None, "cohesion of the mortar, lost at the first failure", ge=0)
     tension: Stress | None = key(None, "tensile strength of the mortar, lost at the first failure", ge=0)
     fracture_energy: Energy | None = key(None, "energy of a crack in the mortar per area", gt=0)
+    shear_energy: Energy | None = key(None, "energy of the cohesion per area, mode II", gt=0)
+    compressive_strength: Stress | None = key(None, "compressive strength of the masonry across the joint", gt=0)
+    crushing_energy: Energy | None = key(None, "energy of crushing per area of the joint", gt=0)
 
 
 class Joints(Table):
@@ -113,6 +116,21 @@ class Joints(Table):
     tension: Stress = key(0.0, "tensile strength of mortar, lost at the first failure", ge=0)
     fracture_energy: Energy | None = key(
         None, "energy of a crack in the mortar per area; sequentially linear analysis needs it with a tension", gt=0
+    )
+    shear_energy: Energy | None = key(
+        None,
+        "energy of the cohesion per area, mode II; sequentially linear analysis needs it with a cohesion, and loses the "
+        "cohesion by it, not at the first failure",
+        gt=0,
+    )
+    compressive_strength: Stress | None = key(
+        None, "compressive strength of the masonry across the joints, of sequentially linear analysis", gt=0
+    )
+    crushing_energy: Energy | None = key(None, "energy of crushing per area of the joints; goes with it", gt=0)
+    softening: Literal["linear", "exponential"] = key(
+        "exponential",
+        "how cohesion and tension of mortar fall, in sequentially linear analysis",
+        source="Lourenco 1996",
     )
     normal_stiffness: Stiffness | None = key(
         None, "normal stiffness per area; default E over the length of stone that a joint stands for",

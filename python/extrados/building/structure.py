@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from extrados.building.mesh.options import MeshOptions
 
 RocksAs = Literal["mechanism", "block", "piers"]
+Crossed = Literal["arch", "top"]
 
 
 class Structure(Table):
@@ -22,6 +23,7 @@ class Structure(Table):
     have, with the reason in words.
 
     rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, or its piers.
+    crossed: where a moving load goes unless a deck names a chain, over the first arch or along the whole top.
     starter_analysis: the analysis of the deck that `new` writes.
     """
 
@@ -29,6 +31,7 @@ class Structure(Table):
     word: ClassVar[str] = "structure"
     lacks: ClassVar[Mapping[str, str]] = {}
     rocks_as: ClassVar[RocksAs] = "mechanism"
+    crossed: ClassVar[Crossed] = "arch"
     starter_analysis: ClassVar[str] = "tilt"
 
     def assembly(self, density: float, folder: Path) -> "Assembly":
@@ -50,7 +53,7 @@ class Structure(Table):
         """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""
         return made
 
-    def piers(self, density: float) -> "Assembly":
+    def pier_assembly(self, density: float) -> "Assembly":
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""
         raise NoView(f"a structure of kind '{self.kind}' has no piers")
 

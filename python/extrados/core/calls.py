@@ -11,9 +11,11 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core
+from extrados.core.errors import check
 
-_core.api_support.init_libraries()
-
+check(_core.api_support.init_libraries(), "loading the core")
+# numpy's own BLAS ends the process where its first buffer finds no room: it takes it here, not amid a long run
+np.linalg.solve(np.eye(2), np.ones(2))
 
 #: Values an answer of the core may have: 2 GB.
 MOST_VALUES = 250_000_000
@@ -82,39 +84,55 @@ def thread_count(threads: int) -> int:
 
 _lock = threading.Lock()
 _nesting = 0
-_asked = threading.Event()
+_stopped_by = 0
 
 
 def cancel_requested() -> bool:
     """True once the user asked to stop, while `interruptible` lasts."""
-    return _asked.is_set()
+    return bool(_core.api_support.cancel_requested())
 
 
-def _ask(*_: object) -> None:
-    _asked.set()
+def stopped_by() -> int:
+    """The number of the signal that last asked to stop; 0 if none did."""
+    return _stopped_by
+
+
+def _ask(number: int = 0, _: object = None) -> None:
+    global _stopped_by
+    _stopped_by = number
     _core.api_support.set_cancel(1)
 
 
 @contextlib.contextmanager
 def interruptible() -> Iterator[None]:
-    """While this lasts, Ctrl-C and SIGTERM only set the core's cancel flag; the handlers come back after."""
+    """While this lasts, Ctrl-C and SIGTERM set the core's cancel flag.
+
+    In the main thread they do nothing else, and their handlers come back after. Another thread may not touch Python's
+    handlers: there the core looks at the signals itself and hands them on, so that Python answers them as ever, but the
+    computation does not go on unseen.
+    """
     global _nesting
     main = threading.current_thread() is threading.main_thread()
     with _lock:
         _nesting += 1
-        outermost = _nesting == 1
-        if outermost:
-            _asked.clear()
+        if _nesting == 1:
             _core.api_support.set_cancel(0)
     before: dict[signal.Signals, Any] = {}
-    if main and outermost:
+    if main:
         for number in (signal.SIGINT, signal.SIGTERM):
             before[number] = signal.signal(number, _ask)
+    else:
+        _core.api_support.watch_signals(1)
     try:
         yield
     finally:
+        if not main:
+            _core.api_support.watch_signals(0)
         for number, handler in before.items():
             signal.signal(number, handler)
+        if before:  # another thread may rely on the core's look at the signals, which ours took the place of
+            _core.api_support.watch_signals(1)
+            _core.api_support.watch_signals(0)
         with _lock:
             _nesting -= 1
 
@@ -138,7 +156,10 @@ def long_call(function: Callable[..., Any], *args: Any, **keywords: Any) -> Any:
 
     with interruptible():
         thread = threading.Thread(target=work, daemon=True)
-        thread.start()
+        try:
+            thread.start()
+        except RuntimeError as error:  # the system has no room for its stack
+            raise MemoryError(f"not enough memory: {error}") from None
         while not done.wait(0.05):
             pass
         thread.join()

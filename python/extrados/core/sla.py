@@ -22,6 +22,7 @@ from extrados.core.sla_parts import (
     Behaviour,
     Events,
     Freedoms,
+    Joints,
     Monitor,
     Plane,
     Softening,
@@ -44,6 +45,7 @@ __all__ = [
     "Events",
     "FreeNode",
     "Freedoms",
+    "Joints",
     "Model",
     "Monitor",
     "Plane",
@@ -62,6 +64,9 @@ REPORT = (
     "tooth_n", "tooth_s", "lambda_lo", "lambda_hi", "volume", "crush_n", "crush_s", "shut", "band",
 )  # fmt: skip
 MOST_TEETH = 4096
+#: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
+#: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
+HELD, HELD_RATE, MARK, MODE = 1, 6, 8, 10
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
 BAND_STEP = 1.02
 
@@ -140,7 +145,7 @@ class Model(Owner):
         self,
         xy: npt.ArrayLike,
         freedoms: Freedoms,
-        groups: Sequence[Plane | Bars | Springs],
+        groups: Sequence[Plane | Joints | Bars | Springs],
         behaviour: Behaviour | None = None,
         *,
         algorithm: str = "update",
@@ -151,7 +156,7 @@ class Model(Owner):
         if algorithm not in ("update", "refactor"):
             raise ValueError(f"algorithm is {algorithm!r}, expected 'update' or 'refactor'")
         self.behaviour = behaviour = behaviour or Behaviour()
-        self.plane_points: list[tuple[Plane, int, int]] = []  # group, first point, points per element
+        self.plane_points: list[tuple[Plane | Joints, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
         place = real("xy", np.transpose(xy), (2, None))
         self.nodes = place.shape[1]
@@ -191,13 +196,13 @@ class Model(Owner):
             self.close()
             raise
 
-    def _tables(self, count: int, group: Plane | Bars) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Hand over the tooth tables of a group; Young's modulus and, for tension and compression, the table of
-        each element (1-based, 0 none), and (2, elements) those of its narrowest and widest tension band."""
+    def _tables(self, count: int, group: Plane | Joints | Bars) -> tuple[list[np.ndarray], np.ndarray]:
+        """Hand over the tooth tables of a group; for tension, compression and of joints cohesion, the table of each
+        element (1-based, 0 none), and (2, elements) those of its narrowest and widest tension band."""
         young, band = _each("young", group.young, count), _each("band", group.band, count)
         reach = group.reach if isinstance(group, Plane) else None
         rows: list[tuple[float, ...]] = []
-        tension = _each_law(group.tension, count)
+        tension = _softenings(group.tension, count)
         bedded = [
             law is not None and bed is not None for law, bed in zip(tension, _beddings(group, count), strict=True)
         ]
@@ -213,7 +218,10 @@ class Model(Owner):
             more, rungs = _many_bands(other, young, band, ends * stretch, rows)
             number, ladder = np.where(bedded, more, number), np.where(bedded, rungs, ladder)
         numbers = [number]
-        numbers.append(_one_band(_each_law(group.compression, count), young, band, rows))
+        numbers.append(_one_band(_softenings(group.compression, count), young, band, rows))
+        if isinstance(group, Joints):
+            slip = _each("shear stiffness", group.shear_stiffness, count)
+            numbers.append(_one_band(_softenings(group.cohesion, count), slip, band, rows))
         if rows:
             table = real("softening", np.transpose(rows), (8, None))
             bad, status = _core.api_sla_model.tables(self.handle, table)
@@ -227,21 +235,25 @@ class Model(Owner):
                     f"band {width:g} m, the largest is {largest:g} m",
                 )
             check(status, "softening laws")
-        return young, numbers[0], numbers[1], ladder
+        return numbers, ladder
 
-    def _add(self, group: Plane | Bars | Springs) -> None:
+    def _add(self, group: Plane | Joints | Bars | Springs) -> None:
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        per = 2 if isinstance(group, Bars) else ELEMENTS[group.kind]
+        per = 2 if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
-        young, tension, compression, ladder = self._tables(count, group)
+        young = _each("young", group.young, count)
+        tables, ladder = self._tables(count, group)
         if isinstance(group, Bars):
             bad, status = _core.api_sla_model.bars(
-                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(tension, compression)
+                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(*tables)
             )
             what = "bar"
+        elif isinstance(group, Joints):
+            bad, status = self._add_joints(group, connect, tables)
+            what = "joint element"
         else:
             axis = np.broadcast_to(np.asarray(group.axis, dtype=float), (count,))
             given = np.isfinite(axis)
@@ -252,14 +264,26 @@ class Model(Owner):
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(tension, compression, (1 + int(group.joint)) * given.astype(np.int32), *ladder),
+                properties, _rows(*tables, (1 + int(group.joint)) * given.astype(np.int32), *ladder),
             )  # fmt: skip
             what = "element"
+        if not isinstance(group, Bars):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
             self.plane_points.append((group, first, group.points_each))
         if bad:
             raise BadElement(int(bad) - 1, what)
         check(status, f"{what}s")
+
+    def _add_joints(self, group: Joints, connect: np.ndarray, tables: list[np.ndarray]) -> tuple[int, int]:
+        count = connect.shape[1]
+        friction = np.broadcast_to(np.asarray(group.friction, dtype=float), (count,))
+        properties = _rows(
+            *real("area", np.transpose(group.area), (2, count)), _each("normal stiffness", group.normal_stiffness, count),
+            _each("shear stiffness", group.shear_stiffness, count), np.where(np.isnan(friction), -1.0, friction),
+            _each("small", group.small, count), *real("normal", np.transpose(group.normal), (2, count)),
+        )  # fmt: skip
+        dry = np.broadcast_to(np.asarray(group.dry, dtype=np.int32), (count,))
+        return _core.api_sla_joints.joints(self.handle, connect, properties, _rows(*tables, dry), float(group.ripple))
 
     def _add_springs(self, group: Springs) -> None:
         count = len(group.stiffness)
@@ -359,11 +383,29 @@ class Model(Owner):
         check(status, "stored damage")
         self.factorise()
 
+    def end_stage(self, load: float) -> None:
+        """Before other loads: friction that slides sticks where it is at the multiplier reached, with the force it has."""
+        damage, report = self.damage(), self.report(load)
+        for group, first, per in self.plane_points:
+            if not isinstance(group, Joints):
+                continue
+            at = first + np.flatnonzero(damage[MODE, first : first + per * len(group.connect)] % 4)
+            slip = (damage[HELD, at] + load * damage[HELD_RATE, at]) / (1.0 - report["ratio_s"][at])
+            damage[MARK, at] = report["strain_ns"][at] - slip
+            damage[HELD, at] = damage[HELD_RATE, at] = damage[MODE, at] = 0.0
+        self.set_damage(damage)
+
     def standing(self) -> np.ndarray:
         """Where the loop stands between two calls of `run`, beside loads and damage."""
         values, status = _core.api_sla.standing(self.handle)
         check(status, "where the events stand")
         return np.array(values)
+
+    def standing_at(self, load: float) -> np.ndarray:
+        """Where the loop stands at the start of a stage, but at a multiplier."""
+        standing = self.standing()
+        standing[3] = load
+        return standing
 
     def renew(self, damage: npt.ArrayLike, standing: npt.ArrayLike) -> None:
         """Go on from a damage and where the loop stood, under the loads of the stage, with a new factor.
@@ -374,7 +416,7 @@ class Model(Owner):
         check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (27,))), "stored events")
 
 
-def _each_law(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:
+def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:
     """The law of each element."""
     each = [law] * count if law is None or isinstance(law, Softening) else list(law)
     if len(each) != count:
@@ -382,7 +424,7 @@ def _each_law(law: Softening | Sequence[Softening | None] | None, count: int) ->
     return each
 
 
-def _beddings(group: Plane | Bars, count: int) -> list[Bedding | None]:
+def _beddings(group: Plane | Bars | Joints, count: int) -> list[Bedding | None]:
     """The bed joints of each element."""
     bedding = group.bedding if isinstance(group, Plane) else None
     each = [bedding] * count if bedding is None or isinstance(bedding, Bedding) else list(bedding)
@@ -398,7 +440,7 @@ def _bed_rows(group: Plane, count: int) -> np.ndarray:
     if group.bedding is None:
         return rows
     width = _each("band", group.band, count) if group.reach is None else np.zeros(count)
-    for k, (bed, law) in enumerate(zip(_beddings(group, count), _each_law(group.tension, count), strict=True)):
+    for k, (bed, law) in enumerate(zip(_beddings(group, count), _softenings(group.tension, count), strict=True)):
         if bed is not None and law is not None:
             rows[:, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
     return rows

@@ -145,6 +145,43 @@ class Bars:
 
 
 @dataclass(frozen=True)
+class Joints:
+    """Joints of no thickness that open, slide and crush; all arrays by element, or one value for all.
+
+    connect (elements, 4) 0-based, along the lower side and back along the upper one; normal (elements, 2) unit vectors
+    from the lower to the upper side; area (elements, 2) of its two points [m^2], 0 where a neighbour has it; normal and shear stiffness [Pa/m]; friction coefficient,
+    NaN where nothing slides. tension, compression and cohesion soften as in Plane, their strain the jump [m] and their
+    band 1 m; None where there is no limit, or no cohesion. `dry` True where nothing holds in tension; `small` stress
+    [Pa] that counts as none; `ripple` half-width of the steps of friction over the friction.
+    """
+
+    connect: np.ndarray
+    normal: np.ndarray
+    area: np.ndarray
+    normal_stiffness: float | np.ndarray
+    shear_stiffness: float | np.ndarray
+    friction: float | np.ndarray = np.nan
+    tension: Softening | Sequence[Softening | None] | None = None
+    compression: Softening | Sequence[Softening | None] | None = None
+    cohesion: Softening | Sequence[Softening | None] | None = None
+    dry: bool | np.ndarray = False
+    small: float | np.ndarray = 1.0
+    ripple: float = 0.02
+    points_each = 2  # at the ends of each element
+    reach = None
+
+    @property
+    def young(self) -> np.ndarray:
+        """By element what the strain of its tooth tables, the opening, gives a stress with [Pa/m]."""
+        return np.broadcast_to(np.asarray(self.normal_stiffness, dtype=float), (len(self.connect),))
+
+    @property
+    def band(self) -> np.ndarray:
+        """1 m by element."""
+        return np.ones(len(self.connect))
+
+
+@dataclass(frozen=True)
 class Springs:
     """Linear springs between freedoms: node (springs, 2) 0-based, -1 the ground; direction 0 x, 1 y;
     stiffness [N/m]."""

@@ -20,6 +20,7 @@ from extrados.decks.moved import MOVED, MOVED_KINDS
 from extrados.decks.positions import key_lines, line_of
 from extrados.schema import files
 from extrados.schema.table import Motion, Table
+from extrados.schema.text import printable
 
 LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
@@ -32,8 +33,8 @@ class DeckError(Exception):
     """The deck is wrong; `complaints` holds lines "deck.toml:LINE: key: what is wrong, what is expected"."""
 
     def __init__(self, complaints: list[str]):
-        self.complaints = complaints
-        super().__init__("\n".join(complaints))
+        self.complaints = [printable(complaint) for complaint in complaints]
+        super().__init__("\n".join(self.complaints))
 
 
 @dataclass(frozen=True)
@@ -228,7 +229,7 @@ class _Checker:
         if not isinstance(kind, str) or kind not in known:
             if kind is None:
                 self.complain(path, f"kind is missing: expected one of {_words(known)}")
-            elif (section, kind) in MOVED_KINDS:
+            elif isinstance(kind, str) and (section, kind) in MOVED_KINDS:
                 self.complain((*path, "kind"), f"'{kind}' is now called '{MOVED_KINDS[section, kind]}'")
             else:
                 self.complain((*path, "kind"), f"unknown kind {_shown(kind)}{_nearest(str(kind), known)}")

@@ -9,7 +9,7 @@ import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.graphic import force_polygon, funicular
-from extrados.limit.lines import ThrustPath, thrust_paths
+from extrados.limit.lines import ThrustPath, inner_stones, thrust_paths
 from extrados.limit.loads import Loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.systems import Sparse
@@ -83,8 +83,21 @@ class Answer:
         return {name: force_polygon(self.assembly, state, joints) for name, joints in self.assembly.chains.items()}
 
     def funiculars(self, state: State) -> dict[str, np.ndarray]:
-        """Funicular polygon of each chain [m]."""
-        return {name: funicular(self.assembly, self.loads, state, j) for name, j in self.assembly.chains.items()}
+        """Funicular polygon [m] of each arch whose stones bear nothing but their loads and each other."""
+        return {
+            name: funicular(self.assembly, self.loads, state, joints)
+            for name, joints in self.assembly.chains.items()
+            if self._plain(joints)
+        }
+
+    def _plain(self, joints: list[int]) -> bool:
+        """Does a chain span, do its stones touch no stone beside it, and does nothing push back on them?"""
+        if np.ptp(self.assembly.middle[joints, 0]) < 0.5 * np.ptp(self.assembly.middle[joints, 1]):
+            return False  # upright: the loads meet the line far below
+        inner = inner_stones(self.assembly, joints)
+        resistance = self.loads.resistance
+        pushed = set() if resistance is None else set(resistance.block.tolist())
+        return not inner & pushed and all(len(self.assembly.joints_of(i)) == 2 for i in inner)
 
     def lines(self, state: State) -> list[ThrustPath]:
         """The thrust line of a state, through every stone."""

@@ -83,7 +83,7 @@ def spanning_tree(assembly: Assembly) -> Tree:
 class JointForces:
     """Corner forces of joint j: n_p, n_q (compression at the ends p and q) and the shear s from p to q.
 
-    Each is `rows @ x`, x = (redundants..., gamma, 1), forces divided by `weight` and redundant moments by
+    Each is `rows @ x`, x = (redundants..., shares of the pushes..., gamma, 1), forces divided by `weight` and redundant moments by
     weight times `size`, so that the numbers stay near one. rows has shape (joints, 3, len(x)).
     """
 
@@ -94,16 +94,16 @@ class JointForces:
 
     @property
     def unknowns(self) -> int:
-        """Redundants plus gamma."""
+        """Redundants, shares and gamma."""
         return self.rows.shape[2] - 1
 
 
 def joint_forces(assembly: Assembly, loads: Loads, tree: Tree) -> JointForces:
-    """Corner forces of all joints under the dead loads and gamma times the live loads."""
+    """Corner forces of all joints under the dead loads, gamma times the live loads, and pushes that answer."""
     parent = tree.parent_joint
     n_joint = len(assembly.a)
     loops = tree.loops(n_joint)
-    columns = 3 * len(loops) + 2
+    columns = 3 * len(loops) + loads.pushes + 2
     weight, size = loads.scale, assembly.size
     unit = weight * np.array([1.0, 1.0, size])
 
@@ -112,6 +112,8 @@ def joint_forces(assembly: Assembly, loads: Loads, tree: Tree) -> JointForces:
     load = np.zeros((len(assembly.mass), 3, columns))
     load[:, :, -2] = loads.live / unit
     load[:, :, -1] = loads.dead / unit
+    if loads.resistance is not None:
+        load[:, :, 3 * len(loops) : -2] = loads.resistance.spread(len(load)) / unit[:, None]
     if len(loops):
         k = 3 * np.arange(len(loops))
         middle = assembly.middle[loops] / size

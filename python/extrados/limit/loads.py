@@ -1,20 +1,23 @@
 """Loads on the blocks of an assembly: weight, fill and point loads at rest, and what the multiplier gamma scales."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from extrados.building.geometry.assembly import Assembly
+from extrados.limit.fill import Resistance, passive_pressure
 from extrados.schema.constants import GRAVITY
 
 
 @dataclass(frozen=True)
 class Loads:
-    """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block."""
+    """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block; what else pushes
+    where blocks move towards it."""
 
     dead: np.ndarray
     live: np.ndarray
+    resistance: Resistance | None = None
 
     @cached_property
     def scale(self) -> float:
@@ -22,7 +25,12 @@ class Loads:
         return float(np.abs(self.dead[:, :2]).sum())
 
     def with_dead(self, extra: np.ndarray) -> "Loads":
-        return Loads(self.dead + extra, self.live)
+        return replace(self, dead=self.dead + extra)
+
+    @property
+    def pushes(self) -> int:
+        """How many pushes answer to movement."""
+        return 0 if self.resistance is None else len(self.resistance.block)
 
 
 def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, float]) -> np.ndarray:
@@ -35,7 +43,8 @@ def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, flo
 def tilt_loads(assembly: Assembly, fill_sways: bool = True) -> Loads:
     """Weight at rest; the live load is weight turned to +x, so that gamma is an acceleration in g.
 
-    The fill of the assembly rests on its blocks; where fill_sways it is accelerated with them.
+    The fill of the assembly rests on its blocks; where fill_sways it is accelerated with them. Soil whose passive
+    pressure counts resists.
     """
     x, y = assembly.centroid.T
     weight = assembly.mass * GRAVITY
@@ -48,4 +57,4 @@ def tilt_loads(assembly: Assembly, fill_sways: bool = True) -> Loads:
         dead = dead + np.column_stack([nothing, -weight, -x * weight])
         if fill_sways:
             live = live + np.column_stack([weight, nothing, -y * weight])
-    return Loads(dead, live)
+    return Loads(dead, live, None if assembly.earth is None else passive_pressure(assembly.earth, assembly.depth))

@@ -89,6 +89,10 @@ class LimitAnalysis:
         self._cuts: Constraints | None = None
         self._programme: Programme | None = None
 
+    def crush_as(self, other: "LimitAnalysis") -> None:
+        """Begin with the tangent planes of crushing that another found: the same stones, strength and dead weight."""
+        self._cuts = other._cuts
+
     @staticmethod
     def _rows(joint: np.ndarray, coefficient: tuple[float, float, float]) -> Constraints:
         k = len(joint)
@@ -177,14 +181,16 @@ class LimitAnalysis:
         return cost
 
     def _state(self, solution: Solution, corners: np.ndarray) -> State:
-        return read_state(float(solution.x[self.system.unknowns - 1]), corners, self.loads.scale)
+        x = solution.x
+        return read_state(float(x[self.system.unknowns - 1]), corners, self.loads.scale, x[self.system.shares])
 
     def collapse(self, direction: int = 1) -> tuple[State, Mechanism]:
         """Greatest gamma for the load gamma W to +x (direction 1) or -x (-1), and the mechanism.
 
         gamma is negative where the structure cannot stand upright and needs support from that side.
         """
-        if isinstance(self.system, Sparse) and self._cone is not None and self.associated and self._crush is None:
+        plain = self._crush is None and not self.loads.pushes
+        if isinstance(self.system, Sparse) and self._cone is not None and self.associated and plain:
             inner = collapse_load(self.system, self._mu, direction)
             if inner is not None:
                 return self._interior_answer(self.system, inner)
@@ -213,6 +219,9 @@ class LimitAnalysis:
     def stands(self, gamma: float = 0.0) -> bool:
         """True where an admissible thrust line exists, upright or at a given gamma."""
         try:
+            if self._crush is not None:  # without a cost the tangent planes of crushing would be sought all around
+                most, least = (-d * self.optimise(self._gamma_cost(-d), (-BOUND, BOUND))[0].value for d in (1.0, -1.0))
+                return least <= gamma <= most
             self.optimise(np.zeros(self.system.unknowns), (gamma, gamma))
         except NoEquilibrium:
             return False

@@ -74,11 +74,13 @@ class Programme:
             start, index, value = whole.indptr.astype(np.int32), whole.indices.astype(np.int32), whole.data
             row_lower = np.concatenate([system.right, lower])
             row_upper = np.concatenate([system.right, np.full(k, INFINITY)])
-        free = np.full(n, BOUND if e == 0 else INFINITY)
+        most = np.full(n, BOUND if e == 0 else INFINITY)
+        least = -most
+        least[system.shares], most[system.shares] = 0.0, 1.0
         basis = self._solver.getBasis()
         passed = self._solver.passModel(
             n, e + k, len(value), int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
-            np.zeros(n), -free, free, row_lower, row_upper, start, index, value,
+            np.zeros(n), least, most, row_lower, row_upper, start, index, value,
             np.zeros(n, dtype=np.int32),
         )  # fmt: skip
         if passed == highspy.HighsStatus.kError:

@@ -18,13 +18,15 @@ AT_REST = 1e-7
 class State:
     """One admissible state of the joints: forces in N, positions as fractions of the joints.
 
-    normal, shear (joints); position 0 at p (intrados), 1 at q (extrados); gamma load multiplier.
+    normal, shear (joints); position 0 at p (intrados), 1 at q (extrados); gamma load multiplier; mobilised: the shares
+    of the pushes that answer to movement, in the order of the loads.
     """
 
     gamma: float
     normal: np.ndarray
     shear: np.ndarray
     position: np.ndarray
+    mobilised: np.ndarray | None = None
 
     @property
     def friction(self) -> np.ndarray:
@@ -64,11 +66,11 @@ class Mechanism:
         return np.divide(self.opening_p, turn, out=np.full_like(turn, np.nan), where=turn != 0.0)
 
 
-def read_state(gamma: float, corners: np.ndarray, scale: float) -> State:
+def read_state(gamma: float, corners: np.ndarray, scale: float, mobilised: np.ndarray | None = None) -> State:
     """State from scaled corner forces (joints, 3); what is negative by rounding is taken as zero."""
     n_p, n_q = np.maximum(corners[:, :2].T * scale, 0.0)
     normal = n_p + n_q
-    return State(gamma, normal, corners[:, 2] * scale, n_q / np.maximum(normal, 1e-300))
+    return State(gamma, normal, corners[:, 2] * scale, n_q / np.maximum(normal, 1e-300), mobilised)
 
 
 def read_mechanism(
@@ -83,13 +85,18 @@ def read_mechanism(
 ) -> Mechanism:
     """Mechanism from the scaled twists about the origin and the duals of the constraints.
 
-    Virtual work gives the bound: -(dead . u + sum dual * lower) / (live . u).
+    Virtual work gives the bound: -(dead . u + sum dual * lower + pushes against it) / (live . u); a push is whole
+    where its block moves against it, and nothing where it moves away.
     """
     size = assembly.size
     unit = loads.scale * np.array([1.0, 1.0, size])
     live = float((loads.live / unit * twist).sum())
     dead = float((loads.dead / unit * twist).sum())
-    upper = -(dead + float(dual @ constraints.lower)) / live
+    resisted = 0.0
+    if loads.resistance is not None:
+        work = (loads.resistance.wrench / unit * twist[loads.resistance.block]).sum(axis=1)
+        resisted = float(np.minimum(work, 0.0).sum())
+    upper = -(dead + float(dual @ constraints.lower) + resisted) / live
     x, y = (assembly.centroid / size).T
     velocity = np.column_stack([twist[:, 0] - twist[:, 2] * y, twist[:, 1] + twist[:, 2] * x, twist[:, 2]])
 

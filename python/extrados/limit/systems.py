@@ -3,7 +3,8 @@
 `Reduced` keeps the redundants of the loops and gamma as the only unknowns: right for chains, arches and
 churches. `Sparse` keeps three forces per joint and three equations per block: right for walls, where loops
 are as many as blocks. Both speak of corner forces c = (n_p, n_q, s) per joint, scaled by the total load,
-lengths by the size of the assembly.
+lengths by the size of the assembly. `shares` are the places among the unknowns of the shares, from 0 to 1, of pushes
+that answer to movement; gamma is the last unknown.
 """
 
 from dataclasses import dataclass
@@ -42,7 +43,7 @@ class Constraints:
 
 
 class Reduced:
-    """Unknowns: the redundants, then gamma. No equations are left."""
+    """Unknowns: the redundants, the shares of pushes, then gamma. No equations are left."""
 
     equations = 0
 
@@ -50,6 +51,7 @@ class Reduced:
         self.assembly, self.loads, self.tree = assembly, loads, tree
         forces = joint_forces(assembly, loads, tree)
         self.unknowns = forces.unknowns
+        self.shares = slice(self.unknowns - 1 - loads.pushes, self.unknowns - 1)
         self._slope, self._constant = forces.rows[:, :, :-1], forces.rows[:, :, -1]
 
     def express(self, rows: Constraints) -> tuple[np.ndarray, np.ndarray]:
@@ -84,12 +86,13 @@ class Reduced:
 
 
 class Sparse:
-    """Unknowns: corner forces of all joints, then gamma; three equations per block."""
+    """Unknowns: corner forces of all joints, the shares of pushes, then gamma; three equations per block."""
 
     def __init__(self, assembly: Assembly, loads: Loads, tree: Tree):
         self.assembly, self.loads, self.tree = assembly, loads, tree
         m, size = len(assembly.a), assembly.size
-        self.unknowns = 3 * m + 1
+        self.unknowns = 3 * m + loads.pushes + 1
+        self.shares = slice(3 * m, 3 * m + loads.pushes)
         self.equations = 3 * len(assembly.mass)
         n, t = assembly.normal, assembly.tangent
         p, q = assembly.p / size, assembly.q / size
@@ -110,8 +113,12 @@ class Sparse:
         live = (loads.live / unit).ravel()
         moved = np.flatnonzero(live)
         row.append(moved)
-        column.append(np.full(len(moved), 3 * m))
+        column.append(np.full(len(moved), self.unknowns - 1))
         value.append(live[moved])
+        if loads.resistance is not None:
+            row.append((3 * loads.resistance.block[:, None] + np.arange(3)).ravel())
+            column.append(np.repeat(3 * m + np.arange(loads.pushes), 3))
+            value.append((loads.resistance.wrench / unit).ravel())
         entries = np.concatenate(value), (np.concatenate(row), np.concatenate(column))
         self.matrix = sparse.csr_array(entries, shape=(self.equations, self.unknowns))
         self.right = -(loads.dead / unit).ravel()
@@ -123,10 +130,10 @@ class Sparse:
         return sparse.csr_array(entries, shape=(k, self.unknowns)), np.zeros(k)
 
     def corners(self, x: np.ndarray) -> np.ndarray:
-        return x[:-1].reshape(-1, 3)
+        return x[: self.shares.start].reshape(-1, 3)
 
     def cost(self, corner_cost: np.ndarray) -> np.ndarray:
-        return np.append(corner_cost.ravel(), 0.0)
+        return np.concatenate([corner_cost.ravel(), np.zeros(self.unknowns - self.shares.start)])
 
     def velocities(self, motion: np.ndarray, dual: np.ndarray) -> tuple[np.ndarray, float]:
         """Twists (nb, 3) straight from the duals of the equations."""

@@ -86,9 +86,13 @@ def read_table(name: str | Path, folder: Path | None = None) -> Spectrum:
     """A CSV file period_s,sa_g that a deck in `folder` names; ValueError with file and line."""
     try:
         file = read(name, LARGEST, folder)
-        path, reader = file.path, csv.reader(file.text().splitlines())
-    except BadFile as error:
+        return _parse(file.path, file.text())
+    except (BadFile, csv.Error) as error:
         raise ValueError(f"{error}; expected a CSV file period_s,sa_g") from None
+
+
+def _parse(path: Path, text: str) -> Spectrum:
+    reader = csv.reader(text.splitlines())
     header = [word.strip() for word in next(reader, [])]
     if header != ["period_s", "sa_g"]:
         raise ValueError(f"{path}:1: header is {','.join(header)[:60]!r}, expected period_s,sa_g")

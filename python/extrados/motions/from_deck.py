@@ -14,6 +14,7 @@ from extrados.motions.formats.record import RecordError
 from extrados.motions.generated import GeneratedSet, generated
 from extrados.motions.motion import Motion
 from extrados.schema.table import Motion as Model
+from extrados.schema.text import printable
 
 Sets = models.Suite | models.Generated | models.Compatible
 
@@ -75,7 +76,7 @@ def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
 
 def member_name(member: models.Components) -> str:
     """What a record of a suite is called in tables and messages."""
-    stem = Path(member.file).stem
+    stem = printable(Path(member.file).stem)
     return stem if member.channel is None else f"{stem} {member.channel}"
 
 

@@ -59,7 +59,7 @@ def load_spectrum(name: str = SHIPPED, folder: Path | None = None) -> LineSpectr
     try:
         file = read(name, LARGEST, folder)
         return _parse(file.text(), str(file.path))
-    except BadFile as error:
+    except (BadFile, csv.Error) as error:
         raise SpectrumFileError(f"{error}; expected '{SHIPPED}' or a CSV file {','.join(COLUMNS)}") from None
 
 

@@ -8,12 +8,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
 from extrados.plots import style
-from extrados.results.limit import Hinge, Tilt
+from extrados.results.limit import Hinge, MovingLoad, Tilt
 from extrados.results.store import Stored
 
 MOST_LETTERED = 26  # hinges: more are dots
 MOST_FLOW = 3.0  # points: width of the greatest force between stones
 HATCH = "#cfc6b2"
+LONG = 0.5  # height over length: below it section and mechanism stand one over the other
+MOST_LETTERS = 8  # hinges of a moving load: letters of more would run into each other
+FILL, PAVED, EVEN = "#f3ead6", "#b9b4aa", "#c98a2b"
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
 
@@ -155,6 +158,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     height = float(np.clip(3.4 * tall + 1.2, 3.6, 7.0))
     polygons = paths(run, name, "collapse_polygon")
     with style.figure(12.5 if polygons else 9.0, height, columns=3 if polygons else 2) as (fig, axes):
+        earth(axes[0], run, name)
         stone(axes[0], blocks)
         ground(axes[0], run, name, _standing(run, name))
         thrust_lines(axes[0], run, name, "collapse", style.THRUST, "thrust line")
@@ -175,6 +179,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         found = [(style.save(fig, folder, f"{name}-collapse"), _caption(r))]
     if "least_line" in run.arrays[name]:
         with style.figure(10.0, height, columns=2, width_ratios=[1.3, 1]) as (fig, (ax, forces)):
+            earth(ax, run, name)
             stone(ax, blocks)
             ground(ax, run, name, _standing(run, name))
             thrust_lines(ax, run, name, "least", style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}")
@@ -250,6 +255,7 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     arched = r.chain is not None
     sizes = {"width": 12.0, "columns": 2, "width_ratios": [1.4, 1]} if arched else {"width": 6.0}
     with style.figure(sizes.pop("width"), 4.6, **sizes) as (fig, (ax, *others)):
+        earth(ax, run, name)
         stone(ax, blocks)
         ground(ax, run, name, [reaction.joint for reaction in r.central.reactions])
         for which, colour in colours.items():
@@ -439,24 +445,136 @@ def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]
     return found
 
 
-def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Capacity over place, and the worst place."""
-    blocks, centroid = outlines(run, name), run.array(name, "centroid")
-    place, capacity = run.array(name, "place"), run.array(name, "capacity")
-    top = max(float(o[:, 1].max()) for o in blocks)
-    with style.figure(11.0, 4.0, columns=2) as (fig, (ax, curve)):
-        stone(ax, blocks, ghost=True)
-        stone(ax, carried(blocks, centroid, run.array(name, "mechanism_pose")))
-        for x in run.array(name, "axle"):
+def earth(ax: Axes, run: Stored, name: str) -> None:
+    """Fill and surfacing over the stones, where there are any."""
+    for what, colour in (("fill_outline", FILL), ("surfacing_outline", PAVED)):
+        if what in run.arrays[name]:
+            ax.fill(*run.array(name, what).T, facecolor=colour, edgecolor=style.EDGE, linewidth=0.4, zorder=0.5)
+
+
+def road_of(run: Stored, name: str, blocks: list[np.ndarray]) -> float:
+    """Level at which loads stand [m]: the top of the surfacing, the fill or the stones."""
+    tops = [run.array(name, what) for what in ("fill_outline", "surfacing_outline") if what in run.arrays[name]]
+    return max(float(o[:, 1].max()) for o in [*blocks, *tops])
+
+
+def _load_marks(ax: Axes, run: Stored, name: str, road: float, size: float) -> None:
+    """Axles as arrows and even loads as bands on the road."""
+    for x in run.array(name, "axle"):
+        ax.annotate(
+            "", (x, road), (x, road + 0.12 * size), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}, zorder=6
+        )
+    for i, (start, stop) in enumerate(run.array(name, "even_load")):
+        ax.fill_between(
+            [start, stop], road, road + 0.03 * size, color=EVEN, alpha=0.7, linewidth=0.0, zorder=4,
+            label="even load" if i == 0 else "_",
+        )  # fmt: skip
+
+
+def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
+    """Passive pressures that push back, as arrows as long as they are great."""
+    if "push_force" not in run.arrays[name]:
+        return
+    force, at = run.array(name, "push_force"), run.array(name, "push_point")
+    greatest = max(float(np.abs(run.array(name, "push_most")).max()), 1e-300)
+    for (x, y), f in zip(at, force, strict=True):
+        if abs(f) > 0.01 * greatest:
             ax.annotate(
-                "", (x, top), (x, top + 0.1 * np.ptp(place)), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}
-            )
-        ax.set_ylim(top=top + 0.13 * np.ptp(place))
-        ax.set_title("Mechanism under the load at its worst place")
-        style.section_axes(ax)
-        curve.plot(place, capacity / 1e3, color=style.THRUST, marker=".", markersize=3)
-        low = float(np.nanmin(capacity)) / 1e3
-        curve.set_ylim(0.0, min(float(np.nanmax(capacity)) / 1e3 * 1.05, 8.0 * low))
+                "", (x, y), (x - 0.08 * size * f / greatest, y), zorder=5,
+                arrowprops={"arrowstyle": "->", "color": style.GROUND, "linewidth": 1.0, "shrinkA": 0, "shrinkB": 0},
+            )  # fmt: skip
+    ax.plot([], [], color=style.GROUND, label="passive pressure")
+
+
+def _zones(ax: Axes, run: Stored, name: str, links: list[np.ndarray]) -> None:
+    """Zones of thrust along the chains: what of the joints the strength needs to carry the compression."""
+    if "zone_inner" not in run.arrays[name]:
+        return
+    inner, outer = run.array(name, "zone_inner"), run.array(name, "zone_outer")
+    for i, joints in enumerate(links):
+        band = np.concatenate([inner[joints], outer[joints][::-1]])
+        ax.fill(
+            *band.T,
+            color=style.THRUST,
+            alpha=0.35,
+            linewidth=0.0,
+            zorder=2.5,
+            label="zone of thrust" if i == 0 else "_",
+        )
+
+
+def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """The worst place with its thrust line, the mechanism, and the capacity over place."""
+    r = run[name]
+    blocks, centroid = outlines(run, name), run.array(name, "centroid")
+    place, size = run.array(name, "place"), float(np.ptp(np.concatenate(blocks)[:, 0]))
+    road = road_of(run, name, blocks)
+    start, joints = run.array(name, "chain_start"), run.array(name, "chain_joint")
+    links = [joints[a:b] for a, b in itertools.pairwise(start)]
+    point, envelope = run.array(name, "collapse_point"), run.array(name, "envelope_point")
+    tall = (road - min(float(o[:, 1].min()) for o in blocks)) / size + 0.15
+    long = tall < LONG
+    height = float(np.clip((19.0 if long else 5.6) * tall + 1.5, 3.2, 8.0))
+    with style.figure(9.0 if long else 11.5, height, rows=1 + long, columns=2 - long) as (fig, (ax, moved)):
+        earth(ax, run, name)
+        stone(ax, blocks)
+        for i, link in enumerate(links):
+            rows = envelope[:, link]
+            ax.add_collection(LineCollection(
+                rows[np.isfinite(rows).all(axis=(1, 2))], colors=style.EDGE, linewidths=0.25, alpha=0.5, zorder=2.2,
+                label="thrust lines, all places" if i == 0 else "_",
+            ))  # fmt: skip
+            ax.plot(*point[link].T, color=style.THRUST, zorder=3, label="thrust line" if i == 0 else "_")
+        _zones(ax, run, name, links)
+        _pushes(ax, run, name, size)
+        _load_marks(ax, run, name, road, size)
+        hinged = [h.joint for h in r.hinges]
+        lettered = len(hinged) <= MOST_LETTERS
+        style.draw_hinges(ax, point[hinged], [chr(65 + i) for i in range(len(hinged))] if lettered else None)
+        ax.set_title(f"Collapse at the worst place: {_borne(r)}")
+        if ax.get_legend_handles_labels()[0]:
+            style.legend_below(fig, ax)
+        earth(moved, run, name)
+        stone(moved, blocks, ghost=True)
+        stone(moved, carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        _load_marks(moved, run, name, road, size)
+        moved.set_title("Mechanism (finite rotations)")
+        for drawn in (ax, moved):
+            drawn.set_ylim(top=road + (0.15 if len(run.array(name, "axle")) else 0.06) * size)
+            style.section_axes(drawn)
+        letters = "; ".join(
+            f"{f'{chr(65 + i)} ' if lettered else ''}{h.side} of {h.name}" for i, h in enumerate(r.hinges[:26])
+        )
+        found = [(
+            style.save(fig, folder, f"{name}-worst"),
+            f"The most dangerous place: thrust line, hinges and mechanism at collapse. Hinges: {letters or 'none'}.",
+        )]  # fmt: skip
+    if len(place) == 1:
+        return found
+    adequacy = "adequacy" in run.arrays[name]
+    value = run.array(name, "adequacy") if adequacy else run.array(name, "capacity") / 1e3
+    way = run.array(name, "way")
+    with style.figure(7.5, 3.6) as (fig, (curve,)):
+        for sense, colour, label in ((1, style.THRUST, "heading to +x"), (-1, style.HINGE, "heading to -x")):
+            if (way == sense).any():
+                curve.plot(
+                    place[way == sense], value[way == sense], color=colour, marker=".", markersize=3, label=label
+                )
+        if (way < 0).any():
+            curve.legend()
+        if adequacy:
+            curve.axhline(1.0, color=style.EDGE, linewidth=0.8, linestyle="--")
+        low = float(np.nanmin(value))
+        curve.set_ylim(0.0, max(1.1 * low, min(float(np.nanmax(value)) * 1.05, 8.0 * low), 1.1 if adequacy else 0.0))
         curve.set_xlabel("x of the first axle [m]")
-        curve.set_ylabel("load at collapse [kN]")
-        return [(style.save(fig, folder, name), "Load that brings it down, over the place of the first axle.")]
+        curve.set_ylabel("adequacy factor" if adequacy else "load at collapse [kN]")
+        curve.set_title("Adequacy over place" if adequacy else "Load at collapse over place")
+        found.append(
+            (style.save(fig, folder, f"{name}-places"), "What brings it down, over the place of the first axle.")
+        )
+    return found
+
+
+def _borne(r: MovingLoad) -> str:
+    load = f"{r.collapse_load_N / 1e3:.4g} kN"
+    return load if r.adequacy_factor is None else f"{r.adequacy_factor:.3g} x the load ({load})"

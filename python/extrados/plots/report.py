@@ -1,9 +1,9 @@
 """Figures and one self-contained HTML report of a stored run."""
 
 import base64
+import logging
 import multiprocessing
 import os
-import shutil
 import signal
 import sys
 import tempfile
@@ -16,10 +16,12 @@ from typing import Any
 import jinja2
 
 from extrados import kinds
+from extrados.results import written
 from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
 from extrados.results.store import REPORT, Stored, StoreError, read, reason
 
+log = logging.getLogger(__name__)
 #: Figures of an analysis with their captions
 Figures = list[tuple[str, str]]
 
@@ -86,10 +88,17 @@ def _drawn(tasks: list[tuple]) -> list[Figures]:
     with warnings.catch_warnings():
         # Python warns of the idle threads of the numerical libraries, which drawing does not use
         warnings.filterwarnings("ignore", ".*multi-threaded.*fork", DeprecationWarning)
-        with multiprocessing.get_context("fork").Pool(workers, _begin, (tasks,)) as pool:
+        # signals wait until each process has said how it answers them
+        held = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+        try:
+            pool = multiprocessing.get_context("fork").Pool(workers, _begin, (tasks,))
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, held)
+        with pool:
             return pool.map(_draw_numbered, range(len(tasks)), chunksize=1)
 
 
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 #: What a forked process is to draw; a run is handed over by the fork, not copied through a pipe
 _tasks: list[tuple] = []
 
@@ -97,6 +106,7 @@ _tasks: list[tuple] = []
 def _begin(tasks: list[tuple]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is answered by the parent, which ends the pool
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
     _tasks[:] = tasks
 
 
@@ -150,21 +160,50 @@ def _cell(value: Any) -> str:
 def write_report(folder: Path) -> tuple[Path, dict[str, Figures]]:
     """Draw a stored run and write report.html: the report, and the figures with captions by analysis.
 
-    Drawn aside and put in place when all is done; StoreError where that is not possible.
+    Drawn aside and put in place when all is done. A figure or report that is there and was not written by extrados, or
+    was changed since, stays: the new one is put beside it under another name, which is logged. StoreError where that
+    is not possible.
     """
+    folder = Path(folder)
     run = read(folder)
+    within = Path(os.path.abspath(folder)).parent
     try:
-        with tempfile.TemporaryDirectory(prefix=".drawing-", dir=folder) as place:
+        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.drawing-", dir=within) as place:
             scratch = Path(place)
             drawn = draw(run, scratch)
-            (scratch / REPORT).write_text(_page(run, scratch, drawn), encoding="utf-8")
-            if any((scratch / "figures").iterdir()):
-                shutil.rmtree(folder / "figures", ignore_errors=True)
-                (scratch / "figures").replace(folder / "figures")
-            (scratch / REPORT).replace(folder / REPORT)
+            (scratch / REPORT).write_text(_page(run, scratch, drawn), encoding="utf-8", errors="backslashreplace")
+            with written.alone(within):
+                names = _put(scratch, folder)
     except OSError as error:
         raise StoreError(f"{folder}: the report could not be written: {reason(error)}") from None
-    return folder / REPORT, drawn
+    return folder / names[REPORT], drawn
+
+
+def _put(scratch: Path, folder: Path) -> dict[str, str]:
+    """Move what was drawn into the folder; the name that each file got there."""
+    new = written.sums_of(scratch)
+    known = written.noted(folder)
+    others = {name: sums[-1] for name, sums in known.items() if name != REPORT and not name.startswith("figures/")}
+    names = {}
+    for name in new:
+        taken = os.path.lexists(folder / name) and not written.is_ours(folder, name, known)
+        names[name] = written.beside(folder / name).relative_to(folder).as_posix() if taken else name
+        if taken:
+            log.warning(
+                "%s: was not written by extrados or changed since; the new one is %s", folder / name, names[name]
+            )
+    drawn = {names[name]: value for name, value in new.items()}
+    # noted before it is moved: whoever is killed in between leaves nothing that is taken for a stranger's
+    before = {name: value for name, sums in known.items() for value in sums[:1]}
+    written.note(folder, before, drawn)
+    for name in known:
+        if name.startswith("figures/") and name not in drawn and written.is_ours(folder, name, known):
+            (folder / name).unlink()
+    for name, target in names.items():
+        (folder / target).parent.mkdir(exist_ok=True)
+        (scratch / name).replace(folder / target)
+    written.note(folder, others, drawn)
+    return names
 
 
 def _page(run: Stored, folder: Path, drawn: dict[str, Figures]) -> str:

@@ -1,25 +1,33 @@
 """Finished batches of a long computation beside the results folder, so that a killed run can be resumed.
 
-The name of a batch ends in the SHA-256 of its bytes: one that was damaged is seen, told and computed again.
+The name of a batch ends in a checksum of its bytes, its sweep and its place in it: one that was damaged, or copied to
+another place, is seen, told and computed again.
 """
 
 import contextlib
 import hashlib
+import importlib.util
 import io
 import json
+import logging
 import os
-import shutil
 import tempfile
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from extrados._build_info import VERSION
+from extrados.results import written
 from extrados.results.store import SUMMARY, StoreError
+from extrados.schema import files
 
 HEAD = "deck.json"
+_TEMPORARY = ".new."
+log = logging.getLogger(__name__)
 
 
 def fingerprint(value: Any) -> str:
@@ -59,20 +67,40 @@ def folder_of(out: Path) -> Path:
     return out.with_name(f"{out.name}.checkpoint")
 
 
+@cache
+def program() -> str:
+    """Which program computes: its version and a checksum of its code, by which two copies of a version are told apart."""
+    digest = hashlib.sha256()
+    package = Path(__file__).resolve().parents[1]
+    core = importlib.util.find_spec("extrados._core")
+    for path in [*sorted(package.rglob("*.py")), *([Path(core.origin)] if core is not None and core.origin else [])]:
+        digest.update(path.name.encode() + b"\0" + path.read_bytes())
+    return f"{VERSION} {digest.hexdigest()[:16]}"
+
+
 def refuse_other_deck(out: Path, deck: str) -> None:
-    """StoreError where results or batches in or beside `out` are of another deck than the one of hash `deck`."""
-    for path, key in ((Path(out) / SUMMARY, "summary"), (folder_of(out) / HEAD, "batches")):
-        with contextlib.suppress(FileNotFoundError, NotADirectoryError):
-            try:
-                head = json.loads(path.read_text(encoding="utf-8"))
-                found = head["deck"]["sha256"] if key == "summary" else head["sha256"]
-            except (ValueError, KeyError, TypeError) as error:
-                raise StoreError(f"{path}: cannot be read, so nothing is resumed from it: {error}") from None
-            if found != deck:
-                raise StoreError(
-                    f"{path.parent}: holds {'results' if key == 'summary' else 'unfinished batches'} of another deck "
-                    f"(sha256 {found[:16]}, this one is {deck[:16]}): not resumed; name another folder with --out"
-                )
+    """StoreError where results or batches in or beside `out` are of another deck than the one of hash `deck`, or where
+    another version of the program began them."""
+    for folder, name in ((Path(out), SUMMARY), (folder_of(out), HEAD)):
+        path, results = folder / name, name == SUMMARY
+        if not os.path.lexists(path):
+            continue
+        try:
+            head = json.loads(files.read(name, None, folder).text())
+            found = head["deck"]["sha256"] if results else head["sha256"]
+            by = program() if results else head["program"]
+        except (ValueError, KeyError, TypeError, RecursionError) as error:
+            raise StoreError(f"{path}: cannot be read, so nothing is resumed from it: {error}") from None
+        if found != deck:
+            raise StoreError(
+                f"{folder}: holds {'results' if results else 'unfinished batches'} of another deck "
+                f"(sha256 {str(found)[:16]}, this one is {deck[:16]}): not resumed; name another folder with --out"
+            )
+        if by != program():
+            raise StoreError(
+                f"{folder}: was begun by extrados {by}, this one is {program()}: not resumed, for the two may compute "
+                "another result; run anew without --resume, or go on with that version"
+            )
 
 
 class Checkpoint:
@@ -83,31 +111,29 @@ class Checkpoint:
         try:
             if resume:
                 refuse_other_deck(out, deck)
-            elif self.folder.exists():
+            elif os.path.lexists(self.folder):
                 if not (self.folder / HEAD).exists():
                     raise StoreError(
                         f"{self.folder}: is in the way and was not written by extrados; remove it or use --out"
                     )
-                shutil.rmtree(self.folder)
+                _clear(self.folder)
             self.folder.mkdir(parents=True, exist_ok=True)
-            _write(self.folder / HEAD, json.dumps({"sha256": deck}).encode())
+            _write(self.folder / HEAD, json.dumps({"sha256": deck, "program": program()}).encode())
         except OSError as error:
             raise StoreError(f"{self.folder}: cannot write here: {error.strerror or error}") from None
 
     def load(self, name: str, warnings: list[str]) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
         """(first member, arrays) of every batch of a sweep that was kept whole; `warnings` tells of damaged ones."""
         for path in sorted((self.folder / name).glob("*.npz")):
-            try:
-                content = path.read_bytes()
-            except OSError as error:
-                raise StoreError(f"{path}: cannot be read: {error.strerror or error}") from None
-            first, _, digest = path.stem.partition("-")
-            if digest == _digest(content):
+            content = _sound(path)
+            if content is not None:
                 with np.load(io.BytesIO(content), allow_pickle=False) as store:
-                    yield int(first), {key: store[key] for key in store.files}
+                    yield int(path.name.partition("-")[0]), {key: store[key] for key in store.files}
             else:
-                warnings.append(f"a kept batch was damaged and is computed again: {path.parent.name}/{path.name}")
-                path.unlink()
+                told = f"{path.parent.name}/{path.name}"
+                warnings.append(f"a kept batch was damaged and is computed again: {told} is now {path.name}.damaged")
+                with contextlib.suppress(FileNotFoundError):  # another run may have done so
+                    path.rename(path.with_name(f"{path.name}.damaged"))
 
     def keep(self, name: str, first: int, arrays: dict[str, np.ndarray]) -> Path:
         """Store a batch; it is there whole or not at all."""
@@ -115,7 +141,7 @@ class Checkpoint:
         named: dict[str, Any] = dict(arrays)  # none is called as an option of savez
         np.savez(stream, **named)
         content = stream.getvalue()
-        path = self.folder / name / f"{first:012d}-{_digest(content)}.npz"
+        path = self.folder / name / f"{first:012d}-{_digest(name, first, content)}.npz"
         try:
             path.parent.mkdir(exist_ok=True)
             _write(path, content)
@@ -124,18 +150,40 @@ class Checkpoint:
         return path
 
 
-def _digest(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()[:32]
+def _digest(name: str, first: int, content: bytes) -> str:
+    return hashlib.sha256(f"{name}\0{first}\0".encode() + content).hexdigest()[:32]
+
+
+def _sound(path: Path) -> bytes | None:
+    """The content of a batch as it was kept; None where it was changed, or was kept for another place."""
+    first, _, digest = path.stem.partition("-")
+    try:
+        content = files.read(path.name, None, path.parent).content
+        return content if first.isdecimal() and digest == _digest(path.parent.name, int(first), content) else None
+    except ValueError:  # BadFile is one
+        return None
 
 
 def discard(out: Path) -> None:
-    """Remove the batches of a run that has finished."""
+    """Remove the batches of a run that has finished, and nothing else."""
     if (folder_of(out) / HEAD).exists():
-        shutil.rmtree(folder_of(out), ignore_errors=True)
+        _clear(folder_of(out))
+
+
+def _clear(folder: Path) -> None:
+    """Remove what was kept in the folder, and the folder where nothing else is left."""
+    for path in folder.glob("*/*.npz"):
+        if _sound(path) is not None:
+            path.unlink()
+    for path in (*folder.glob(f"*/{_TEMPORARY}*"), *folder.glob(f"{_TEMPORARY}*"), folder / HEAD):
+        if path.is_file() and not path.is_symlink():
+            path.unlink()
+    if not written.prune(folder):
+        log.warning("%s: holds files that extrados did not write or that are damaged; they are left there", folder)
 
 
 def _write(path: Path, content: bytes) -> None:
-    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=".new.")
+    handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=_TEMPORARY)
     with os.fdopen(handle, "wb") as file:
         file.write(content)
         file.flush()

@@ -145,22 +145,33 @@ class Thrust(KindResults):
 
 
 class MovingLoad(KindResults):
-    """moving-load: the load that brings an arch down, at every place along its span."""
+    """moving-load: the load or train that brings an arch or a bridge down, at every place along it."""
 
     chain: str | None = fact("the arch that the load crosses; null where it crosses the whole top")
-    collapse_load_N: float = fact("least load that brings it down", "N")
+    collapse_load_N: float = fact("least load that brings it down; of a train, what then stands on the structure", "N")
     collapse_load_kN_per_m: float = fact("least load per metre of depth", "kN/m")
     worst_place_m: float = fact("x of the first axle where that is", "m")
     worst_place_over_span: float = fact("x of the first axle where that is, from the left springing, over the span")
+    worst_way: Literal["+x", "-x"] = fact("where the train heads there")
     hinges: list[NamedHinge] = fact("hinges of the mechanism there")
+    sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
+    greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
     places_without_limit: int = fact("places where no load of the kind brings it down")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
     load_N: float = maybe("the load that the deck gives", "N")
     safety_factor: float = maybe("collapse load over that load")
+    train: str = maybe("name of the train; load for axles that share a force, train for the axle loads of the deck")
+    adequacy_factor: float = maybe("multiple of the factored train, or load, that brings it down")
+    live_load_factor: float = maybe("partial factor times dynamic factor by which the train is multiplied before")
 
     def judged(self, demand: Demand) -> Verdict:
         """The deck's load against the least collapse load [N]."""
         text = f"It bears {self.collapse_load_N / 1e3:.4g} kN at the most dangerous place"
+        if self.load_N is None and self.adequacy_factor is not None:
+            return judge(
+                f"It bears {self.adequacy_factor:.3g} times the factored train at the most dangerous place.",
+                1.0, self.adequacy_factor,
+            )  # fmt: skip
         if self.load_N is None:
             return judge(f"{text}; the deck gives no load to compare with.", None, self.collapse_load_N, "N")
         return judge(

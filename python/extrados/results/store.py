@@ -6,10 +6,11 @@ import ctypes
 import hashlib
 import io
 import json
+import logging
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -18,19 +19,22 @@ from typing import Any
 import numpy as np
 from pydantic import ValidationError
 
+from extrados.results import written
 from extrados.results.fields import plain
 from extrados.results.model import Array, Result, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
 from extrados.schema import files
+from extrados.schema.text import printable
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
 REPORT = "report.html"
 #: What an array says of itself, in the order of Array's fields
 MARKS = ("unit", "about", "series")
-#: Further names that the report writes
-DRAWN = ("figures/", ".drawing-")
+
+
+log = logging.getLogger(__name__)
 
 
 class StoreError(Exception):
@@ -75,8 +79,8 @@ def arrays_of(results: list[Result]) -> dict[str, dict[str, Array]]:
 def prepare(out: Path) -> None:
     """Refuse early, before a long run, what could not be written after it."""
     out = Path(os.path.abspath(out))
+    _refuse_no_folder(out)
     try:
-        _may_replace(out)
         out.parent.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=out.parent):
             pass
@@ -84,55 +88,75 @@ def prepare(out: Path) -> None:
         raise StoreError(f"{out}: cannot write here: {reason(error)}") from None
 
 
-@contextlib.contextmanager
-def new_folder(out: Path) -> Iterator[Path]:
-    """A scratch folder that takes the place of `out` when the block ends well."""
-    out = Path(os.path.abspath(out))
-    _may_replace(out)
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}.", dir=out.parent))
-        scratch.chmod(0o755)
-    except OSError as error:
-        raise StoreError(f"{out}: cannot write here: {reason(error)}") from None
-    try:
-        yield scratch
+class NewFolder:
+    """A scratch folder that takes the place of `out` when the block ends well.
+
+    What is replaced is what extrados wrote there and nobody has changed since. Where `out` holds anything else the
+    results are put beside it, which is told; `place` is where they lie after the block.
+    """
+
+    def __init__(self, out: Path):
+        self.out = self.place = Path(os.path.abspath(out))
+
+    def __enter__(self) -> Path:
+        _refuse_no_folder(self.out)
+        try:
+            self.out.parent.mkdir(parents=True, exist_ok=True)
+            self.scratch = Path(tempfile.mkdtemp(prefix=f".{self.out.name}.", dir=self.out.parent))
+            self.scratch.chmod(0o755)
+        except OSError as error:
+            raise StoreError(f"{self.out}: cannot write here: {reason(error)}") from None
+        return self.scratch
+
+    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
+        out, scratch = self.out, self.scratch
+        try:
+            if error is None:
+                self._put()
+        except OSError as wrong:
+            raise StoreError(f"{out}: results could not be written: {reason(wrong)}") from None
+        finally:
+            # what was written here by this process; after an exchange the scratch folder holds what was there before
+            if error is not None or not self._done:
+                shutil.rmtree(scratch, ignore_errors=True)
+        if isinstance(error, StoreError):  # of a file inside the scratch folder: name the place the user knows
+            raise StoreError(str(error).replace(str(scratch), str(out))) from None
+        if isinstance(error, OSError):
+            raise StoreError(f"{out}: results could not be written: {reason(error)}") from None
+
+    _done = False
+
+    def _put(self) -> None:
+        out, scratch = self.out, self.scratch
+        written.note(scratch, written.sums_of(scratch))
         for path in sorted(scratch.rglob("*")):
             _sync(path)
         _sync(scratch)
-        _exchange(scratch, out)
-        _sync(out.parent)
-    except OSError as error:
-        raise StoreError(f"{out}: results could not be written: {reason(error)}") from None
-    except StoreError as error:  # of a file inside the scratch folder: name the place the user knows
-        raise StoreError(str(error).replace(str(scratch), str(out))) from None
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
+        with written.alone(out.parent):
+            strange = written.strange(out) if os.path.lexists(out) else []
+            if strange or (os.path.lexists(out) and not written.is_plain_folder(out)):
+                self.place = written.beside(out)
+                log.warning(
+                    "%s: holds '%s', which extrados did not write or which was changed since; the results are in %s",
+                    out, strange[0] if strange else out.name, self.place,
+                )  # fmt: skip
+            before = _exchange(scratch, self.place)
+            self._done = True
+            _sync(out.parent)
+            if before is not None and not written.remove(before):
+                kept = written.beside(out)  # it came while we looked
+                before.rename(kept)
+                log.warning("%s: what was put there while results were written is in %s", out, kept)
+
+
+def _refuse_no_folder(out: Path) -> None:
+    if os.path.lexists(out) and not written.is_plain_folder(out):
+        raise StoreError(f"{out}: is not a folder; name another with --out")
 
 
 def reason(error: OSError) -> str:
     """The system's words for an error; h5py wraps them in a page of its own."""
     return os.strerror(error.errno) if error.errno else str(error)
-
-
-def _may_replace(out: Path) -> None:
-    """Only a folder that holds nothing, or results of ours and nothing else, is ever replaced."""
-    if not os.path.lexists(out):
-        return
-    if out.is_symlink() or not out.is_dir():
-        raise StoreError(f"{out}: is not a folder; name another with --out")
-    there = {str(p.relative_to(out)) for p in out.rglob("*") if not p.is_dir()}
-    if not there:
-        return
-    try:
-        summary = json.loads((out / SUMMARY).read_text(encoding="utf-8"))
-        ours = {SUMMARY, REPORT, *summary["files"]}
-        known = isinstance(summary["extrados"], dict)
-    except (OSError, ValueError, KeyError, TypeError):
-        known, ours = False, set()
-    strange = sorted(name for name in there - ours if not (known and name.startswith(DRAWN)))
-    if strange:
-        raise StoreError(f"{out}: holds '{strange[0]}', which is no result of extrados; name another folder with --out")
 
 
 def _sync(path: Path) -> None:
@@ -143,21 +167,20 @@ def _sync(path: Path) -> None:
         os.close(handle)
 
 
-def _exchange(scratch: Path, out: Path) -> None:
-    """Put `scratch` in the place of `out` in one step where the system can (Linux renameat2)."""
-    if not out.exists():
-        scratch.rename(out)
-        return
+def _exchange(scratch: Path, place: Path) -> Path | None:
+    """Put `scratch` in its place, in one step where the system can (Linux renameat2); where lies what was there."""
+    if not os.path.lexists(place):
+        scratch.rename(place)
+        return None
     with contextlib.suppress(OSError, AttributeError):
         libc = ctypes.CDLL(None, use_errno=True)
         at_cwd, exchange = -100, 2
-        if libc.renameat2(at_cwd, os.fsencode(scratch), at_cwd, os.fsencode(out), exchange) == 0:
-            return
-    aside = out.with_name(f".{out.name}.old")
-    shutil.rmtree(aside, ignore_errors=True)
-    out.rename(aside)
-    scratch.rename(out)
-    shutil.rmtree(aside, ignore_errors=True)
+        if libc.renameat2(at_cwd, os.fsencode(scratch), at_cwd, os.fsencode(place), exchange) == 0:
+            return scratch
+    aside = scratch.with_name(f"{scratch.name}.old")
+    place.rename(aside)
+    scratch.rename(place)
+    return aside
 
 
 def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
@@ -168,7 +191,7 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
         for name, result in zip(names, results, strict=True):
             for title, table in result.tables.items():
                 suffix = name.removeprefix(result.kind)
-                (folder / f"{title}{suffix}.csv").write_text(csv_text(table), encoding="utf-8")
+                (folder / f"{title}{suffix}.csv").write_text(csv_text(table), encoding="utf-8", newline="")
             for title, content in result.files.items():
                 # a second analysis of a kind keeps its files in a folder of its own, where they find each other
                 target = folder / title if name == result.kind else folder / name / title
@@ -177,13 +200,11 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
         summary = {
             **head,
             "analyses": rows(results),
-            "files": {
-                str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
-                for p in sorted(folder.rglob("*")) if p.is_file()
-            },
-        }  # fmt: skip
+            "files": written.sums_of(folder),
+        }
         text = json.dumps(plain(summary), indent=1, ensure_ascii=False)
-        (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
+        # names of files may hold bytes that are no text; what replaces them is JSON for the same
+        (folder / SUMMARY).write_text(text + "\n", encoding="utf-8", errors="backslashreplace")
     except OSError as error:
         raise StoreError(f"{folder}: results could not be written: {reason(error)}") from None
 
@@ -194,15 +215,18 @@ def csv_text(table: TableData) -> str:
     writer = csv.writer(out, lineterminator="\n")
     names = list(table.columns)
     units = [table.units.get(name, "") for name in names]
-    writer.writerow([f"{name} [{unit}]" if unit else name for name, unit in zip(names, units, strict=True)])
+    writer.writerow([_cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)])
     for row in zip(*(np.asarray(c).tolist() for c in table.columns.values()), strict=True):
         writer.writerow([repr(v) if isinstance(v, float) else _cell(v) for v in row])
     return out.getvalue()
 
 
 def _cell(value: Any) -> Any:
-    """Text that a spreadsheet would take for a formula is quoted."""
-    return "'" + value if isinstance(value, str) and value[:1] in ("=", "+", "-", "@") else value
+    """Text that a spreadsheet would take for a formula is quoted, and what a terminal would obey is escaped."""
+    if not isinstance(value, str):
+        return value
+    quote = "'" if value.lstrip()[:1] in ("=", "+", "-", "@") else ""
+    return quote + printable(value)
 
 
 def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
@@ -221,10 +245,11 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
             for title, array in result.arrays.items():
                 data = np.asarray(array.data)
                 if data.dtype.kind in "OU":
-                    data = data.astype(h5py.string_dtype())
+                    shown = [printable(str(text), keep="\n") for text in data.ravel()]
+                    data = np.array(shown, dtype=object).reshape(data.shape).astype(h5py.string_dtype())
                 store = group.create_dataset(title, data=data)
                 store.attrs["unit"] = store.attrs["units"] = array.unit
-                store.attrs["about"] = array.about
+                store.attrs["about"] = printable(array.about, keep="\n")
                 store.attrs["series"] = array.series
                 if array.dims == (title,):
                     store.make_scale(title)

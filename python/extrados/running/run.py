@@ -41,23 +41,25 @@ class Run(Stored):
     def write(self, folder: str | Path, figures: bool = True) -> Path:
         """Write the results into `folder`, in place of an earlier run there, and draw figures and report.
 
-        A killed write leaves the old folder or the new one; Ctrl-C waits until the results are there. Returns the
-        folder, which is then also the run's; StoreError where it cannot be written.
+        A killed write leaves the old folder or the new one; Ctrl-C waits until the results are there. Only what
+        extrados wrote and nobody has changed since is replaced: where `folder` holds anything else the results are put
+        beside it, which is logged. Returns the folder, which is then also the run's; StoreError where it cannot be
+        written.
         """
-        folder = Path(folder)
-        with _after_writing(), store.new_folder(folder) as scratch:
+        making = store.NewFolder(Path(folder))
+        with _after_writing(), making as scratch:
             if self.results:
                 store.write(scratch, self.head(), list(self.results))
             else:
                 for name in (store.SUMMARY, *self.summary["files"]):
                     (scratch / name).parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(self.folder / name, scratch / name)
-        self.folder = folder
+        self.folder = Path(folder) if making.place == making.out else making.place
         if figures:  # the results are safe by now, whatever happens while drawing
             from extrados.plots.report import write_report
 
-            write_report(folder)
-        return folder
+            write_report(self.folder)
+        return self.folder
 
 
 def _head(deck: Deck) -> dict[str, Any]:
@@ -112,4 +114,4 @@ def _after_writing() -> Iterator[None]:
         for number, handler in before.items():
             signal.signal(number, handler)
     if asked:
-        raise KeyboardInterrupt
+        signal.raise_signal(asked[-1])

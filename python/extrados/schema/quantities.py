@@ -121,7 +121,10 @@ def quantity(si: str, *, bare: bool = True) -> Any:
             raise ValueError(f"expected a number in {si} or text such as '{_EXAMPLE.get(si, '1 ' + si)}'")
         if not bare:
             raise ValueError(f'a bare number is ambiguous here: write "{value} g" or "{value} m/s^2"')
-        return float(value)
+        try:
+            return float(value)
+        except OverflowError:
+            raise ValueError(f"a whole number of {len(str(abs(value)))} digits is too large") from None
 
     return Annotated[float, BeforeValidator(read), Unit(si, bare)]
 

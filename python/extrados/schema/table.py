@@ -2,16 +2,36 @@
 
 from typing import Annotated, Any, ClassVar
 
-from pydantic import BaseModel, ConfigDict, Field, create_model
+from pydantic import BaseModel, ConfigDict, Field, create_model, field_validator
+
+#: Size of a number in SI that no structure and no motion reaches, and below which it can only be zero
+LARGEST, SMALLEST = 1e15, 1e-15
+
+
+def refuse_absurd(value: Any) -> None:
+    """ValueError for a number that is beyond reason, also within lists: products of such numbers are infinite or zero."""
+    if isinstance(value, float):
+        if value != 0.0 and not SMALLEST <= abs(value) <= LARGEST:
+            raise ValueError(f"{value:g} is beyond reason; expected 0 or a size from {SMALLEST:g} to {LARGEST:g}")
+    elif isinstance(value, list):
+        for item in value:
+            refuse_absurd(item)
 
 
 class Table(BaseModel):
-    """A TOML table: unknown keys, wrong types, NaN and infinity are refused.
+    """A TOML table: unknown keys, wrong types, NaN, infinity and numbers beyond reason are refused.
 
     `starter`: TOML values of keys in the decks that `new` writes, of optional keys too.
     """
 
     starter: ClassVar[dict[str, str]] = {}
+
+    @field_validator("*")
+    @classmethod
+    def _within_reason(cls, value: Any) -> Any:
+        refuse_absurd(value)
+        return value
+
     model_config = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False, frozen=True, defer_build=True)
 
 

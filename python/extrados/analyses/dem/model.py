@@ -10,6 +10,7 @@ from extrados.analyses.dem import impact_rules
 from extrados.analyses.dem.tables import DemTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.earth import passive_left_out
 from extrados.building.geometry.rigid import RigidBodies
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
@@ -142,8 +143,8 @@ def checked(run: dem.Run, model: Model, keep: tuple[str, ...] = ("end", "collaps
 
 
 def warnings(model: Model, options: DemTable, values: JointValues | None = None) -> list[str]:
-    """What is doubtful about the damping (thesis 7.2.1, 7.4.2)."""
-    found = []
+    """What is doubtful about the damping (thesis 7.2.1, 7.4.2), and what of the building is left out."""
+    found = passive_left_out(model.assembly.earth)
     ratio = (values or model.values).ratios()
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(

@@ -13,6 +13,7 @@ from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
 from extrados.limit.equilibrium import Disconnected
+from extrados.limit.fill import under_load
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
@@ -23,6 +24,8 @@ from extrados.results.model import Array
 
 #: Bounds and mechanism must agree this closely, relative to gamma, or the answer is not given.
 GAP = 1e-8
+#: Length over which a point load on earth presses [m]
+CONTACT = 0.3
 
 
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
@@ -58,6 +61,9 @@ def loads_of(assembly: Assembly, options: Any) -> Loads:
     loads = tilt_loads(assembly)
     extra = np.zeros_like(loads.dead)
     for load in getattr(options, "load", []):
+        if assembly.earth is not None:
+            extra += under_load(assembly.earth, len(extra), load.x, load.force, CONTACT)
+            continue
         block, y = block_under(assembly, load.x)
         extra += forces_at(len(extra), block, np.array([load.x, y]), (0.0, -load.force))
     return loads.with_dead(extra)
@@ -128,7 +134,7 @@ def mended_capacity(building: Building, options: LimitAnalysisTable, gamma: floa
 def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
     """What every picture of the structure needs."""
     outlines = [np.asarray(o) for o in assembly.outlines]
-    return {
+    return earth_arrays(assembly) | {
         "joint_p": Array(assembly.p, ("joint", "axis"), "m", "first ends of the joints (intrados)"),
         "joint_q": Array(assembly.q, ("joint", "axis"), "m", "second ends of the joints (extrados)"),
         "outline": Array(
@@ -145,6 +151,50 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
             "blocks on both sides, -1 the ground",
         ),
     }
+
+
+def earth_arrays(assembly: Assembly) -> dict[str, Array]:
+    """Fill and surfacing as pictures show them; nothing without them."""
+    earth = assembly.earth
+    if earth is None:
+        return {}
+    line = np.column_stack([earth.line.start, earth.line.end]).reshape(-1, 2)
+    left, right, low, high = line[0, 0], line[-1, 0], earth.formation, earth.road
+    outline = np.concatenate([line, [[right, low], [left, low]]])
+    made = {"fill_outline": Array(outline, ("fill_vertex", "axis"), "m", "outline of the fill")}
+    if earth.surfacing > 0.0:
+        made["surfacing_outline"] = Array(
+            np.array([[left, low], [right, low], [right, high], [left, high]]), ("surfacing_vertex", "axis"), "m",
+            "outline of the surfacing",
+        )  # fmt: skip
+    return made
+
+
+def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Array]:
+    """The passive pressures that a state mobilises: where they act and how much; nothing where none counts."""
+    if loads.resistance is None or state.mobilised is None:
+        return {}
+    block, wrench = loads.resistance.block, loads.resistance.wrench
+    at = np.column_stack([assembly.centroid[block, 0], -wrench[:, 2] / wrench[:, 0]])
+    return {
+        "push_point": Array(at, ("push", "axis"), "m", "where the fill pushes back"),
+        "push_force": Array(state.mobilised * wrench[:, 0], ("push",), "N", "its horizontal push, to +x"),
+        "push_most": Array(wrench[:, 0], ("push",), "N", "the most it can push, to +x"),
+    }
+
+
+def zone_arrays(assembly: Assembly, state: State, strength: float | None) -> dict[str, Array]:
+    """The zone of thrust: the part of each joint, about the thrust line, that the strength [Pa] needs to carry it."""
+    if strength is None:
+        return {}
+    half = 0.5 * state.normal / (strength * assembly.depth * assembly.length)
+    along = assembly.q - assembly.p
+    return {
+        f"zone_{name}": Array(
+            assembly.p + (state.position + sign * half)[:, None] * along, ("joint", "axis"), "m", f"{about} end of the zone of thrust"
+        )
+        for name, sign, about in (("inner", -1.0, "intrados"), ("outer", 1.0, "extrados"))
+    }  # fmt: skip
 
 
 def state_arrays(assembly: Assembly, name: str, state: State, about: str) -> dict[str, Array]:

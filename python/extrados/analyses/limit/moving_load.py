@@ -1,4 +1,4 @@
-"""moving-load: the point or axle load that brings a vault down, at every place along its span."""
+"""moving-load: the load or train that brings a vault or a bridge down, at every place along it."""
 
 from dataclasses import dataclass
 
@@ -6,71 +6,160 @@ import numpy as np
 
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.common import answer_of, block_under, chain_of, geometry_arrays, loads_of
-from extrados.analyses.limit.tables import MovingLoad
+from extrados.analyses.limit.common import (
+    answer_of,
+    block_under,
+    chain_of,
+    geometry_arrays,
+    limit_of,
+    loads_of,
+    push_arrays,
+    zone_arrays,
+)
+from extrados.analyses.limit.tables import MovingLoad, PartialFactors
+from extrados.analyses.limit.trains import Train, train_of
 from extrados.analyses.limit.variation import signature, spoken
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
+from extrados.building.geometry.earth import skyline
+from extrados.building.structure import Structure
+from extrados.limit.fill import pressed, under_load
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+
+PATTERNS = 20  # even loads and mechanism are fitted to each other at most so often
+FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
+
+
+@dataclass(frozen=True)
+class Collapse:
+    """State and mechanism of collapse, the multiple of the train that it takes, and the load then on it [N]."""
+
+    state: State
+    mechanism: Mechanism
+    factor: float
+    load: float
+    standing: np.ndarray  # pieces of the top on which the even loads stand
 
 
 @dataclass(frozen=True)
 class Places:
-    """Member k is the load with its first axle at places[k] [m]; `shares` of the weight of `dead` [N] at `axles`
-    behind it [m], as far as they stand on the `span` [m]."""
+    """Member k is the train with its first axle at places[k] [m], heading to +x where ways[k] is 1, to -x where -1.
+
+    Its loads stand on the `span` [m]; axles of a train on earth press over `contact` [m] and spread. Where its loads
+    are not known it is as heavy as the structure. `adverse`: even loads stand where they press the mechanism on.
+    """
 
     assembly: Assembly
     friction: float | np.ndarray | None
     strength: float | None
     associated: bool
-    dead: np.ndarray
+    dead: Loads
     places: np.ndarray
-    axles: np.ndarray
-    shares: np.ndarray
+    ways: np.ndarray
+    train: Train
     span: tuple[float, float]
+    contact: float
+    adverse: bool
+    pieces: tuple[np.ndarray, np.ndarray, np.ndarray]
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         return stacked(self._member, first, count)
 
-    def collapse(self, k: int) -> tuple[State, Mechanism] | None:
-        """State and mechanism of collapse; None where the load brings nothing down."""
-        low, high = self.span
-        live = np.zeros_like(self.dead)
-        for axle, share in zip(self.places[k] - self.axles, self.shares, strict=True):
-            if low <= axle <= high:
-                block, y = block_under(self.assembly, float(axle))
-                live += forces_at(len(live), block, np.array([axle, y]), (0.0, -share * self.weight))
-        if not live.any():
-            return None
-        limit = LimitAnalysis(
-            self.assembly,
-            self.friction,
-            strength=self.strength,
-            associated=self.associated,
-            loads=Loads(self.dead, live),
-        )
-        try:
-            return limit.collapse(1)
-        except NoEquilibrium:
-            return None
+    def collapse(self, k: int) -> Collapse | None:
+        """Collapse under the train; None where it brings nothing down.
 
-    @property
-    def weight(self) -> float:
-        return float(np.abs(self.dead[:, 1]).sum())
+        Even loads that stand only where they are adverse, and the mechanism that they belong to, are found in turn,
+        from the axles alone and from the whole train: each step lessens the factor.
+        """
+        axles, (force, x, block) = self._axles(k), self._even(k)
+        every = np.ones(len(force), dtype=bool)
+        starts = [every] if not self.adverse or not len(force) else [every, ~every] if axles.any() else [every]
+        best, limit = None, None
+        for standing in starts:
+            for _ in range(PATTERNS):
+                live = axles + pressed(np.where(standing, force, 0.0), x, block, len(axles))
+                found, limit = self.under(live, standing, limit)
+                if found is None or (best is not None and found.factor >= best.factor * (1.0 - 1e-9)):
+                    break
+                best = found
+                if not self.adverse or not len(force):
+                    break
+                v = found.mechanism.velocity[block]
+                downward = v[:, 1] + v[:, 2] * (x - self.assembly.centroid[block, 0]) < 0.0
+                if not (downward != standing).any():
+                    break
+                standing = downward
+        return best
+
+    def under(
+        self, live: np.ndarray, standing: np.ndarray, before: LimitAnalysis | None = None
+    ) -> tuple[Collapse | None, LimitAnalysis | None]:
+        """Collapse under given loads on the blocks, None where they bring nothing down; crushing goes on from `before`."""
+        total = -float(live[:, 1].sum())
+        if total <= 0.0:
+            return None, before
+        scale = self.dead.scale / total
+        loads = Loads(self.dead.dead, live * scale, self.dead.resistance)
+        limit = LimitAnalysis(
+            self.assembly, self.friction, strength=self.strength, associated=self.associated, loads=loads
+        )
+        if before is not None:
+            limit.crush_as(before)
+        try:
+            state, mechanism = limit.collapse(1)
+        except NoEquilibrium:
+            return None, limit
+        return Collapse(state, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing), limit
+
+    def at(self, k: int) -> np.ndarray:
+        """Where the axles stand [m]."""
+        return self.places[k] - self.ways[k] * self.train.axles
+
+    def _axles(self, k: int) -> np.ndarray:
+        """The axles on the way as loads on the blocks (blocks, 3)."""
+        (low, high), earth, count = self.span, self.assembly.earth, len(self.dead.dead)
+        live = np.zeros((count, 3))
+        for axle, force in zip(self.at(k), self.train.forces, strict=True):
+            if not low <= axle <= high:
+                continue
+            if earth is not None:
+                live += under_load(earth, count, float(axle), float(force), self.contact)
+            else:
+                block, y = block_under(self.assembly, float(axle))
+                live += forces_at(count, block, np.array([axle, y]), (0.0, -float(force)))
+        return live
+
+    def _even(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Even loads on the pieces of the top: force [N], x [m], block."""
+        x0, x1, block = self.pieces
+        force = np.zeros(len(block))
+        for start, stop, load in self.train.even:
+            ends = self.places[k] - self.ways[k] * np.array([start, stop])
+            force += load * np.maximum(np.minimum(x1, ends.max()) - np.maximum(x0, ends.min()), 0.0)
+        laden = force > 0.0
+        return force[laden], 0.5 * (x0 + x1)[laden], block[laden]
 
     def _member(self, k: int) -> dict[str, np.ndarray]:
         found = self.collapse(k)
         if found is None:
-            return {"capacity": np.array(np.inf), "mechanism": np.array(""), "gap": np.array(0.0)}
-        state, mechanism = found
+            nothing = np.full(self.assembly.p.shape, np.nan)
+            return {
+                "capacity": np.array(np.inf), "factor": np.array(np.inf), "mechanism": np.array(""), "gap": np.array(0.0),
+                "line": nothing, "normal": nothing[:, 0],
+            }  # fmt: skip
+        state, mechanism = found.state, found.mechanism
         return {
-            "capacity": np.array(state.gamma * self.weight),
+            "capacity": np.array(found.factor if not self.train.known else found.load),
+            "factor": np.array(found.factor),
             "mechanism": np.array(spoken(signature(self.assembly, mechanism))),
             "gap": np.array(abs(state.gamma - mechanism.upper_bound)),
+            "line": state.points(self.assembly),
+            "normal": state.normal,
         }
 
 
@@ -83,66 +172,193 @@ def _way(assembly: Assembly, chain: str | None) -> tuple[float, float]:
     return float(points.min()), float(points.max())
 
 
+def _top(assembly: Assembly, low: float, high: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Short pieces of the tops of the stones between two places: x of both ends [m], block."""
+    line = skyline(assembly.outlines)
+    x0, x1, block = [], [], []
+    for a, b, one in zip(line.start[:, 0], line.end[:, 0], line.block, strict=True):
+        a, b = max(a, low), min(b, high)
+        if b > a:
+            cuts = np.linspace(a, b, max(1, int(np.ceil((b - a) / (FINE * (high - low))))) + 1)
+            x0.append(cuts[:-1])
+            x1.append(cuts[1:])
+            block.append(np.full(len(cuts) - 1, one))
+    return np.concatenate(x0), np.concatenate(x1), np.concatenate(block)
+
+
+def factored(assembly: Assembly, loads: Loads, factors: PartialFactors) -> Loads:
+    """The dead loads with the partial factors of stones, fill and surfacing; point loads of the deck are left alone."""
+    resting = [(assembly.mass, assembly.centroid, factors.masonry)]
+    if assembly.earth is not None:
+        soil, paved = assembly.earth.masses(len(assembly.mass), assembly.depth)
+        resting += [(soil[:, 0], soil[:, 1:], factors.fill), (paved[:, 0], paved[:, 1:], factors.surfacing)]
+    elif assembly.fill is not None:
+        resting.append((assembly.fill[:, 0], assembly.fill[:, 1:], factors.fill))
+    extra = np.zeros_like(loads.dead)
+    for mass, place, factor in resting:
+        weight = (factor - 1.0) * GRAVITY * mass
+        extra -= np.column_stack([np.zeros_like(weight), weight, place[:, 0] * weight])
+    return loads.with_dead(extra)
+
+
 def run(context: Context, options: MovingLoad) -> Result:
-    """Collapse load over place; the most dangerous place with its thrust line and mechanism."""
-    assembly = context.building.blocks()
-    chain = chain_of(assembly, options.chain)
-    answer_of(context.building, options)  # refuses what cannot stand
+    """Collapse load over place; the most dangerous place with its thrust line, zone and mechanism."""
+    building, factors = context.building, options.factors
+    assembly, structure = building.blocks(), building.structure
+    whole = structure.crossed == "top" and options.chain is None
+    chain = None if whole else chain_of(assembly, options.chain)
+    if not limit_of(building, options).stands():
+        answer_of(building, options)  # refuses, and says why it cannot stand
     low, high = _way(assembly, chain)
-    axles = np.array(options.axles)
-    shares = np.array(options.shares or np.ones(len(axles)))
-    shares = shares / shares.sum()
-    dead = loads_of(assembly, options).dead
-    # A hair inside, so that the ends still lie on a stone.
-    places = np.linspace(low, high + np.ptp(axles), options.count)
-    places[0], places[-1] = places[0] + 1e-9 * (high - low), places[-1] - 1e-9 * (high - low)
+    train = train_of(options, assembly.depth)
+    if options.width is not None and options.width > assembly.depth:
+        raise Refused(
+            f"width: {options.width:g} m is more than the depth of the {structure.word}, {assembly.depth:g} m"
+        )
+    dead = factored(assembly, loads_of(assembly, options), factors)
+    # The whole depth stands for the strip that carries the load: as much heavier is the load on all of it.
+    strip = assembly.depth / (options.width or assembly.depth)
+    design = factors.live * factors.dynamic * strip if train.known else 1.0
+    places, ways = _places(options, train, low, high)
+    friction, strength = building.friction(), building.material.compressive_strength
     job = Places(
-        assembly, context.building.friction(), context.building.material.compressive_strength,
-        options.friction_rule == "associated", dead, places, axles, shares, (low, high),
+        assembly, None if friction is None else friction / factors.friction,
+        None if strength is None else strength / factors.strength, options.friction_rule == "associated", dead, places,
+        ways, Train(train.name, train.axles, train.forces * design, train.even * (1.0, 1.0, design), train.known),
+        (low, high), options.contact_length, options.adverse, _top(assembly, low, high),
     )  # fmt: skip
     swept = sweep(context, "moving-load", job, len(places), "moving load", slow=True).whole()
-    capacity, mechanisms, gap = swept["capacity"], swept["mechanism"].tolist(), float(swept["gap"].max())
-    k = int(capacity.argmin())
-    if not np.isfinite(capacity[k]):
-        raise Refused(
-            f"no load of this kind brings the {context.building.structure.word} down: it only presses the joints together"
-        )
-    state, mechanism = job.collapse(k)
+    mechanisms, gap, factor = swept["mechanism"].tolist(), float(swept["gap"].max()), swept["factor"]
+    capacity = swept["capacity"] / strip if train.known else swept["capacity"]
+    if options.force is not None:  # all of it, also where an axle is not on the way yet
+        capacity = factor * options.force * factors.live * factors.dynamic
+    k = int(factor.argmin())
+    if not np.isfinite(factor[k]):
+        raise Refused(f"no load of this kind brings the {structure.word} down: it only presses the joints together")
+    worst = job.collapse(k)
+    if worst is None:  # the sweep found it by the same steps
+        raise Refused("the most dangerous place was not found again")
+    state, mechanism = worst.state, worst.mechanism
     result = Result("moving-load")
-    asked = {} if options.force is None else {"load_N": options.force, "safety_factor": capacity[k] / options.force}
+    asked: dict[str, object] = {}
+    if options.force is not None:
+        asked |= {"load_N": options.force, "safety_factor": capacity[k] / options.force}
+    if train.known:
+        asked |= {
+            "adequacy_factor": float(factor[k]),
+            "train": train.name,
+            "live_load_factor": factors.live * factors.dynamic,
+        }
     r = out.MovingLoad(
         chain=chain,
         collapse_load_N=float(capacity[k]),
         collapse_load_kN_per_m=float(capacity[k] / assembly.depth / 1e3),
         worst_place_m=float(places[k]),
         worst_place_over_span=float((places[k] - low) / (high - low)),
+        worst_way="+x" if ways[k] > 0 else "-x",
         hinges=[out.NamedHinge(joint=j, side=side, name=assembly.joint_names[j]) for j, side in mechanism.hinges],
-        places_without_limit=int(np.isinf(capacity).sum()),
+        sliding_joints=mechanism.sliding,
+        places_without_limit=int(np.isinf(factor).sum()),
+        greatest_compression_N=float(np.nanmax(state.normal)),
         duality_gap=gap,
         **asked,
     )
     result.results = r
+    finite = np.where(np.isinf(capacity), np.nan, capacity)
     result.arrays = {
         **geometry_arrays(assembly),
+        **push_arrays(assembly, dead, state),
+        **zone_arrays(assembly, state, job.strength),
         "place": Array(places, ("place",), "m", "x of the first axle"),
-        "capacity": Array(np.where(np.isinf(capacity), np.nan, capacity), ("place",), "N", "load that brings it down; NaN where none does"),
-        "axle": Array(places[k] - axles, ("axle",), "m", "axles at the worst place"),
+        "way": Array(ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
+        "capacity": Array(finite, ("place",), "N", "load that brings it down; NaN where none does"),
+        "axle": Array(job.at(k), ("axle",), "m", "axles at the worst place"),
+        "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "where even loads stand at the worst place"),
         "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, worst place"),
+        "envelope_point": Array(swept["line"], ("place", "joint", "axis"), "m", "thrust lines at collapse, all places"),
+        "envelope_normal": Array(swept["normal"], ("place", "joint"), "N", "compression at collapse, all places"),
         "mechanism_pose": Array(finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
+        "chain_joint": Array(
+            np.concatenate([np.array(j, dtype=int) for j in assembly.chains.values()] or [np.empty(0, dtype=int)]),
+            ("link",), "", "joints of the chains, one chain after the other",
+        ),
+        "chain_start": Array(np.cumsum([0, *map(len, assembly.chains.values())]), ("chain_edge",), "", "first of each chain, and the end"),
     }  # fmt: skip
-    result.tables = {
-        "moving_load": TableData(
-            {"place": places, "collapse_load": np.where(np.isinf(capacity), np.nan, capacity), "mechanism": mechanisms},
-            {"place": "m", "collapse_load": "N"},
+    columns = {"place": places, "collapse_load": finite, "mechanism": mechanisms}
+    if train.known:
+        adequacy = np.where(np.isinf(factor), np.nan, factor)
+        result.arrays["adequacy"] = Array(
+            adequacy, ("place",), "", "multiple of the factored train that brings it down"
         )
-    }
-    result.answer = (
-        f"The load that brings the {chain or context.building.structure.word} down is least, "
-        f"{capacity[k] / assembly.depth / 1e3:.4g} kN per metre of depth, when its first axle stands at "
-        f"x = {places[k]:.2f} m ({100 * (places[k] - low) / (high - low):.0f} % of the span)."
-    )
-    if options.force is not None:
-        result.answer += (
-            f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {capacity[k] / options.force:.2f}."
-        )
+        columns = {"place": places, "way": ways, "adequacy": adequacy, "collapse_load": finite, "mechanism": mechanisms}
+    result.tables = {"moving_load": TableData(columns, {"place": "m", "collapse_load": "N"})}
+    result.tables["moving_load_envelope"] = _envelope(assembly, swept["line"], swept["normal"])
+    result.answer = _words(options, r, structure)
     return result
+
+
+def _places(options: MovingLoad, train: Train, low: float, high: float) -> tuple[np.ndarray, np.ndarray]:
+    """Places of the first axle [m] and which way it heads, 1 or -1."""
+    if options.places is not None:
+        ahead = back = np.array(options.places, dtype=float)
+    else:
+        ahead = np.linspace(low, high + train.length, options.count)
+        # A hair inside, so that the ends still lie on a stone.
+        ahead[0], ahead[-1] = ahead[0] + 1e-9 * (high - low), ahead[-1] - 1e-9 * (high - low)
+        back = low + high - ahead
+    if not options.both_ways:
+        return ahead, np.ones(len(ahead))
+    return np.concatenate([ahead, back]), np.concatenate([np.ones(len(ahead)), -np.ones(len(back))])
+
+
+def _standing(job: Places, k: int, worst: Collapse) -> np.ndarray:
+    """Stretches (n, 2) [m] on which even loads stand."""
+    x0, x1, _ = job.pieces
+    _, x, _ = job._even(k)
+    on = x[worst.standing] if len(x) else x
+    laden = np.isin(0.5 * (x0 + x1), on)
+    ends = np.flatnonzero(np.diff(np.concatenate([[False], laden, [False]]).astype(int)))
+    return np.array([(x0[a], x1[b - 1]) for a, b in ends.reshape(-1, 2)]).reshape(-1, 2)
+
+
+def _envelope(assembly: Assembly, line: np.ndarray, normal: np.ndarray) -> TableData:
+    """Of each joint over all places at collapse: greatest compression, and the ends of where the thrust line passes."""
+    share = ((line - assembly.p) * assembly.tangent).sum(axis=2) / assembly.length
+    pressed_on = (normal > 0.0) & np.isfinite(share)
+    some = pressed_on.any(axis=0)
+    low, high = (
+        np.where(some, getattr(np.where(pressed_on, share, fill), end)(axis=0), np.nan)
+        for end, fill in (("min", np.inf), ("max", -np.inf))
+    )
+    return TableData(
+        {
+            "joint": assembly.joint_names,
+            "greatest_compression": np.where(pressed_on, normal, 0.0).max(axis=0) / assembly.depth / 1e3,
+            "least_position": low,
+            "greatest_position": high,
+        },
+        {"greatest_compression": "kN/m"},
+    )
+
+
+def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
+    what = r.chain or structure.word
+    way = "span" if r.chain or structure.crossed == "arch" else "way"
+    place = f"x = {r.worst_place_m:.2f} m ({100 * r.worst_place_over_span:.0f} % of the {way})"
+    if r.adequacy_factor is not None and options.force is None:
+        heading = f", heading to {r.worst_way}" if options.both_ways else ""
+        factors = "" if r.live_load_factor == 1.0 else f", already {r.live_load_factor:.4g} times itself,"
+        text = (
+            f"The {what} bears {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
+            f"the most dangerous place, with its first axle at {place}{heading}: {r.collapse_load_N / 1e3:.4g} kN then stand on it."
+        )
+    else:
+        text = (
+            f"The load that brings the {what} down is least, {r.collapse_load_kN_per_m:.4g} kN per metre of depth, when its "
+            f"first axle stands at {place}."
+        )
+    if options.force is not None:
+        text += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {r.safety_factor:.2f}."
+        if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
+            text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
+    return text

@@ -80,14 +80,20 @@ def _placed(vary: str) -> tuple[str, str]:
 def _is_whole(model: Table, table: str, path: str) -> bool:
     """True where the key takes whole numbers; Refused where there is no such key, or it holds no number."""
     place: Any = type(model)
+    held: Any = model
     for part in path.split("."):
+        if isinstance(held, list):
+            if not part.isdigit() or int(part) >= len(held):
+                raise Refused(f"vary: '{path}': expected a number from 0 to {len(held) - 1} in place of '{part}'")
+            held = held[int(part)]
+            continue
         known = getattr(place, "model_fields", {})
         if part not in known:
             kind = f" of kind '{model.kind}'" if table == "structure" else ""
             raise Refused(f"vary: [{table}]{kind} has no key '{path}'; it has {', '.join(known)}")
         annotation = known[part].annotation
         inner = [a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")]
-        place = inner[0] if inner else annotation
+        place, held = inner[0] if inner else annotation, getattr(held, part, None)
     text = str(known[part].annotation)
     if not ("float" in text or "int" in text) or part == "kind":
         raise Refused(f"vary: '{path}' holds no number")
@@ -95,10 +101,12 @@ def _is_whole(model: Table, table: str, path: str) -> bool:
 
 
 def _unit(table: type[Table], path: str) -> str:
-    """Unit of a key, dotted for one of a table within the table."""
+    """Unit of a key, dotted for one of a table within the table, or of one in a list of tables."""
     place: Any = table
     *way, last = path.split(".")
     for part in way:
+        if part.isdigit():
+            continue
         annotation = place.model_fields[part].annotation
         place = next((a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")), annotation)
     return unit_of(place, last)

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from extrados.analyses.table import BuildingAnalysis
-from extrados.schema.quantities import Force, Gravities, Length
+from extrados.schema.quantities import Force, Gravities, Length, LineForce
 from extrados.schema.table import Table, key
 
 ARCHES = ("arch", "pointed-arch", "elliptical-arch")
@@ -14,7 +14,9 @@ ARCHES = ("arch", "pointed-arch", "elliptical-arch")
 class PointLoad(Table):
     """A vertical load that rests on the structure."""
 
-    x: Length = key(about="where it stands; it acts on the highest block below")
+    x: Length = key(
+        about="where it stands; it acts on the highest block below, through the fill of a bridge on all it spreads to"
+    )
     force: Force = key(about="its weight, downward", gt=0)
 
 
@@ -51,7 +53,7 @@ class Sweep(LimitAnalysisTable):
     kind: Literal["sweep"]
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
-        about="key to vary: of [structure], for instance buttress_width or right.buttress_width, or of another table, for "
+        about="key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise, or of another table, for "
         "instance joints.friction or material.compressive_strength"
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
@@ -104,18 +106,77 @@ class Supports(BuildingAnalysis):
     steps: int = key(200, "steps from rest to the fall", ge=10, le=5000)
 
 
+class UniformLoad(Table):
+    """A load spread evenly along a train, over all of the width that carries it."""
+
+    start: Length | None = key(None, "where it begins, behind the first axle; without it it goes on for ever before")
+    stop: Length | None = key(None, "where it ends, behind the first axle; without it it goes on for ever behind")
+    load: LineForce = key(about="load per length of bridge", gt=0)
+
+
+class PartialFactors(Table):
+    """Partial factors: actions are multiplied by theirs, strength and friction divided by theirs."""
+
+    masonry: float = key(1.0, "on the weight of the stones", gt=0, le=10)
+    fill: float = key(1.0, "on the weight of the fill", gt=0, le=10)
+    surfacing: float = key(1.0, "on the weight of the surfacing", gt=0, le=10)
+    live: float = key(1.0, "on the moving load", gt=0, le=10)
+    dynamic: float = key(1.0, "dynamic factor of the moving load, besides `live`", gt=0, le=10)
+    strength: float = key(1.0, "under the compressive strength", gt=0, le=10)
+    friction: float = key(1.0, "under the coefficients of friction", gt=0, le=10)
+
+
 class MovingLoad(LimitAnalysisTable):
-    """A point or axle load that crosses: the load it takes to bring the structure down, at every place."""
+    """A load, axles or a train that crosses: what of it brings the structure down, at every place."""
 
     kind: Literal["moving-load"]
-    chain: str | None = key(None, "the arch it crosses; default the first: arch, vault or nave")
-    axles: list[Length] = key([0.0], "places of the axles behind the first", max_length=50)
-    shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=50)
+    chain: str | None = key(
+        None, "the arch it crosses; default the first: arch, vault or nave; a bridge is crossed along its whole top"
+    )
+    train: Literal["LM1", "LM71", "SW/0", "SW/2"] | None = key(
+        None, "load model of EN 1991-2, in place of axles and loads", source="EN 1991-2 4.3.2, 6.3.2, 6.3.3"
+    )
+    axles: list[Length] = key([0.0], "places of the axles behind the first", max_length=200)
+    shares: list[float] | None = key(None, "share of the load on each axle; default equal", max_length=200)
     force: Force | None = key(None, "the load itself; the safety factor is told when it is given", gt=0)
+    axle_loads: list[Force] | None = key(None, "load of each axle, in place of shares and force", max_length=200)
+    uniform: list[UniformLoad] = key(
+        [], "even loads along the train; they need axle_loads, or axles = []", max_length=50
+    )
+    adverse: bool = key(True, "even loads stand only where they press the mechanism on; false: on all of their length")
+    alpha: float = key(1.0, "adjustment or classification factor of the train", gt=0, le=10)
+    lanes: int | None = key(None, "notional lanes that LM1 loads; default all that the width holds", ge=1, le=20)
+    width: Length | None = key(
+        None, "width across that carries the load, less than the depth where it does not spread to all of it", gt=0
+    )
+    contact_length: Length = key(0.3, "length of an axle's contact along a bridge with fill", gt=0)
+    factors: PartialFactors = key(PartialFactors(), "partial factors")
+    both_ways: bool = key(False, "let the train cross to the left too, its first axle ahead")
     count: int = key(81, "number of places along the span", ge=3, le=2000)
+    places: list[Length] | None = key(
+        None, "places of the first axle, in place of count", min_length=1, max_length=2000
+    )
 
     @model_validator(mode="after")
     def _axles(self) -> "MovingLoad":
+        given = self.model_fields_set
         if self.shares is not None and (len(self.shares) != len(self.axles) or min(self.shares) <= 0.0):
             raise ValueError("shares: expected one number above 0 for each of axles")
+        if self.axle_loads is not None and (len(self.axle_loads) != len(self.axles) or min(self.axle_loads) <= 0.0):
+            raise ValueError("axle_loads: expected one load above 0 for each of axles")
+        if self.train is not None and given & {"axles", "shares", "force", "axle_loads", "uniform"}:
+            raise ValueError(
+                "train stands in place of axles, shares, force, axle_loads and uniform: give the one or the others"
+            )
+        if self.axle_loads is not None and (self.shares is not None or self.force is not None):
+            raise ValueError("axle_loads stands in place of shares and force")
+        if self.uniform and self.axle_loads is None and self.axles:
+            raise ValueError("uniform needs axle_loads, or axles = [] where there are none")
+        if not self.axles and not self.uniform:
+            raise ValueError("axles: expected one at least, or uniform loads")
+        if self.lanes is not None and self.train != "LM1":
+            raise ValueError("lanes belongs to the train LM1")
+        for one in self.uniform:
+            if one.start is not None and one.stop is not None and one.stop <= one.start:
+                raise ValueError("uniform: expected stop behind start")
         return self

@@ -91,14 +91,19 @@ def spoken(found: Signature) -> str:
 
 
 def changed(data: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
-    """A structure's table with one key, dotted for a table within it, set to another value."""
+    """A structure's table with one key, dotted for a table within it or one of a list, set to another value."""
     data = copy.deepcopy(data)
-    place = data
+    place: Any = data
     *way, last = path.split(".")
     for part in way:
-        place = place.setdefault(part, {})
-        if not isinstance(place, dict):
+        if isinstance(place, list) and part.isdigit() and int(part) < len(place):
+            place = place[int(part)]
+        elif isinstance(place, dict):
+            place = place.setdefault(part, {})
+        if not isinstance(place, dict | list):
             raise Refused(f"'{path}' is no key of the deck")
+    if not isinstance(place, dict):
+        raise Refused(f"'{path}' is no key of the deck")
     place[last] = value
     return data
 

@@ -1,48 +1,87 @@
-"""Where dry joints touch under the constant loads: the state from which the events start."""
+"""Where dry joints touch and slide under the constant loads: the state from which the events start."""
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.model import SlaModel
+from extrados.analyses.sla.tables import Sla
 from extrados.core import sla as core
 
-MOST_ROUNDS = 200
+MOST_ROUNDS = 400
 TOUCH = 1e-9  # of the greatest joint stress: less is rounding
-FIRST_DIRECTION = (2, 3, 7)  # rows of the damage: crack fixed, tension tooth, shut
+FOLLOWS = 5e-3  # of the friction: as near as the friction of sliding points must be to what the normal stress allows
+WORST = 0.9  # of the greatest shear stress over its strength: what begins to slide in a round
+#: Rows of the damage of a point: cracked, tension tooth, shut
+CRACKED, TOOTH, SHUT = 2, 3, 7
+STICKS, SLIDES_UP, SLIDES_DOWN = 0.0, 1.0, 2.0
 
 
-def dry_points(core_model: core.Model, model: SlaModel) -> np.ndarray:
-    """Integration points of dry joints, from 0."""
-    found = [np.empty(0, dtype=int)]
-    for group, (_, first, per) in zip(model.mesh.groups, core_model.plane_points, strict=True):
-        if group.dry is not None:
-            found.append(first + np.flatnonzero(np.repeat(group.dry, per)))
-    return np.concatenate(found)
+@dataclass(frozen=True)
+class DryPoints:
+    """Integration points of dry joints, from 0; their friction (NaN: no sliding), shear stiffness [Pa/m] and the stress
+    that counts as small [Pa]."""
+
+    number: np.ndarray
+    friction: np.ndarray
+    stiffness: np.ndarray
+    small: np.ndarray
 
 
-def settle(core_model: core.Model, model: SlaModel) -> None:
-    """Make dry joints cracks that are there from the start, and find which of their points touch under A.
+def dry_points(core_model: core.Model, model: SlaModel) -> DryPoints:
+    """The points of joints without tensile strength."""
+    found = [(np.empty(0, dtype=int), *(np.empty(0) for _ in range(3)))]
+    for group, (made, first, per) in zip(model.mesh.groups, core_model.plane_points, strict=True):
+        if group.dry is None:
+            continue
+        at = np.flatnonzero(np.repeat(group.dry, per))
+        each = np.ones(len(group.dry))
+        values = (
+            (made.friction, made.shear_stiffness, made.small) if isinstance(made, core.Joints) else (np.nan, 1.0, 1.0)
+        )
+        found.append((first + at, *(np.repeat(value * each, per)[at] for value in values)))
+    return DryPoints(*(np.concatenate(column) for column in zip(*found, strict=True)))
+
+
+def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list[str]) -> bool:
+    """Make dry joints cracks that are there from the start, and find which of their points touch and which slide under A.
 
     Unilateral contact by its active set: points in tension open, points that overlap close, all at once, until none
-    changes. The problem has one solution, since the stiffness is positive definite with any set of open points; a round
-    that brings back an earlier set is followed by rounds that change the worst point alone.
+    changes. Without friction the problem has one solution, since the stiffness is positive definite with any set of open
+    points; a round that brings back an earlier set is followed by rounds that change the worst point alone. Then points
+    beyond their friction slide under the force that it allows, which follows the normal stress from round to round; the
+    solution is one of those that friction may leave. Where the rounds find none, all points stick and a warning says so.
+    True where joints can slide.
     """
     dry = dry_points(core_model, model)
-    if not len(dry):
-        return
+    at = dry.number
+    if not len(at):
+        return False
     damage = core_model.damage()
-    cracked, tooth, shut = FIRST_DIRECTION
-    damage[cracked, dry] = 1.0
-    damage[tooth, dry] = core.MOST_TEETH + 1.0  # beyond the last tooth, whatever their number
-    damage[shut, dry] = 1.0
-    touching = np.ones(len(dry), dtype=bool)
-    seen, single, first = set(), False, None
+    damage[CRACKED, at] = 1.0
+    damage[TOOTH, at] = core.MOST_TEETH + 1.0  # beyond the last tooth, whatever their number
+    touching, mode = np.ones(len(at), dtype=bool), np.full(len(at), STICKS)
+    held, mark = np.zeros(len(at)), np.zeros(len(at))
+    can_slide = np.isfinite(dry.friction)
+    seen, single, first, slides, sticking = set(), False, None, can_slide.any(), damage
+    if slides:
+        # What touches without sliding is a sound beginning
+        groups = [replace(g, friction=np.nan) if isinstance(g, core.Joints) else g for g in model.groups]
+        with replace(model, groups=groups).open(options, 1) as still:
+            settle(still, replace(model, groups=groups), options, warnings)
+            touching = still.damage()[SHUT, at] > 0.5
+        damage[SHUT, at] = touching
+        sticking = damage.copy()
     for _ in range(MOST_ROUNDS):
-        damage[shut, dry] = touching
+        damage[SHUT, at] = touching
+        if can_slide.any():
+            damage[core.HELD, at] = held / dry.stiffness
+            damage[core.MARK, at], damage[core.MODE, at] = mark, mode
         core_model.set_damage(damage)
         core_model.loads(np.zeros_like(model.constant), model.constant)
         report = core_model.report(1.0)
-        stress = report["stress_n"][dry] / np.where(touching, 1.0, core_model.behaviour.floor)
+        stress = report["stress_n"][at] / np.where(touching, 1.0, core_model.behaviour.floor)
         noise = TOUCH * float(np.abs(stress[touching]).max(initial=0.0))
         wrong = np.where(touching, stress > noise, stress < -noise)
         # Work of A: the more open points, the more; what only the remains of open joints hold, moves far
@@ -51,14 +90,42 @@ def settle(core_model: core.Model, model: SlaModel) -> None:
         if not wrong.any():
             if work > model.mechanism_ratio * first:
                 break
-            return
+            if not slides:
+                return False
+        if slides:
+            strength = np.where(touching & can_slide, -dry.friction * stress, 0.0)
+            slip, tau = report["strain_ns"][at], report["stress_ns"][at]
+            stuck = mode == STICKS
+            sense = np.where(mode == SLIDES_DOWN, -1.0, 1.0)
+            begins = can_slide & touching & stuck & (np.abs(tau) > strength + dry.small)
+            # The worst first: a stone all of whose points slid at once, each its way, would drift off
+            beyond = np.where(begins, np.abs(tau) / (strength + dry.small), 0.0)
+            begins &= beyond >= WORST * beyond.max()
+            back = touching & ~stuck & (sense * (slip - mark) < 0.0)
+            follows = touching & ~stuck & ~back & (np.abs(np.abs(held) - strength) > FOLLOWS * strength + dry.small)
+            if not (wrong | begins | back | follows).any():
+                core_model.end_stage(1.0)
+                return True
+            mark = np.where(begins, slip, np.where(back, mark - held / dry.stiffness, mark))
+            mode = np.where(begins, np.where(tau > 0.0, SLIDES_UP, SLIDES_DOWN), np.where(back, STICKS, mode))
+            held = np.where(begins, np.sign(tau) * strength, np.where(back, 0.0, held))
+            held = np.where(follows, sense * np.maximum(strength, 0.0), held)
+            mode, held = np.where(wrong, STICKS, mode), np.where(wrong, 0.0, held)
+            mark = np.where(wrong, np.where(touching, mark, slip), mark)
         state = touching.tobytes()
-        single |= state in seen
+        single |= wrong.any() and state in seen
         seen.add(state)
-        if single:
-            wrong &= np.arange(len(dry)) == int(np.where(wrong, np.abs(stress), -1.0).argmax())
+        if single and wrong.any():
+            wrong &= np.arange(len(at)) == int(np.where(wrong, np.abs(stress), -1.0).argmax())
         touching = touching ^ wrong
+    if slides:
+        warnings.append(
+            "which dry joints slide under the constant loads alone was not found: they stick there, and slide only as the "
+            "reference load asks for it"
+        )
+        core_model.set_damage(sticking)
+        return True
     raise Refused(
-        "the constant loads are not carried: dry joints that only press cannot balance them, the stones would fall; "
-        "limit analysis (tilt) says by how much"
+        "the constant loads are not carried: dry joints that only press cannot balance them, the stones would "
+        "fall; limit analysis (tilt) says by how much"
     )

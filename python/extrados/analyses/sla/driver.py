@@ -83,7 +83,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     field_files(result, model, curves)
     if model.mesh.has_joints:
         numbers["hinges"] = joint_openings(result, model, first)
-        result.answer = answer_of_stones(numbers, len(curves) > 1)
+        result.answer = answer_of_stones(numbers, len(curves) > 1, model.slides)
     else:
         result.answer = answer_of_wall(numbers, len(curves) > 1)
     return numbers

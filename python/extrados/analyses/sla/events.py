@@ -26,6 +26,8 @@ BATCH_SECONDS = 0.7
 KEPT = 1000
 #: The peak's state is run again from the damage at the multiple of this number before it.
 GRID = 100
+#: Events beyond the peak's number among which its load is looked for, where it comes in another order
+MORE = 30
 NOTHING = np.zeros(0)
 
 
@@ -77,7 +79,7 @@ def run_curves(
     """
     curves = []
     with model.open(options, threads) as core_model:
-        stage_a, warnings = None, []
+        stage_a, warnings, rubs = None, [], False
         if damage is not None:
             if damage.shape[1] != core_model.points:
                 raise Refused(
@@ -85,9 +87,12 @@ def run_curves(
                 )
             core_model.set_damage(damage)
         else:
-            settle(core_model, model)
-        if damage is None and options.constant_damage and np.any(model.constant):
+            rubs = settle(core_model, model, options, warnings)
+        # Friction was found under the whole of A, and does not hold under a part of it
+        if damage is None and not rubs and options.constant_damage and np.any(model.constant):
             stage_a = _constant_stage(core_model, model, options, progress)
+        if stage_a is not None and len(stage_a):
+            core_model.end_stage(float(stage_a.load[-1]))
         start = core_model.damage()
         ledger, events = _totals(stage_a)
         for number, sense in enumerate(options.directions):
@@ -100,7 +105,7 @@ def run_curves(
             watch = model.control
             before = sign * float(watch.share @ core_model.displacement(0.0)[watch.node, watch.direction])
             curve = _reference_stage(
-                core_model, model, options, sign, progress, bool(stage_a is None and damage is None),
+                core_model, model, options, sign, progress, bool(stage_a is None and damage is None and not rubs),
                 chain and chain(sign),
             )  # fmt: skip
             curve.stage_a, curve.before = stage_a, before
@@ -173,7 +178,7 @@ def _reference_stage(
             damage, standing = core_model.damage(), core_model.standing()
             try:
                 core_model.renew(damage, standing)
-            except core.Mechanism:
+            except core.FreeNode:
                 way.parts[-1].reason = "mechanism"
                 break
             way.seconds = before + time.perf_counter() - begin
@@ -200,6 +205,8 @@ def _reference_stage(
         way.parts.append(part)
         if len(part):
             load = np.where(part.equilibrium, part.load, -np.inf)
+            if part.reason == "mechanism" and model.mesh.has_joints:
+                load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
         done += len(part)
@@ -244,15 +251,29 @@ def _replay(
 ) -> State | None:
     """The state of an event that has passed, run again from the damage kept before it."""
     damage, first = before
-    core_model.set_damage(damage)
-    core_model.loads(model.constant, sign * model.reference)
+
+    def begin() -> None:
+        core_model.set_damage(damage)
+        core_model.loads(model.constant, sign * model.reference)
+        if first:  # friction that slides looks on from the multiplier reached
+            core_model.renew(damage, core_model.standing_at(float(events.load[first - 1])))
+
+    begin()
     again = core_model.run(event - first + 1, [model.control], core.Stop())
-    # Near a mechanism of stiff stones the last digits of the load depend on the way there
+    # Near a mechanism of stiff stones the last digits of the load, and so the order of events, depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
-    if len(again) != event - first + 1 or abs(again.load[-1] - events.load[event]) > tolerance * abs(
-        events.load[event]
-    ):
+    away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
+    if not len(again) or ((away[-1] or len(again) != event - first + 1) and not model.mesh.has_joints):
         return None
+    if away[-1]:
+        begin()
+        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop())
+        away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
+        near = np.flatnonzero(~away & again.equilibrium)
+        if not len(near):
+            return None
+        begin()
+        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop())
     return _state(core_model, event, float(again.load[-1]))
 
 

@@ -14,7 +14,7 @@ from extrados.results.model import Result, TableData
 from extrados.schema.constants import GRAVITY
 
 #: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
-HINGE, WIDE = 0.95, 0.1
+HINGE, WIDE = 0.9, 0.1
 
 
 def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
@@ -115,8 +115,12 @@ def joint_openings(result: Result, model: SlaModel, curve: Curve) -> list[str]:
     share = np.bincount(joint, np.where(width > 0.0, area, 0.0), count) / np.bincount(joint, area, count)
     most = np.zeros(count)
     np.maximum.at(most, joint, width)
-    result.tables["joints"] = TableData(
-        {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}, {"greatest_opening": "m"}
-    )
+    columns = {"joint": model.mesh.joint_names, "greatest_opening": most, "open_part": share}
+    units = {"greatest_opening": "m"}
+    if model.slides:
+        slip = np.zeros(count)
+        np.maximum.at(slip, joint, np.abs(state.report["strain_ns"][rows]))
+        columns["greatest_slip"], units["greatest_slip"] = slip, "m"
+    result.tables["joints"] = TableData(columns, units)
     hinges = np.flatnonzero((share > HINGE) & (most > WIDE * most.max()))
     return [model.mesh.joint_names[j] for j in hinges]

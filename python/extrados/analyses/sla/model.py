@@ -44,9 +44,14 @@ class SlaModel:
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
 
     @property
-    def planes(self) -> list[core.Plane]:
-        """The groups of plane elements, in the order of the mesh."""
-        return [group for group in self.groups if isinstance(group, core.Plane)]
+    def planes(self) -> list[core.Plane | core.Joints]:
+        """The groups of plane elements and joints, in the order of the mesh."""
+        return [group for group in self.groups if isinstance(group, core.Plane | core.Joints)]
+
+    @property
+    def slides(self) -> bool:
+        """True where a joint has a coefficient of friction."""
+        return any(isinstance(g, core.Joints) and bool(np.isfinite(g.friction).any()) for g in self.groups)
 
     def open(self, options: Sla, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
@@ -138,7 +143,10 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         factors = np.ones(count) if strength is None else strength[start : start + count]
         start += count
         band, reach = crack_bands(mesh, group, options)
-        groups.append(_plane(mesh, group, band, reach, factors, options))
+        joints = group.law is not None
+        groups.append(
+            _joints(group, factors, options) if joints else _plane(mesh, group, band, reach, factors, options)
+        )
         bands.append(band)
         points.append(point_positions(mesh.xy, group))
     for bar in mesh.bars:
@@ -290,6 +298,50 @@ def _plane(
     )  # fmt: skip
 
 
+def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Joints:
+    """Joints of no thickness; `factors` of their tensile strength and cohesion."""
+    law = group.law
+
+    def softenings(strength: np.ndarray, energy: np.ndarray) -> list[core.Softening | None] | None:
+        made: dict[tuple[float, float], core.Softening] = {}
+        rows = []
+        for pair in zip(strength.tolist(), energy.tolist(), strict=True):
+            if pair[0] > 0.0 and pair not in made:
+                made[pair] = core.Softening(
+                    *pair, law.softening, options.ripple, options.teeth == "exact", options.overshoot
+                )
+            rows.append(made.get(pair))
+        return rows if made else None
+
+    tension = softenings(law.tension * factors, law.fracture_energy)
+    crushing = softenings(law.compressive_strength, law.crushing_energy)
+    cohesion = softenings(law.cohesion * factors, law.shear_energy)
+    for name, rows, stiffness in (
+        ("fracture_energy", tension, law.normal_stiffness), ("crushing_energy", crushing, law.normal_stiffness),
+        ("shear_energy", cohesion, law.shear_stiffness),
+    ):  # fmt: skip
+        for row, k in zip(rows or [], stiffness.tolist(), strict=False):
+            if row is not None and core.largest_band(row, k) <= 1.0:
+                raise BadGeometry(
+                    f"joints.{name} is too small for joints of {k:.4g} Pa/m, which would snap back: it must be above "
+                    f"{row.energy / core.largest_band(row, k):.4g} N/m"
+                )
+    return core.Joints(
+        group.connect,
+        law.normal,
+        law.area,
+        law.normal_stiffness,
+        law.shear_stiffness,
+        law.friction,
+        tension,
+        crushing,
+        cohesion,
+        group.dry,
+        law.small,
+        options.friction_ripple,
+    )
+
+
 def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
     ends = [int(np.hypot(*(mesh.xy - at).T).argmin()) for at in (bar.start, bar.end)]
     if ends[0] == ends[1]:
@@ -309,6 +361,8 @@ def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
 def point_positions(xy: np.ndarray, group: ElementGroup) -> np.ndarray:
     """Integration points (points, 2) [m], as the core orders them; sides are straight."""
     corners = xy[group.connect[:, : corner_count(group.kind)]]
+    if group.law is not None:
+        return xy[group.connect[:, :2]].reshape(-1, 2)
     if group.kind == "T3":
         share = np.full((1, 3), 1.0 / 3.0)
     elif group.kind == "T6":

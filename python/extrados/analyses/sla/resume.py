@@ -56,21 +56,26 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
                 int(get["event_point"][event - 1]),
                 totals,
             )
-        return _damage_at(event, get, stored["sla"].get("cracking")), earlier
+        lost = "joints that slide" if model.slides else "cracks that turn"
+        by_events = not model.slides and stored["sla"].get("cracking") != "rotating"
+        return _damage_at(event, get, None if by_events else lost), earlier
     except (StoreError, BadFile, KeyError) as error:
         raise Refused(f"resume_from: {error}") from None
 
 
-def _damage_at(event: int, get: dict[str, np.ndarray], cracking: str | None) -> np.ndarray:
-    """The damage before an event: kept at the last one and at those of a state, else found by the events that were."""
+def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) -> np.ndarray:
+    """The damage before an event: kept at the last one and at those of a state, else found by the events that were.
+
+    traceless: what changes without a trace in the events, if anything does.
+    """
     kept = get["state_event"].tolist() if "state_event" in get else []
     if event in kept:
         return get["state_damage"][kept.index(event)].T
     if event == len(get["event_point"]):
         return get["damage_end"].T
-    if cracking == "rotating":
+    if traceless is not None:
         raise Refused(
-            f"resume_event: the damage before event {event} was not kept, and cracks that turn leave no trace of it; kept "
+            f"resume_event: the damage before event {event} was not kept, and {traceless} leave no trace of it; kept "
             f"were events {', '.join(str(e) for e in kept)}: name others in states of that run"
         )
     return damage_before(

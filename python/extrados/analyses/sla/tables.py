@@ -90,9 +90,13 @@ class Sla(BuildingAnalysis):
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
 
     def rests_on(self, building: "Building") -> dict[str, str | None]:
-        """Also, of stones, that their joints do not slide."""
+        """Also, of stones, their friction and cohesion; or, of joints as rows of elements, that they do not slide."""
         found = super().rests_on(building)
-        return {**found, "joints.friction": NO_SLIDING} if building.meshed_by_stones else found
+        if self.mesh.joints == "rows":
+            return {**found, "joints.friction": NO_SLIDING}
+        if building.meshed_by_stones or self.mesh.joints == "interfaces":
+            return {**found, "joints.friction": None, "joints.cohesion": None}
+        return found
 
     constant: list[Load] | None = key(
         None,
@@ -128,6 +132,12 @@ class Sla(BuildingAnalysis):
         source="thesis 4.2",
         ge=0.005,
         le=0.5,
+    )
+    friction_ripple: float = key(
+        0.02,
+        "half-width of the steps by which friction follows the normal stress of joints, over the friction",
+        ge=0.001,
+        le=0.1,
     )
     overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
     crack_band: Length | None = key(None, "crack band width h; default by crack_band_rule", gt=0)

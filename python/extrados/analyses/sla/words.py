@@ -3,8 +3,8 @@
 from typing import Any
 
 
-def answer_of_stones(r: dict[str, Any], both: bool) -> str:
-    """Of stones that became a mechanism; of others as of a wall."""
+def answer_of_stones(r: dict[str, Any], both: bool, slide: bool) -> str:
+    """Of stones that became a mechanism; of others as of a wall. slide: their joints can."""
     if r["peak_load_N"] is None or r["stop"] not in ("mechanism", "no point limits the load") or not r["events"]:
         return answer_of_wall(r, both)
     by_masses = "peak_acceleration_g" in r
@@ -13,7 +13,9 @@ def answer_of_stones(r: dict[str, Any], both: bool) -> str:
         kilonewtons = f"{of['peak_load_N'] / 1e3:.4g} kN"
         return f"an acceleration of {of['peak_acceleration_g']:.4g} g ({kilonewtons})" if by_masses else kilonewtons
 
-    text = f"The stones become a mechanism at {capacity(r)}; joints open but do not slide."
+    text = (
+        f"The stones become a mechanism at {capacity(r)}; joints open {'and slide' if slide else 'but do not slide'}."
+    )
     if names := r["hinges"]:
         shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
         text += f" Hinges: {shown}."

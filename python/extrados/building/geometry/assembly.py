@@ -5,6 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
+from extrados.building.geometry.earth import Earth
+
 GROUND = -1
 
 
@@ -17,9 +19,10 @@ class Assembly:
     intrados end, q the extrados end) between blocks a[j] and b[j], GROUND for the ground.
     What drivers and pictures know of its parts: `chains`, name -> joints of an arch from springing to
     springing; `buttresses`, blocks that stand on the ground at the sides, from left to right, and may
-    crack when tilted; `fill` (nb, 3), mass [kg] that rests on each block and its place x, y [m];
-    `measures`, derived lengths worth telling, by names that end in their unit; `materials`, for each block a name of
-    [materials] or None, empty where all are of one; `groups`, name -> joints that may be named together.
+    crack when tilted; `fill` (nb, 3), mass [kg] that rests on each block and its place x, y [m]; `earth`, the soil
+    that this fill is where it spreads loads and pushes back; `measures`, derived lengths worth telling, by names that
+    end in their unit; `materials`, for each block a name of [materials] or None, empty where all are of one; `groups`,
+    name -> joints that [[joints.types]] may call by one name.
     `remarks` must be told beside every answer; `notes`, what was made of a survey, once.
 
     `inward` (nj) is +1 where the left side of p -> q lies in block a, -1 where the right side does; None
@@ -41,6 +44,7 @@ class Assembly:
     chains: dict[str, list[int]] = field(default_factory=dict, kw_only=True)
     buttresses: list[int] = field(default_factory=list, kw_only=True)
     fill: np.ndarray | None = field(default=None, kw_only=True)
+    earth: Earth | None = field(default=None, kw_only=True)
     measures: dict[str, float] = field(default_factory=dict, kw_only=True)
     materials: list[str | None] = field(default_factory=list, kw_only=True)
     groups: dict[str, list[int]] = field(default_factory=dict, kw_only=True)

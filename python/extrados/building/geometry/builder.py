@@ -60,6 +60,13 @@ class Builder:
         outline = outline if signed_area(outline) > 0.0 else outline[::-1]
         self._blocks[index] = (self._blocks[index][0], outline, *properties(outline))
 
+    def name_of(self, block: int) -> str:
+        return self._blocks[block][0]
+
+    def outline_of(self, block: int) -> np.ndarray:
+        """Vertices of a block (k, 2) [m]."""
+        return self._blocks[block][1]
+
     def place_of(self, block: int) -> float:
         """x of the middle of a block [m]."""
         return float(self._blocks[block][1][:, 0].mean())

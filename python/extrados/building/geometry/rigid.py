@@ -73,8 +73,8 @@ def rigid_bodies(
             owner.append(int(body[i]))
             outer.append(edges)
     support_of = {}
-    for line in _ground_lines(assembly):
-        polygon = _support(assembly, line, [p for p, o in zip(parts, owner, strict=True) if o < count])
+    stones = [p for p, o in zip(parts, owner, strict=True) if o < count]
+    for line, polygon in _supports(assembly, stones):
         support_of.update(dict.fromkeys(line, len(names)))
         owner.append(len(names))
         parts.append(polygon)
@@ -198,8 +198,20 @@ def _inward(assembly: Assembly, j: int) -> np.ndarray:
     return assembly.normal[j] if assembly.a[j] != GROUND else -assembly.normal[j]
 
 
-def _support(assembly: Assembly, line: list[int], blocks: list[np.ndarray]) -> np.ndarray:
-    """A support under the joints of one line, as wide as the other blocks allow."""
+def _supports(assembly: Assembly, blocks: list[np.ndarray]) -> list[tuple[list[int], np.ndarray]]:
+    """Joints to the ground with the support under them: one for a line, one each where a block stands between."""
+    found = []
+    for line in _ground_lines(assembly):
+        polygon, clear = _support(assembly, line, blocks)
+        if clear or len(line) == 1:
+            found.append((line, polygon))
+        else:
+            found += [([j], _support(assembly, [j], blocks)[0]) for j in line]
+    return found
+
+
+def _support(assembly: Assembly, line: list[int], blocks: list[np.ndarray]) -> tuple[np.ndarray, bool]:
+    """A support under the joints of one line, as wide as the other blocks allow; and whether they allow any."""
     up = _inward(assembly, line[0])
     along = np.array([up[1], -up[0]])
     origin = assembly.p[line[0]]
@@ -215,8 +227,8 @@ def _support(assembly: Assembly, line: list[int], blocks: list[np.ndarray]) -> n
         if area(polygon) < 0.0:
             polygon = polygon[::-1]
         if all(overlap_depth(polygon, block) < 1e-6 * extent for block in blocks):
-            break
-    return polygon
+            return polygon, True
+    return polygon, False
 
 
 def _floor(assembly: Assembly, level: float) -> np.ndarray:

@@ -18,6 +18,25 @@ EDGES = {"T3": (0, 1, 2), "T6": (0, 1, 2), "Q4": (0, 1, 2, 3), "Q8": (0, 1, 2, 3
 
 
 @dataclass(frozen=True)
+class JointLaw:
+    """What joints of no thickness are made of, each (elements); NaN where there is none."""
+
+    normal: np.ndarray  # (elements, 2) from the lower to the upper side
+    area: np.ndarray  # (elements, 2) of the pairs of nodes [m^2], 0 where the element before has it
+    normal_stiffness: np.ndarray  # [Pa/m]
+    shear_stiffness: np.ndarray  # [Pa/m]
+    friction: np.ndarray  # NaN: no sliding
+    cohesion: np.ndarray  # [Pa], 0 where there is none
+    shear_energy: np.ndarray  # [N/m]
+    tension: np.ndarray  # [Pa], 0 where there is none
+    fracture_energy: np.ndarray  # [N/m]
+    compressive_strength: np.ndarray  # [Pa]
+    crushing_energy: np.ndarray  # [N/m]
+    small: float  # stress by which overloads of dry joints are measured [Pa]
+    softening: str
+
+
+@dataclass(frozen=True)
 class ElementGroup:
     """Elements of one kind and one integration rule."""
 
@@ -30,7 +49,8 @@ class ElementGroup:
     axis: np.ndarray  # (elements) [rad], NaN where cracks choose
     band: float | None = None  # crack band [m]; None where the analysis sets it
     joint: np.ndarray | None = None  # (elements) the joint that a row of elements stands for
-    dry: np.ndarray | None = None  # (elements) bool, of rows: the joint has no tensile strength
+    dry: np.ndarray | None = None  # (elements) bool, of joints: no tensile strength
+    law: JointLaw | None = None  # of joints of no thickness, whose elements are stretches: two nodes below, two above
 
 
 @dataclass(frozen=True)
@@ -187,6 +207,8 @@ def build_mesh(
     """Split the elements of a wall into groups by its regions; unused nodes are dropped, bad elements refused."""
     if options.joint_thickness is not None:
         raise BadGeometry(f"a structure of kind '{wall.kind}' has no joints: leave joint_thickness out")
+    if options.joints is not None:
+        raise BadGeometry(f"a structure of kind '{wall.kind}' has no stones: leave joints out")
     if not len(connect):
         raise BadGeometry("the mesh has no elements")
     used, renumbered = np.unique(connect, return_inverse=True)

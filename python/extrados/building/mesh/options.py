@@ -27,10 +27,15 @@ class MeshOptions(Table):
         "wanted size of the elements; default a twentieth of a wall's lesser side, an eighth of the median joint of stones",
         gt=0,
     )
+    joints: Literal["interfaces", "rows"] | None = key(
+        None,
+        "of stones: joints of no thickness, which open and slide, or thin rows of elements, which only open; default "
+        "interfaces. A panel has stones where this is given, and its unit is",
+    )
     joint_thickness: Length | None = key(
         None,
         "thickness of the row of elements along each joint between stones; default 1/25 of the size, and at most a fifth "
-        "of the shortest element along a joint",
+        "of the shortest element along a joint. The stiffness of interfaces is by default that of the stone over it",
         gt=0,
     )
     element: Literal["T3", "T6", "Q4", "Q8"] = key(

@@ -1,8 +1,8 @@
-"""Finite elements of buildings of stones: every stone meshed, along every joint a thin row of elements.
+"""Finite elements of buildings of stones: every stone meshed, along every joint an interface of no thickness.
 
-The nodes along a joint are laid once and serve both of its stones. Each stone then draws back from its joints by half
-their thickness (by all of it on the ground), and the gap is filled by one row of quadrilaterals. Stones have nodes of
-their own: where more than two meet, a pore of the size of the joint's thickness is left and nothing is tied there.
+The nodes along a joint are laid once and serve both of its stones, each with nodes of its own: pairs at the same place.
+Rows of elements instead (`joints = "rows"`) fill a gap: each stone draws back from its joints by half their thickness (by
+all of it on the ground). Where more than two stones meet nothing ties them.
 """
 
 import itertools
@@ -14,11 +14,12 @@ import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.earth import passive_left_out
 from extrados.building.geometry.polygons import following, signed_area
-from extrados.building.mesh.mesh import ElementGroup, Mesh, element_areas
+from extrados.building.mesh.mesh import ElementGroup, JointLaw, Mesh, element_areas
 from extrados.building.mesh.options import LARGEST_MESH, MeshOptions
 from extrados.building.mesh.triangles import fill_ring
-from extrados.building.properties import Material
+from extrados.building.properties import NO_SLIDING_COEFFICIENT, Material
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
         raise BadGeometry(f"about {count:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}; use larger ones")
     lines = [_divided(p, q, size, most) for p, q in zip(assembly.p, assembly.q, strict=True)]
     shortest = min(float(np.hypot(*np.diff(line, axis=0).T).min()) for line in lines)
+    rows_of_elements = options.joints == "rows"
     thickness = options.joint_thickness or min(THICKNESS * size, THICKNESS_OF_SIDE * shortest)
     if thickness > 0.5 * shortest:
         raise BadGeometry(
@@ -76,7 +78,8 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
         )
     snap = max(1e-7 * assembly.size, 10.0 * getattr(building.structure, "contact_tolerance", 0.0))
     triangles_only = options.element == "T3"
-    stones = [_stone(assembly, i, lines, sizes[i], thickness, snap, triangles_only) for i in range(len(assembly.mass))]
+    gap = thickness if rows_of_elements else 0.0
+    stones = [_stone(assembly, i, lines, sizes[i], gap, snap, triangles_only) for i in range(len(assembly.mass))]
 
     first = np.cumsum([0, *(len(s.xy) for s in stones)])
     xy = [s.xy for s in stones]
@@ -97,13 +100,6 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
         row_joint.append(np.full(len(line) - 1, j))
     nodes = np.concatenate(xy)
     row, joint = np.concatenate(rows), np.concatenate(row_joint)
-    turned = element_areas(nodes, "Q4", row) < 0.0
-    row[turned] = row[turned][:, [1, 0, 3, 2]]  # the first side stays along the joint
-    bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
-    if len(bad):
-        raise BadGeometry(
-            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' folds: use a smaller joint_thickness"
-        )
     groups = []
     for kind, gauss in (("Q4", (2, 2)), ("T3", (1, 1))):
         parts = [first[i] + (s.quads if kind == "Q4" else s.triangles) for i, s in enumerate(stones)]
@@ -114,18 +110,105 @@ def make_stones(building: "Building", options: MeshOptions) -> Mesh:
                 np.full(n, np.nan),
             ))  # fmt: skip
     building.refuse_mixture()
+    if rows_of_elements:
+        materials, group = _rows(building, assembly, thickness, nodes, row, joint)
+    else:
+        materials, group = _interfaces(building, assembly, thickness, nodes, row, joint)
+    groups.append(group)
+    mass = np.concatenate([*(_masses(s, assembly, i) for i, s in enumerate(stones)), np.zeros(free - first[-1])])
+    structure = building.structure
+    return Mesh(
+        nodes, groups, [building.material, *materials], size, building.supports.held, getattr(structure, "ties", []),
+        getattr(structure, "bars", []), building.materials, options.selective,
+        mass=mass, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
+        warnings=passive_left_out(assembly.earth),
+    )  # fmt: skip
+
+
+def _rows(
+    building: "Building", assembly: Assembly, thickness: float, nodes: np.ndarray, row: np.ndarray, joint: np.ndarray
+) -> tuple[list[Material], ElementGroup]:
+    """Joints as thin rows of elements that crack along their own direction."""
+    turned = element_areas(nodes, "Q4", row) < 0.0
+    row[turned] = row[turned][:, [1, 0, 3, 2]]  # the first side stays along the joint
+    bad = np.flatnonzero(element_areas(nodes, "Q4", row) <= 0.0)
+    if len(bad):
+        raise BadGeometry(
+            f"the row of elements along '{assembly.joint_names[joint[bad[0]]]}' folds: use a smaller joint_thickness"
+        )
     materials, index, dry = _joint_materials(building, assembly, thickness)
     normal = assembly.normal[joint]
     n = len(row)
-    groups.append(ElementGroup(
+    return materials, ElementGroup(
         "Q4", row, ROW_POINTS, np.full(n, assembly.depth), 1 + index[joint], np.zeros(n, dtype=bool),
         np.arctan2(normal[:, 1], normal[:, 0]), band=thickness, joint=joint, dry=dry[joint],
-    ))  # fmt: skip
-    mass = np.concatenate([*(_masses(s, assembly, i) for i, s in enumerate(stones)), np.zeros(free - first[-1])])
-    return Mesh(
-        nodes, groups, [building.material, *materials], size, building.supports.held, selective=options.selective,
-        mass=mass, ground=None if building.supports.held else np.concatenate(ground), joint_names=assembly.joint_names,
     )  # fmt: skip
+
+
+def _interfaces(
+    building: "Building", assembly: Assembly, thickness: float, nodes: np.ndarray, row: np.ndarray, joint: np.ndarray
+) -> tuple[list[Material], ElementGroup]:
+    """Joints of no thickness. Their stiffness is the joint's, or that of a layer of stone of `thickness`."""
+    names = (
+        "tension",
+        "fracture_energy",
+        "friction",
+        "cohesion",
+        "shear_energy",
+        "compressive_strength",
+        "crushing_energy",
+    )
+    value = {name: building.joint_property(name) for name in names}
+    for strength, energy in (("tension", "fracture_energy"), ("cohesion", "shear_energy")):
+        if (missing := np.flatnonzero((value[strength] > 0.0) & np.isnan(value[energy]))).size:
+            raise BadGeometry(
+                f"joint '{assembly.joint_names[missing[0]]}' has a {strength} but no {energy}: give joints.{energy}, or "
+                f"{strength} = 0"
+            )
+    if (missing := np.flatnonzero(np.isnan(value["compressive_strength"]) != np.isnan(value["crushing_energy"]))).size:
+        raise BadGeometry(
+            f"joint '{assembly.joint_names[missing[0]]}': compressive_strength and crushing_energy go together"
+        )
+    stiffness = _in_series(building, assembly, 1.0 / thickness)
+    joints = building.joints
+    shear = np.full(len(stiffness), joints.shear_stiffness or np.nan)
+    shear = np.where(np.isnan(shear), joints.shear_ratio * stiffness, shear)
+    dry = value["tension"] == 0.0
+    found, index = np.unique(stiffness, return_inverse=True)
+    n = len(row)
+    half = 0.5 * assembly.depth * np.hypot(*(nodes[row[:, 1]] - nodes[row[:, 0]]).T)
+    begins, ends = np.ones(n, dtype=bool), np.ones(n, dtype=bool)
+    begins[1:] = ends[:-1] = joint[1:] != joint[:-1]
+    area = np.column_stack([np.where(begins, half, 0.0), half + np.where(ends, 0.0, np.roll(half, -1))])
+    value["friction"][value["friction"] >= NO_SLIDING_COEFFICIENT] = np.nan
+    law = JointLaw(
+        normal=assembly.normal[joint], area=area, normal_stiffness=stiffness[joint], shear_stiffness=shear[joint],
+        **{name: values[joint] for name, values in value.items()}, small=_small_stress(assembly),
+        softening=joints.softening,
+    )  # fmt: skip
+    # Of joints a material holds only the stiffness: their strain is the jump, over a band of 1 m
+    materials = [Material(density=0.0, young=float(k), poisson=0.0) for k in found]
+    return materials, ElementGroup(
+        "Q4", row, (2, 1), np.full(n, assembly.depth), 1 + index[joint], np.zeros(n, dtype=bool),
+        np.arctan2(law.normal[:, 1], law.normal[:, 0]), band=1.0, joint=joint, dry=dry[joint], law=law,
+    )  # fmt: skip
+
+
+def _in_series(building: "Building", assembly: Assembly, per_length: float) -> np.ndarray:
+    """Normal stiffness of each joint [Pa/m]: given, or that of stone of a thickness 1 / per_length [m]; on the ground in
+    series with the ground's."""
+    given = building.joint_property("normal_stiffness")
+    stiffness = np.where(np.isnan(given), building.material.young * per_length, given)
+    if building.supports.stiffness is not None:
+        grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
+        stiffness = np.where(grounded, 1.0 / (1.0 / stiffness + 1.0 / building.supports.stiffness), stiffness)
+    return stiffness
+
+
+def _small_stress(assembly: Assembly) -> float:
+    """Stress [Pa] by which rounding is measured in dry joints."""
+    area = float((assembly.length * assembly.depth).sum())
+    return DRY * float(assembly.mass.sum()) * GRAVITY / area or 1.0
 
 
 def _refuse(options: MeshOptions) -> None:
@@ -148,21 +231,15 @@ def _joint_materials(
     stone where none is given. Dry joints have no strength: theirs only measures rounding.
     """
     stone = building.material
-    tension, energy, stiffness = (
-        building.joint_property(name) for name in ("tension", "fracture_energy", "normal_stiffness")
-    )
-    young = np.where(np.isnan(stiffness), stone.young, stiffness * thickness)
-    if building.supports.stiffness is not None:
-        grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
-        young = np.where(grounded, 1.0 / (1.0 / young + 1.0 / (building.supports.stiffness * thickness)), young)
+    tension, energy = (building.joint_property(name) for name in ("tension", "fracture_energy"))
+    young = _in_series(building, assembly, 1.0 / thickness) * thickness
     dry = tension == 0.0
     if (missing := np.flatnonzero(~dry & np.isnan(energy))).size:
         raise BadGeometry(
             f"joint '{assembly.joint_names[missing[0]]}' has a tension but no fracture_energy: give "
             "joints.fracture_energy, or tension = 0 for dry joints"
         )
-    area = float((assembly.length * assembly.depth).sum())
-    small = DRY * float(assembly.mass.sum()) * GRAVITY / area or 1.0
+    small = _small_stress(assembly)
     strength = np.where(dry, small, tension)
     # Far from the snap-back of the row itself, 2 E Gf / ft^2 > thickness; without meaning in a dry joint
     energy = np.where(dry, 5.0 * small**2 * thickness / young, energy)

@@ -1,6 +1,6 @@
 """Any section as the rocking core sees it: the two collapse mechanisms of limit analysis, carried through their motion."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -8,6 +8,7 @@ import numpy.typing as npt
 
 from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.earth import passive_left_out
 from extrados.building.rockers.impact import MOST_BLOCKS, energy_kept
 from extrados.core import mechanism as core_mechanism
 from extrados.core.errors import CoreError
@@ -15,6 +16,7 @@ from extrados.core.mechanism import Coefficients, Table, table_body
 from extrados.core.rocking import Body
 from extrados.limit.answer import why_not
 from extrados.limit.linkage import CannotRock, Linkage, laden, linkage
+from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
 from extrados.schema.constants import GRAVITY
@@ -63,7 +65,7 @@ class MechanismModel:
     @cached_property
     def collapse(self) -> tuple[tuple[State, Mechanism], tuple[State, Mechanism]]:
         """State and mechanism at collapse, of both sides."""
-        limit = LimitAnalysis(self.assembly)
+        limit = LimitAnalysis(self.assembly, loads=replace(tilt_loads(self.assembly), resistance=None))
         try:
             found = limit.collapse(1), limit.collapse(-1)
             if not found[1][0].gamma < 0.0 < found[0][0].gamma:
@@ -193,7 +195,7 @@ class MechanismModel:
     @cached_property
     def warnings(self) -> list[str]:
         """What is doubtful: impacts that end the rocking, hinges that close again before the balance."""
-        found = []
+        found = passive_left_out(self.assembly.earth)
         kept = (
             self.restitution[0] ** 2 * self.tables[0].mass / self.tables[1].mass,
             self.restitution[1] ** 2 * self.tables[1].mass / self.tables[0].mass,

@@ -240,5 +240,5 @@ class Brickwork(Laid, Structure):
         bond = self.bond(self.unit_length, self.unit_height)
         return make_brickwork(bond, *self.size, self.holes, density, self.depth)
 
-    def piers(self, density: float) -> Assembly:
+    def pier_assembly(self, density: float) -> Assembly:
         return make_piers(*self.size, self.holes, density, self.depth)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from extrados.building.errors import NoView
+from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.places import Placed
 from extrados.building.structure import RocksAs, Structure
@@ -113,7 +113,7 @@ class Panel(Laid, MeshedWall):
             raise NoView("a panel of an outline is no rectangle")
         return self.width, self.height
 
-    def piers(self, density: float) -> Assembly:
+    def pier_assembly(self, density: float) -> Assembly:
         if self.outline:
             raise NoView("the piers of a panel are found between rectangular openings, not in an outline")
         if any(region.material or region.thickness for region in self.regions):
@@ -145,7 +145,12 @@ class Panel(Laid, MeshedWall):
 
     def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
         from extrados.building.mesh.panel import make_panel
+        from extrados.building.mesh.stones import make_stones
 
+        if options.joints is not None:
+            if self.regions:
+                raise BadGeometry("a panel meshed unit by unit takes no regions: give its joints by joints.types")
+            return make_stones(building, options)
         return make_panel(self, building, options, seed)
 
 

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from extrados.motions.formats.record import TIME, Lines, Record, time_unit_in, unit_in
+from extrados.motions.formats.record import TIME, Lines, Record, tidy, time_unit_in, unit_in
 
 MOST_HEADER = 60
 LONGEST_STEP = 0.5  # s: longer steps of a column that names no unit are milliseconds, or no record
@@ -26,7 +26,7 @@ def read(text: Lines) -> list[Record]:
         raise text.error(odd, f"{len(text[odd].split())} columns where {width} stood before")
     short = len(rows[-1][1]) != width  # the last row of a path file may be
     table = text.numbers(rows[:-1] if short else rows).reshape(-1, width)
-    said = " \n".join(header)
+    said = " \n".join(map(tidy, header))
     title = next((line.strip() for line in header if _is_title(line)), "")
     unit = unit_in(said)
     rounded = _resolution(rows) if width > 1 else 0.0
@@ -57,7 +57,7 @@ def read(text: Lines) -> list[Record]:
         ]
     values = np.append(table.ravel(), text.numbers(rows[-1:])) if short else table.ravel()
     steps = re.search(
-        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d*\.?\d+)\s*s",
+        r"(?:\bdt|time\s*step|(?:equal\s+)?spacing|sampling\s+(?:interval|step))\s*(?:of|=|:|is)?\s*(\d+\.?\d*|\.\d+)\s*s",
         said,
         re.I,
     )

@@ -16,7 +16,7 @@ _STEP = 61  # real header, from 0: sampling interval of the data that follow [ms
 
 
 def recognises(text: Lines) -> bool:
-    return re.search(r"\(format\s+v", text[0], re.I) is not None
+    return re.search(r"\(format\s+v", text.words(0), re.I) is not None
 
 
 def read(text: Lines) -> list[Record]:
@@ -33,20 +33,21 @@ def read(text: Lines) -> list[Record]:
 
 
 def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
-    found = re.search(r"with\s+(\d+)\s+text lines", text[at], re.I)
+    found = re.search(r"with\s+(\d+)\s+text lines", text.words(at), re.I)
     first = at
     at += int(found[1]) if found else 13
     event, station = said_in(text.lines[first : min(at, len(text))])
     name = next(
-        (text[k] for k in range(first, min(at, len(text))) if re.match(r"\s*sta(?:tn)?\s+chan", text[k], re.I)), ""
+        (text[k] for k in range(first, min(at, len(text))) if re.match(r"\s*sta(?:tn)?\s+chan", text.words(k), re.I)),
+        "",
     )
     for _ in range(4):  # some files count the line after the text lines in, some do not
-        if re.search(r"integer-header", text[at], re.I):
+        if re.search(r"integer-header", text.words(at), re.I):
             break
         at += 1
     at, _ = _header(text, at, "integer-header")
     at, real = _header(text, at, "real-header")
-    found = re.match(r"\s*(\d+)\s+comment", text[at], re.I)
+    found = re.match(r"\s*(\d+)\s+comment", text.words(at), re.I)
     if not found:
         raise text.error(at, "expected the line 'n Comment line(s) follow'")
     at += 1 + int(found[1])
@@ -54,7 +55,7 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
         raise text.error(at, "the real header has no sampling interval (value 62)")
     step = text.step(repr(real[_STEP] / 1000.0), at)
     records = []
-    while at < len(text) and not re.match(r"\s*end-of-data", text[at], re.I):
+    while at < len(text) and not re.match(r"\s*end-of-data", text.words(at), re.I):
         if not text[at].strip():
             at += 1
             continue
@@ -66,7 +67,7 @@ def _channel(text: Lines, at: int) -> tuple[int, list[Record]]:
 
 
 def _header(text: Lines, at: int, word: str) -> tuple[int, list[float]]:
-    line = text[at]
+    line = text.words(at)
     found = re.match(rf"\s*(\d+)\s+{word} values follow on\s+(\d+)\s+lines", line, re.I)
     shape = fortran_columns(line)
     if not found or not shape:
@@ -77,7 +78,7 @@ def _header(text: Lines, at: int, word: str) -> tuple[int, list[float]]:
 
 
 def _block(text: Lines, at: int, step: float, name: str) -> tuple[int, Record]:
-    line = text[at]
+    line = text.words(at)
     found = re.match(r"\s*(\d+)\s+(.*?)\s*(?:pts|points|values)", line, re.I)
     code = re.search(r"units?\s*=\s*[^(]*\(\s*(\d+)\s*\)", line, re.I)
     shape = fortran_columns(line)

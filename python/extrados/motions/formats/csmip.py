@@ -19,14 +19,14 @@ _QUANTITY = {"accel": "acceleration", "veloc": "velocity", "displ": "displacemen
 
 
 def recognises(text: Lines) -> bool:
-    return _TITLE.search(text[0]) is not None and text[1].strip() != "*"
+    return _TITLE.search(text.words(0)) is not None and text[1].strip() != "*"
 
 
 def read(text: Lines) -> list[Record]:
     records, name, at = [], "", 0
     event, station = said_in(text.lines[:HEADER])
     while at < len(text):
-        line = text[at]
+        line = text.words(at)
         if channel := re.search(r"\bchan(?:nel)?\s*(\d+)\s*:\s*(.*?)(?:\s{2,}|\s*from\b|$)", line, re.I):
             name = f"chan {channel[1]}: {channel[2].strip()}"
         found = _BLOCK.match(line)

@@ -5,7 +5,7 @@ Acceleration in gal is count times scale factor, with the mean taken off: the co
 
 import re
 
-from extrados.motions.formats.record import Lines, Record
+from extrados.motions.formats.record import Lines, Record, tidy
 
 HEADER = 17
 
@@ -25,11 +25,11 @@ def read(text: Lines) -> list[Record]:
         return keys[key]
 
     at, said = value("Sampling Freq(Hz)")
-    rate = text.number(re.sub(r"\s*Hz$", "", said, flags=re.I), at)
+    rate = text.number(re.sub(r"\s*Hz$", "", tidy(said), flags=re.I), at)
     if not 0.1 <= rate <= 1e5:
         raise text.error(at, f"the sampling frequency is {rate:g} Hz, expected 0.1 to 100000")
     at, said = value("Scale Factor")
-    scale = re.fullmatch(r"(\S+?)\(gal\)/(\S+)", said)
+    scale = re.fullmatch(r"(\S+?)\(gal\)/(\S+)", tidy(said))
     if not scale:
         raise text.error(at, f"'{said[:30]}' is no scale; expected such as '3920(gal)/6182761'")
     divisor = text.number(scale[2], at)

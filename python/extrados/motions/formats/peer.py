@@ -13,7 +13,7 @@ def recognises(text: Lines) -> bool:
 
 def read(text: Lines) -> list[Record]:
     for at in range(HEADER):
-        line = text[at]
+        line = text.words(at)
         if "NPTS" not in line.upper():
             continue
         named = re.search(r"NPTS\s*=\s*(\d+)\s*,?\s*DT\s*=\s*([^\s,]+)", line, re.I)
@@ -25,7 +25,7 @@ def read(text: Lines) -> list[Record]:
         break
     else:
         raise text.error(0, "a PEER file without its line 'NPTS= 4000, DT= .0100 SEC'")
-    header = " ".join(text[k] for k in range(at + 1)).upper()
+    header = " ".join(text.words(k) for k in range(at + 1)).upper()
     quantity = next((q for q in ("velocity", "displacement") if f"{q.upper()} TIME" in header), "acceleration")
     rows, have = [], 0
     for line, row in text.blanks(at + 1):

@@ -11,6 +11,9 @@ from extrados.schema.files import File
 
 LARGEST = 50_000_000  # bytes: three hours at 200 samples a second, ten times what a record needs
 
+LONGEST_WORDS = 2000  # characters of a header line that are looked at
+LONGEST_NUMBER = 60  # characters
+
 #: Units a file or a deck may name, in SI. gal is cm/s^2.
 ACCELERATION = {"g": 9.80665, "m/s^2": 1.0, "cm/s^2": 0.01, "gal": 0.01, "mm/s^2": 0.001, "in/s^2": 0.0254,
                 "mg": 9.80665e-3}  # fmt: skip
@@ -59,6 +62,10 @@ class Lines:
     def __getitem__(self, at: int) -> str:
         return self.lines[at] if at < len(self.lines) else ""
 
+    def words(self, at: int) -> str:
+        """The line as a header is read; see `tidy`."""
+        return tidy(self[at])
+
     def error(self, at: int, what: str) -> RecordError:
         """A complaint about line `at`."""
         return RecordError(f"{self.path}:{min(at, max(len(self.lines) - 1, 0)) + 1}: {what}")
@@ -72,6 +79,8 @@ class Lines:
     def number(self, token: str, at: int) -> float:
         """A token as a finite number, no NaN, no decimal comma, no Python spelling."""
         token = token.strip()
+        if len(token) > LONGEST_NUMBER:
+            raise self.error(at, f"'{token[:30]}...' has {len(token)} characters, a number at most {LONGEST_NUMBER}")
         if not _NUMBER.match(token):
             hint = "; the decimal sign is a point" if re.fullmatch(r"[+-]?\d*,\d+", token) else ""
             raise self.error(at, f"'{token[:30]}' is not a number{hint}")
@@ -96,7 +105,7 @@ class Lines:
     def numbers(self, rows: list[tuple[int, list[str]]]) -> np.ndarray:
         """All tokens of (line, tokens) rows as one array; the first bad token is named with its line."""
         tokens = [token for _, row in rows for token in row]
-        if all(map(_PLAIN.match, tokens)):
+        if all(map(_PLAIN.match, tokens)) and max(map(len, tokens), default=0) <= LONGEST_NUMBER:
             try:
                 values = np.array(tokens, dtype=float)
                 if np.isfinite(values).all():
@@ -148,6 +157,15 @@ class Lines:
         ]
 
 
+def tidy(text: str) -> str:
+    """Words of a header, their first LONGEST_WORDS characters, with at most two blanks between.
+
+    What is looked for in headers is looked for again from every place where it might begin: without a bound the time
+    would grow with the square of a line of blanks.
+    """
+    return re.sub(r"\s{3,}", "  ", text[: 100 * LONGEST_WORDS])[:LONGEST_WORDS]
+
+
 def read_file(file: str | Path, folder: Path | None = None, largest: int = LARGEST) -> File:
     """The file that a deck in `folder` names, or the one at a path; RecordError where it cannot be read."""
     try:
@@ -184,7 +202,7 @@ def said_in(lines: list[str]) -> tuple[str, str]:
 
 def fortran_columns(text: str) -> tuple[int, int] | None:
     """(columns, width) of a Fortran format such as (8F10.5), 8E10.4 or (10I8) in a text; None if there is none."""
-    found = re.search(r"\(\s*(\d{1,2})\s*[FEGDI]\s*(\d{1,2})(?:\.\d+)?\s*\)", text, re.I)
+    found = re.search(r"\(\s*(\d{1,2})\s*[FEGDI]\s*(\d{1,2})(?:\.\d+)?\s*\)", tidy(text), re.I)
     return (int(found[1]), int(found[2])) if found and int(found[1]) and int(found[2]) else None
 
 
@@ -207,7 +225,7 @@ def time_unit_in(name: str) -> str | None:
 
 def unit_in(text: str, quantity: str = "acceleration") -> str | None:
     """The unit that a header text names, or None."""
-    low = text.lower()
+    low = tidy(text).lower()
     second = r"\s*/\s*(?:s(?:ec)?\s*(?:\^|\*\*)?\s*2|s(?:ec)?\s*[/*.]\s*s(?:ec)?|s²|sec\^?2)"
     if quantity == "acceleration":
         for length in ("cm", "mm", "in", "m"):

@@ -13,7 +13,7 @@ _QUANTITY = {"VELOCITY": ("velocity", "cm/s"), "DISPLACEMENT": ("displacement", 
 
 
 def recognises(text: Lines) -> bool:
-    return text[1].strip().startswith("*") and re.match(r"\s*(?:\d\s+\S|\*)", text[0]) is not None
+    return text[1].strip().startswith("*") and re.match(r"\s*(?:\d\s+\S|\*)", text.words(0)) is not None
 
 
 def read(text: Lines) -> list[Record]:
@@ -32,7 +32,7 @@ def read(text: Lines) -> list[Record]:
     values, _ = text.fixed(at + comments, count, 10, 8)
     if (abs(values) >= _MISSING).any():
         raise text.error(at + comments, "holds values marked as missing")
-    found = re.search(r"component\s*=\s*(\S+)", text[5])
+    found = re.search(r"component\s*=\s*(\S+)", text.words(5))
     _, station = said_in(text.lines[:11])
     event = " ".join(text[3].split())
     component = found[1] if found else ""

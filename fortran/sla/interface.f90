@@ -1,0 +1,661 @@
+!> Interfaces of no thickness: joints that open, slide and crush.
+!>
+!> An element is a stretch of a joint, nodes 1 to 2 along its lower and 3 to 4 back along its upper side, with one
+!> integration point at each pair of nodes; that of a pair between two elements stands in one of them. Across the joint
+!> acts sigma (tension positive), along it tau, by the jumps dn and ds of the displacements. Every limit is linear in
+!> the load multiplier:
+!>   tension      sigma <= f                  teeth of a softening law whose strain is the opening (band 1)
+!>   compression  -sigma <= fc                teeth of one whose strain is the shortening
+!>   sliding      |tau| <= c1 - mu sigma      before the first slip, c1 the first tooth of the cohesion
+!>                |tau_c| <= c_i              after it: teeth of a law whose strain is the slip, energy of mode II
+!>                |tau_f| <= -mu sigma        its friction, beside the cohesion: tau = tau_c + tau_f
+!> Where friction sticks it is elastic, with what stiffness the cohesion has lost. Where it slides it is a force h that
+!> is held, without stiffness, and changes with the multiplier as the strength did when it was set; it is set anew
+!> where it differs from the strength by more than the ripple of friction. Slip that turns back sticks.
+!>
+!> Cohesion and tension are one bond: the same part of both is left (Lourenco and Rots 1997). The split of a bond and a
+!> slider is that of Alfano and Sacco (2006), but that here friction helps from the start, as in Coulomb's law.
+!>
+!> Cracked joints close again with their initial normal stiffness. What opens without strength, and what closes, does so
+!> at zero stress; a joint that closes sticks where it touches.
+module sla_interface
+   use common_kinds, only : wp
+   use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression, &
+      code_close => sla_event_close, code_open => sla_event_open, code_wear => sla_event_wear, &
+      code_slide => sla_event_slide, code_follow => sla_event_follow, code_stick => sla_event_stick
+   use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
+   use sla_group, only : point_group, scan_result, event_vectors, material_options, unbounded, linear_bound, offer_hi
+   use sla_tables, only : tooth_tables
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: interface_group, interface_group_new, joint_law
+
+   !> How the friction of a closed point is
+   integer(c_int), parameter :: sticks = 0, slides_up = 1, slides_down = 2
+   !> Below this strength, over the stress that counts as small, friction is none until it is twice as much
+   real(wp), parameter :: least_friction = 10.0_wp
+   !> Slip back that counts as sticking, over the ripple and the elastic slip of the friction: more than the friction
+   !> may lag behind the normal stress, which would else stick what slides on as soon as it follows
+   real(wp), parameter :: turned = 4.0_wp
+   !> Shear stiffness left where friction slides, over the initial one: a stone that slides at all of its points must
+   !> not be lost before those that it drags back stick
+   real(wp), parameter :: least_rest = 1.0e-9_wp
+   !> A held force is changed beside a stiffness of this part of the initial one, that changes by a hundredth
+   real(wp), parameter :: hundredth = 0.01_wp
+
+   !> What the joints of a group are made of, each (elements)
+   type :: joint_law
+      real(wp), allocatable :: kn(:)            !! normal stiffness [Pa/m]
+      real(wp), allocatable :: ks(:)            !! shear stiffness [Pa/m]
+      real(wp), allocatable :: friction(:)      !! coefficient; negative: no sliding
+      real(wp), allocatable :: small(:)         !! stress that counts as small [Pa]
+      integer(c_int), allocatable :: table(:)   !! tension teeth; 0 none: no limit, or none left where dry
+      integer(c_int), allocatable :: crush_table(:)
+      integer(c_int), allocatable :: slip_table(:)   !! teeth of the cohesion, 0 none
+      integer(c_int), allocatable :: dry(:)     !! 1: no tensile strength
+      real(wp) :: ripple = 0.02_wp              !! by which sliding friction may differ from its strength
+   end type joint_law
+
+   type, extends(point_group) :: interface_group
+      type(joint_law) :: law
+      type(tooth_tables) :: teeth
+      real(wp), allocatable :: normal(:, :)      !! (2, elements) from the lower to the upper side
+      real(wp), allocatable :: area(:)           !! (points) [m^2]
+      ! The damage: everything else follows from it.
+      integer(c_int), allocatable :: tooth(:)    !! of tension, 1 virgin
+      integer(c_int), allocatable :: crush(:)    !! of compression, 1 virgin
+      integer(c_int), allocatable :: slip(:)     !! of the cohesion, 1 virgin
+      integer(c_int), allocatable :: shut(:)     !! 1 closed; of cracked points
+      integer(c_int), allocatable :: changes(:)  !! openings and closings
+      integer(c_int), allocatable :: mode(:)     !! sticks, slides_up, slides_down
+      integer(c_int), allocatable :: even(:)     !! 0 or 1, changes with the held force
+      real(wp), allocatable :: start(:)          !! slip from which the cohesion counts its own [m]
+      real(wp), allocatable :: mark(:)           !! where friction sticks: slip without it; where it slides: so far [m]
+      real(wp), allocatable :: held(:, :)        !! (2, points) friction where it slides: constant, per multiplier [Pa]
+   contains
+      procedure :: matrix
+      procedure :: force
+      procedure :: scan
+      procedure :: damage
+      procedure :: report
+      procedure :: state
+      procedure :: origins
+   end type interface_group
+
+   !> The law along the joint, tau = k ds - k0 + h; its elastic energy is k ds^2 / 2 - k0 ds + e0
+   type :: line
+      real(wp) :: k = 0.0_wp      !! [Pa/m]
+      real(wp) :: k0 = 0.0_wp     !! [Pa]
+      real(wp) :: e0 = 0.0_wp     !! [J/m^2]
+      real(wp) :: h(2) = 0.0_wp   !! constant and per unit multiplier [Pa]
+   end type line
+
+contains
+
+   !> A group of joints without damage
+   subroutine interface_group_new(area, normal, law, teeth, options, group, bad, status)
+      real(wp), intent(in) :: area(:, :)           !! (2, elements) of the points [m^2]; 0: in the next element
+      real(wp), intent(in) :: normal(:, :)         !! (2, elements) unit vectors from the lower to the upper side
+      type(joint_law), intent(in) :: law
+      type(tooth_tables), intent(in) :: teeth
+      type(material_options), intent(in) :: options
+      type(interface_group), intent(out) :: group
+      integer(c_int), intent(out) :: bad           !! element without area or normal, 1-based
+      integer(c_int), intent(out) :: status
+      integer :: e, n, p, info
+
+      n = size(area, 2)
+      bad = 0
+      status = status_out_of_memory
+      group%elements = n
+      group%points = 2 * n
+      group%freedoms = 8
+      group%directions = 1
+      group%options = options
+      group%teeth = teeth
+      group%law = law
+      allocate (group%normal(2, n), group%area(2 * n), group%tooth(2 * n), group%crush(2 * n), group%slip(2 * n), &
+         group%shut(2 * n), group%changes(2 * n), group%mode(2 * n), group%even(2 * n), group%start(2 * n), &
+         group%mark(2 * n), group%held(2, 2 * n), stat=info)
+      if (info /= 0) return
+      group%normal(:, :) = normal
+      group%crush = 1
+      group%changes = 0
+      group%mode = sticks
+      group%even = 0
+      group%start = 0.0_wp
+      group%mark = 0.0_wp
+      group%held = 0.0_wp
+      do e = 1, n
+         if (.not. all(area(:, e) >= 0.0_wp) .or. .not. any(area(:, e) > 0.0_wp) .or. &
+             .not. abs(norm2(normal(:, e)) - 1.0_wp) < 1.0e-9_wp) then
+            bad = int(e, c_int)
+            status = status_bad_geometry
+            return
+         end if
+         group%area(2 * e - 1:2 * e) = area(:, e)
+         do p = 2 * e - 1, 2 * e
+            group%tooth(p) = merge(2_c_int, 1_c_int, law%dry(e) /= 0)
+            group%shut(p) = merge(1_c_int, 0_c_int, law%dry(e) /= 0)
+            group%slip(p) = merge(2_c_int, 1_c_int, law%slip_table(e) == 0)
+         end do
+      end do
+      status = status_ok
+   end subroutine interface_group_new
+
+   !> The freedoms of a point: of its node below, then of the one above
+   pure function freedoms_of(p) result(at)
+      integer, intent(in) :: p
+      integer :: at(4)
+      at = merge([1, 2, 7, 8], [3, 4, 5, 6], mod(p, 2) == 1)
+   end function freedoms_of
+
+   !> Jumps of the displacements across and along the joint [m]
+   pure function jump(group, e, p, local) result(d)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: local(:)
+      real(wp) :: d(2), u(2)
+      integer :: at(4)
+      at = freedoms_of(p)
+      u = local(at(3:4)) - local(at(1:2))
+      associate (n => group%normal(:, e))
+         d = [n(1) * u(1) + n(2) * u(2), n(2) * u(1) - n(1) * u(2)]
+      end associate
+   end function jump
+
+   !> Nodal vector of the element whose product with the displacements is v(1) dn + v(2) ds
+   pure function nodal(group, e, p, v) result(local)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: v(2)
+      real(wp) :: local(8), u(2)
+      integer :: at(4)
+      at = freedoms_of(p)
+      associate (n => group%normal(:, e))
+         u = [n(1) * v(1) + n(2) * v(2), n(2) * v(1) - n(1) * v(2)]
+      end associate
+      local = 0.0_wp
+      local(at(1:2)) = -u
+      local(at(3:4)) = u
+   end function nodal
+
+   !> True where the joint presses or has never cracked
+   pure function is_closed(group, p) result(closed)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: p
+      logical :: closed
+      closed = group%tooth(p) == 1 .or. group%shut(p) /= 0
+   end function is_closed
+
+   !> Stiffness of the bond along the joint [Pa/m]
+   pure function bond(group, e, p) result(k)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp) :: k
+      k = 0.0_wp
+      if (group%law%slip_table(e) /= 0) then
+         k = group%teeth%modulus_of(group%law%slip_table(e), group%slip(p), group%law%ks(e), 0.0_wp)
+      end if
+   end function bond
+
+   !> Secant stiffness across the joint [Pa/m]
+   pure function across(group, e, p) result(k)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp) :: k, open
+      associate (law => group%law, floor => group%options%floor)
+         k = group%teeth%modulus_of(law%crush_table(e), group%crush(p), law%kn(e), floor)
+         if (is_closed(group, p)) return
+         open = floor * law%kn(e)
+         if (law%table(e) /= 0) open = group%teeth%modulus_of(law%table(e), group%tooth(p), law%kn(e), floor)
+         k = min(k, open)
+      end associate
+   end function across
+
+   !> The law along the joint as it stands
+   pure function along(group, e, p) result(law)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      type(line) :: law
+      real(wp) :: k
+      real(wp) :: rest
+      rest = group%options%floor
+      if (is_closed(group, p)) rest = max(rest, least_rest)
+      rest = rest * group%law%ks(e) * (1.0_wp + hundredth * real(group%even(p), wp))
+      associate (ks => group%law%ks(e))
+         if (group%law%friction(e) < 0.0_wp) then
+            law = line(k=ks)
+            return
+         end if
+         k = bond(group, e, p)
+         law = line(k + rest, k * group%start(p), 0.5_wp * k * group%start(p)**2)
+         if (.not. is_closed(group, p)) return
+         if (group%mode(p) == sticks) then
+            law%k = ks + rest
+            law%k0 = law%k0 + (ks - k) * group%mark(p)
+            law%e0 = law%e0 + 0.5_wp * (ks - k) * group%mark(p)**2
+         else
+            law%h = group%held(:, p)
+         end if
+      end associate
+   end function along
+
+   !> Part of a strength that is left, 1 before the first tooth has passed
+   pure function left(teeth, table, tooth) result(part)
+      type(tooth_tables), intent(in) :: teeth
+      integer(c_int), intent(in) :: table, tooth
+      real(wp) :: part, strength
+      part = 1.0_wp
+      if (tooth == 1) return
+      part = 0.0_wp
+      if (table == 0) return
+      strength = teeth%strength_of(table, tooth, 1.0_wp)
+      if (strength < unbounded) part = strength / teeth%strength_of(table, 1_c_int, 1.0_wp)
+   end function left
+
+   pure subroutine matrix(group, element, k)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: element
+      real(wp), intent(out) :: k(:, :)
+      real(wp) :: n(8), t(8), kn, kt
+      type(line) :: law
+      integer :: p, i
+      k = 0.0_wp
+      do p = 2 * element - 1, 2 * element
+         law = along(group, element, p)
+         kn = group%area(p) * across(group, element, p)
+         kt = group%area(p) * law%k
+         n = nodal(group, element, p, [1.0_wp, 0.0_wp])
+         t = nodal(group, element, p, [0.0_wp, 1.0_wp])
+         do i = 1, 8
+            k(1:8, i) = k(1:8, i) + kn * n * n(i) + kt * t * t(i)
+         end do
+      end do
+   end subroutine matrix
+
+   pure subroutine force(group, u, f)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: u(0:)
+      real(wp), intent(inout) :: f(0:)
+      real(wp) :: local(8), d(2)
+      type(line) :: law
+      integer :: e, p
+      do e = 1, group%elements
+         call group%gather(e, u, local)
+         do p = 2 * e - 1, 2 * e
+            law = along(group, e, p)
+            d = jump(group, e, p, local)
+            call add(group, e, p, [across(group, e, p) * d(1), law%k * d(2)], f)
+         end do
+      end do
+   end subroutine force
+
+   !> Add the forces of the stresses s of a point
+   pure subroutine add(group, e, p, s, f)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: s(2)      !! sigma, tau [Pa]
+      real(wp), intent(inout) :: f(0:)
+      real(wp) :: part(8)
+      integer :: i
+      part = nodal(group, e, p, group%area(p) * s)
+      do i = 1, 8
+         f(group%equation(i, e)) = f(group%equation(i, e)) + part(i) * group%factor(i, e)
+      end do
+   end subroutine add
+
+   !> Forces and energy of springs that do not begin at zero slip, and forces of sliding friction
+   pure subroutine origins(group, springs, held, energy)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(inout) :: springs(0:)
+      real(wp), intent(inout) :: held(0:, :)
+      real(wp), intent(inout) :: energy
+      type(line) :: law
+      integer :: e, p, i
+      do p = 1, group%points
+         e = (p + 1) / 2
+         law = along(group, e, p)
+         energy = energy + group%area(p) * law%e0
+         if (abs(law%k0) > 0.0_wp) call add(group, e, p, [0.0_wp, law%k0], springs)
+         do i = 1, 2
+            if (abs(law%h(i)) > 0.0_wp) call add(group, e, p, [0.0_wp, -law%h(i)], held(:, i))
+         end do
+      end do
+   end subroutine origins
+
+   pure subroutine scan(group, first, last, ua, ub, lambda, noise, found)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(inout) :: found
+      real(wp) :: la(8), lb(8)
+      integer :: e, p
+      do e = first, last
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         do p = 2 * e - 1, 2 * e
+            if (group%area(p) > 0.0_wp) call scan_point(group, e, p, jump(group, e, p, la), jump(group, e, p, lb), &
+               lambda, noise, found)
+         end do
+      end do
+   end subroutine scan
+
+   !> Limits of one point from its jumps
+   pure subroutine scan_point(group, e, p, da, db, lambda, noise, found)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: da(2)       !! constant loads [m]
+      real(wp), intent(in) :: db(2)       !! per unit multiplier [m]
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      type(scan_result), intent(inout) :: found
+      real(wp) :: f, mu, sa, sb, scale, k, ta, tb, fall
+      integer :: side
+
+      associate (law => group%law, kn => group%law%kn(e), ks => group%law%ks(e))
+         k = across(group, e, p)
+         sa = k * da(1)
+         sb = k * db(1)
+         f = group%teeth%strength_of(law%crush_table(e), group%crush(p), 1.0_wp)
+         if (f < unbounded) call linear_bound(-sa, -sb, f, f, lambda, noise, p, code_compression, found)
+         scale = law%small(e)
+         if (is_closed(group, p) .and. group%tooth(p) > 1) then
+            call linear_bound(sa, sb, 0.0_wp, scale, lambda, noise, p, code_open, found)
+         else
+            f = group%teeth%strength_of(law%table(e), group%tooth(p), 1.0_wp)
+            if (f < unbounded) call linear_bound(sa, sb, f, f, lambda, noise, p, code_tension, found)
+            ! Measured by the jump: the stress that an open joint has left drowns in rounding.
+            if (group%tooth(p) > 1 .and. group%changes(p) < group%options%most_changes) then
+               call linear_bound(-kn * da(1), -kn * db(1), 0.0_wp, scale, lambda, noise, p, code_close, found)
+            end if
+         end if
+         mu = law%friction(e)
+         if (mu < 0.0_wp) return
+         k = bond(group, e, p)
+         f = group%teeth%strength_of(law%slip_table(e), group%slip(p), 1.0_wp)
+         do side = 1, -1, -2
+            if (group%slip(p) == 1) then
+               call linear_bound(side * ks * da(2) + mu * sa, side * ks * db(2) + mu * sb, f, f, lambda, noise, p, &
+                  code_wear, found)
+            else if (f < unbounded) then
+               call linear_bound(side * k * (da(2) - group%start(p)), side * k * db(2), f, f, lambda, noise, p, &
+                  code_wear, found)
+            end if
+         end do
+         if (group%slip(p) == 1 .or. .not. is_closed(group, p)) return
+         if (law%slip_table(e) == 0 .and. group%tooth(p) == 1) return   ! mortar of which no cohesion is given holds
+         ta = (ks - k) * (da(2) - group%mark(p))
+         tb = (ks - k) * db(2)
+         if (group%mode(p) == sticks) then
+            do side = 1, -1, -2
+               call reach(side * tb + mu * sb, scale - side * ta - mu * sa, lambda, noise, p, code_slide, found)
+            end do
+            return
+         end if
+         ! Friction that slides, less its strength, both linear in the multiplier
+         side = merge(1, -1, group%mode(p) == slides_up)
+         k = side * (group%held(1, p) + lambda * group%held(2, p))
+         f = max(k, 0.0_wp) * law%ripple + scale
+         ta = side * group%held(1, p) + mu * sa
+         fall = side * group%held(2, p) + mu * sb
+         if (k > 0.0_wp) then
+            call reach(fall, f - ta, lambda, noise, p, code_follow, found)
+         else
+            f = 2.0_wp * least_friction * scale
+         end if
+         call reach(-fall, f + ta, lambda, noise, p, code_follow, found)
+         ta = (ks - bond(group, e, p)) * (da(2) - group%mark(p))
+         call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, lambda, noise, p, &
+            code_stick, found)
+      end associate
+   end subroutine scan_point
+
+   !> What grows by `rate` per unit multiplier reaches `room` as the load grows, or at once where it is beyond: it never
+   !> asks for less load than there is. A load that falls for the next tooth is the method's, no reversal.
+   pure subroutine reach(rate, room, lambda, noise, point, code, found)
+      real(wp), intent(in) :: rate     !! [Pa]
+      real(wp), intent(in) :: room     !! [Pa]
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      integer, intent(in) :: point, code
+      type(scan_result), intent(inout) :: found
+      if (rate > noise) call offer_hi(found, max(room / rate, lambda), point, code)
+   end subroutine reach
+
+   pure subroutine damage(group, point, code, lambda, ua, ub, event, tooth)
+      class(interface_group), intent(inout) :: group
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      type(event_vectors), intent(out) :: event
+      integer, intent(out) :: tooth
+      real(wp) :: local(8), other(8), d(2), normal(2), strength, change, rate
+      type(line) :: old, new
+      integer :: e, p
+
+      p = point
+      e = (p + 1) / 2
+      call group%gather(e, ua, local)
+      call group%gather(e, ub, other)
+      d = jump(group, e, p, local + lambda * other)
+      normal(1) = across(group, e, p)
+      old = along(group, e, p)
+      associate (law => group%law)
+         strength = max(-law%friction(e) * normal(1) * d(1), 0.0_wp)
+         rate = -law%friction(e) * normal(1) * across_rate(group, e, p, other)
+         tooth = 0
+         select case (code)
+         case (code_tension)
+            group%tooth(p) = group%tooth(p) + 1_c_int
+            group%shut(p) = 0
+            if (law%slip_table(e) /= 0) call wear_with(group%teeth, law%table(e), group%tooth(p), law%slip_table(e), &
+               group%slip(p))
+            tooth = int(group%tooth(p))
+         case (code_compression)
+            group%crush(p) = group%crush(p) + 1_c_int
+            tooth = int(group%crush(p))
+         case (code_open, code_close)
+            group%shut(p) = merge(1_c_int, 0_c_int, code == code_close)
+            group%changes(p) = group%changes(p) + 1_c_int
+            group%mode(p) = sticks
+            group%mark(p) = d(2)
+            group%held(:, p) = 0.0_wp
+            tooth = int(group%changes(p))
+         case (code_wear)
+            if (group%slip(p) == 1) then
+               ! The first slip: friction carries what it can, the cohesion the rest, at the slip of its own law
+               group%mode(p) = merge(slides_up, slides_down, d(2) > 0.0_wp)
+               call hold(group, p, sign(strength, d(2)), sign(rate, d(2) * rate), lambda)
+               group%start(p) = sign(strength, d(2)) / law%ks(e)
+               group%mark(p) = d(2)
+            end if
+            group%slip(p) = group%slip(p) + 1_c_int
+            if (group%mode(p) == sticks) then   ! friction keeps its force, with more stiffness
+               change = (law%ks(e) - bond_of(group, e, group%slip(p) - 1_c_int)) * (d(2) - group%mark(p))
+               group%mark(p) = d(2) - change / (law%ks(e) - bond(group, e, p))
+            end if
+            if (law%table(e) /= 0) then
+               call wear_with(group%teeth, law%slip_table(e), group%slip(p), law%table(e), group%tooth(p))
+               if (group%tooth(p) > 1 .and. d(1) <= 0.0_wp) group%shut(p) = 1
+            end if
+            tooth = int(group%slip(p))
+         case (code_slide)
+            change = (law%ks(e) - bond(group, e, p)) * (d(2) - group%mark(p))
+            group%mode(p) = merge(slides_up, slides_down, change > 0.0_wp)
+            call hold(group, p, change, sign(rate, change * rate), lambda)
+            group%mark(p) = d(2)
+         case (code_follow)
+            change = merge(1.0_wp, -1.0_wp, group%mode(p) == slides_up)
+            if (strength <= least_friction * law%small(e)) change = 0.0_wp
+            call hold(group, p, change * strength, change * rate, lambda)
+            if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), d(2))
+            if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), d(2))
+         case default
+            change = group%held(1, p) + lambda * group%held(2, p)
+            group%mark(p) = d(2) - change / (law%ks(e) - bond(group, e, p))
+            group%mode(p) = sticks
+            group%held(:, p) = 0.0_wp
+         end select
+      end associate
+      new = along(group, e, p)
+      if (any(abs(new%h - old%h) > 0.0_wp) .or. abs(new%k0 - old%k0) > 0.0_wp) then
+         if (.not. abs(new%k - old%k) > 0.0_wp) then
+            group%even(p) = 1_c_int - group%even(p)
+            new = along(group, e, p)
+         end if
+      end if
+      normal(2) = across(group, e, p)
+      change = normal(1) - normal(2)
+      if (abs(change) > 0.0_wp) call add_vector(group, e, p, [1.0_wp, 0.0_wp], change, event)
+      change = old%k - new%k
+      if (.not. abs(change) > 0.0_wp) return
+      call add_vector(group, e, p, [0.0_wp, 1.0_wp], change, event)
+      associate (r => event%rank, share => sqrt(group%area(p) / abs(change)))
+         event%origin(r) = event%sign(r) * share * (old%k0 - new%k0)
+         event%hold(:, r) = event%sign(r) * share * (new%h - old%h)
+         event%shift = group%area(p) * (new%e0 - old%e0)
+      end associate
+   end subroutine damage
+
+   !> Rate of the opening, per unit multiplier [m]
+   pure function across_rate(group, e, p, local) result(rate)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: local(:)
+      real(wp) :: rate, d(2)
+      d = jump(group, e, p, local)
+      rate = d(1)
+   end function across_rate
+
+   !> Friction that has a value at a multiplier and changes with it
+   pure subroutine hold(group, p, stress, rate, lambda)
+      class(interface_group), intent(inout) :: group
+      integer, intent(in) :: p
+      real(wp), intent(in) :: stress      !! [Pa]
+      real(wp), intent(in) :: rate        !! per unit multiplier [Pa]
+      real(wp), intent(in) :: lambda
+      group%held(:, p) = [stress - lambda * rate, rate]
+   end subroutine hold
+
+   !> One more vector of the change of a stiffness, softening where it is positive
+   pure subroutine add_vector(group, e, p, v, change, event)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: v(2)
+      real(wp), intent(in) :: change       !! [Pa/m]
+      type(event_vectors), intent(inout) :: event
+      event%rank = event%rank + 1
+      event%sign(event%rank) = sign(1.0_wp, change)
+      call group%spread(e, sqrt(group%area(p) * abs(change)) * nodal(group, e, p, v), event, event%rank)
+   end subroutine add_vector
+
+   !> Stiffness of the bond at a tooth [Pa/m]
+   pure function bond_of(group, e, tooth) result(k)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e
+      integer(c_int), intent(in) :: tooth
+      real(wp) :: k
+      k = group%teeth%modulus_of(group%law%slip_table(e), tooth, group%law%ks(e), 0.0_wp)
+   end function bond_of
+
+   !> Bring a strength to the tooth at which no more of it is left than of the other
+   pure subroutine wear_with(teeth, table, tooth, its_table, its_tooth)
+      type(tooth_tables), intent(in) :: teeth
+      integer(c_int), intent(in) :: table, tooth        !! of the strength that fell
+      integer(c_int), intent(in) :: its_table           !! of the one that follows
+      integer(c_int), intent(inout) :: its_tooth
+      do while (left(teeth, its_table, its_tooth) > left(teeth, table, tooth))
+         its_tooth = its_tooth + 1_c_int
+      end do
+   end subroutine wear_with
+
+   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held friction, constant and per multiplier, over the shear
+   !> stiffness [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion, 6 compression tooth,
+   !> 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
+   pure subroutine state(group, store, values)
+      class(interface_group), intent(inout) :: group
+      logical, intent(in) :: store
+      real(wp), intent(inout) :: values(:, :)
+      real(wp) :: ks(group%points)
+      integer :: p
+      ks = [(group%law%ks((p + 1) / 2), p=1, group%points)]
+      if (store) then
+         values(1, :) = group%start
+         values(2, :) = group%held(1, :) / ks
+         values(3, :) = merge(1.0_wp, 0.0_wp, group%tooth > 1)
+         values(4, :) = real(group%tooth, wp)
+         values(5, :) = real(group%slip, wp)
+         values(6, :) = real(group%crush, wp)
+         values(7, :) = group%held(2, :) / ks
+         values(8, :) = real(group%shut, wp)
+         values(9, :) = group%mark
+         values(10, :) = real(group%changes, wp)
+         values(11, :) = real(group%mode + 4_c_int * group%even, wp)
+      else
+         group%start(:) = values(1, :)
+         group%held(1, :) = values(2, :) * ks
+         group%held(2, :) = values(7, :) * ks
+         group%tooth(:) = nint(values(4, :), c_int)
+         group%slip(:) = nint(values(5, :), c_int)
+         group%crush(:) = nint(values(6, :), c_int)
+         group%shut(:) = nint(values(8, :), c_int)
+         group%mark(:) = values(9, :)
+         group%changes(:) = nint(values(10, :), c_int)
+         group%mode(:) = mod(nint(values(11, :), c_int), 4_c_int)
+         group%even(:) = min(nint(values(11, :), c_int) / 4_c_int, 1_c_int)
+      end if
+   end subroutine state
+
+   !> Rows as of a plane point: jumps [m] for strains, 1 across and 3 along the joint; 4 sigma, 6 tau; 7-8 the normal;
+   !> 9 and 10 the stiffness left across and along; 11 tension tooth, 12 tooth of the cohesion; 15 area;
+   !> 19 the band of its tooth tables [m]
+   pure subroutine report(group, ua, ub, lambda, noise, values)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: noise
+      real(wp), intent(out) :: values(:, :)     !! (report_rows, points)
+      real(wp) :: la(8), lb(8), da(2), db(2), k
+      type(line) :: law
+      type(scan_result) :: found
+      integer :: e, p
+      values = 0.0_wp
+      do e = 1, group%elements
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         do p = 2 * e - 1, 2 * e
+            k = across(group, e, p)
+            law = along(group, e, p)
+            da = jump(group, e, p, la)
+            db = jump(group, e, p, lb)
+            values(1:3:2, p) = da + lambda * db
+            values(4, p) = k * values(1, p)
+            values(6, p) = law%k * values(3, p) - law%k0 + law%h(1) + lambda * law%h(2)
+            values(7:8, p) = group%normal(:, e)
+            values(9, p) = k / group%law%kn(e)
+            values(10, p) = law%k / group%law%ks(e)
+            values(11, p) = real(group%tooth(p), wp)
+            values(12, p) = real(group%slip(p), wp)
+            found = scan_result()
+            call scan_point(group, e, p, da, db, lambda, noise, found)
+            values(13:14, p) = [found%lo%value, found%hi%value]
+            if (found%empty%point /= 0) values(13:14, p) = [unbounded, -unbounded]
+            values(15, p) = group%area(p)
+            values(16, p) = real(group%crush(p), wp)
+            values(17, p) = 1.0_wp
+            values(18, p) = real(group%shut(p), wp)
+            values(19, p) = 1.0_wp
+         end do
+      end do
+   end subroutine report
+
+end module sla_interface

@@ -1,0 +1,83 @@
+"""Trains of axles and even loads: those of EN 1991-2, and what a deck gives."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.limit.tables import MovingLoad
+
+KN = 1e3
+FOR_EVER = 1e6  # m: even loads without an end
+
+
+@dataclass(frozen=True)
+class Train:
+    """Loads that move together; places behind the first axle [m].
+
+    axles (n) with their forces (n) [N]; even loads (k, 3): from, to [m], load [N/m]. known: false where only the
+    shares of a load are given, which then add up to one.
+    """
+
+    name: str
+    axles: np.ndarray
+    forces: np.ndarray
+    even: np.ndarray
+    known: bool
+
+    @property
+    def length(self) -> float:
+        """From its front to its rear, but for even loads without an end [m]."""
+        ends = [*self.axles, *self.even[:, :2].ravel()]
+        within = [x for x in ends if abs(x) < FOR_EVER]
+        return max(within) if within else 0.0
+
+
+def train_of(options: MovingLoad, depth: float) -> Train:
+    """The train of a deck on a structure of a depth [m], without partial factors; Refused where it does not fit."""
+    none = np.empty((0, 3))
+    if options.train is None:
+        even = np.array(
+            [
+                (
+                    -FOR_EVER if u.start is None else u.start,
+                    FOR_EVER if u.stop is None else u.stop,
+                    options.alpha * u.load,
+                )
+                for u in options.uniform
+            ]
+        ).reshape(-1, 3)
+        axles = np.array(options.axles, dtype=float)
+        if options.axle_loads is not None or options.uniform:
+            loads = options.alpha * np.array(options.axle_loads or [], dtype=float)
+            return Train("train", axles, loads, even, True)
+        shares = np.array(options.shares or np.ones(len(axles)))
+        shares = shares / shares.sum()
+        if options.force is None:
+            return Train("load", axles, shares, none, False)
+        return Train("load", axles, options.alpha * options.force * shares, none, True)
+    if options.train == "LM1":
+        axle, even_load = _lm1(options.width or depth, options.lanes)
+        axles, forces = np.array([0.0, 1.2]), np.full(2, axle)
+        even = np.array([[-FOR_EVER, FOR_EVER, even_load]])
+    elif options.train == "LM71":  # Figure 6.1
+        axles, forces = np.array([0.0, 1.6, 3.2, 4.8]), np.full(4, 250.0 * KN)
+        even = np.array([[-FOR_EVER, -0.8, 80.0 * KN], [5.6, FOR_EVER, 80.0 * KN]])
+    else:  # Figure 6.2, Table 6.1
+        load, long, gap = {"SW/0": (133.0, 15.0, 5.3), "SW/2": (150.0, 25.0, 7.0)}[options.train]
+        axles, forces = np.empty(0), np.empty(0)
+        even = np.array([[0.0, long, load * KN], [long + gap, 2.0 * long + gap, load * KN]])
+    even = even * (1.0, 1.0, options.alpha)
+    return Train(options.train, axles, options.alpha * forces, even, True)
+
+
+def _lm1(width: float, lanes: int | None) -> tuple[float, float]:
+    """Weight of an axle of the tandem systems [N] and even load [N/m] of LM1 over a carriageway [m] (Tables 4.1, 4.2)."""
+    most = 1 if width < 5.4 else 2 if width < 6.0 else int(width / 3.0)
+    if lanes is not None and lanes > most:
+        raise Refused(f"lanes: a carriageway of {width:g} m holds {most}, not {lanes} (EN 1991-2 Table 4.1)")
+    count = most if lanes is None else lanes
+    lane = min(width, 0.5 * width if 5.4 <= width < 6.0 else 3.0)
+    axle = sum((300.0, 200.0, 100.0)[:count])
+    even = 9.0 * lane + 2.5 * (width - lane if lanes is None else (count - 1) * lane)
+    return axle * KN, even * KN

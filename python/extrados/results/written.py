@@ -1,0 +1,123 @@
+"""Which files of a folder extrados wrote: they alone, and only while nobody has changed them, are replaced or removed.
+
+A hidden list in the folder holds the checksums.
+"""
+
+import contextlib
+import hashlib
+import itertools
+import json
+import os
+import stat
+from collections.abc import Iterator
+from pathlib import Path
+
+from extrados.schema import files
+
+LIST = ".written.json"
+
+
+def sum_of(content: bytes) -> str:
+    """The checksum by which a file is known again."""
+    return hashlib.sha256(content).hexdigest()
+
+
+def sums_of(folder: Path) -> dict[str, str]:
+    """The checksums of all files below a folder by their place in it."""
+    return {
+        path.relative_to(folder).as_posix(): sum_of(path.read_bytes())
+        for path in sorted(folder.rglob("*")) if path.is_file() and path.name != LIST
+    }  # fmt: skip
+
+
+def noted(folder: Path) -> dict[str, list[str]]:
+    """The checksums that each file of a folder may have and still be ours; none where there is no sound list."""
+    try:
+        found = json.loads(files.read(LIST, 50_000_000, folder).text())["files"]
+        return {str(name): [str(value) for value in values] for name, values in found.items()}
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return {}
+
+
+def note(folder: Path, *sums: dict[str, str]) -> None:
+    """Keep the list of what was written into a folder; a file of several checksums may have any of them."""
+    names = sorted({name for one in sums for name in one})
+    listed = {name: sorted({one[name] for one in sums if name in one}) for name in names}
+    fresh = folder / f"{LIST}.new"
+    fresh.write_text(json.dumps({"about": "checksums of what extrados wrote here", "files": listed}), encoding="utf-8")
+    fresh.replace(folder / LIST)
+
+
+def is_ours(folder: Path, name: str, known: dict[str, list[str]]) -> bool:
+    """Whether extrados wrote a file of the folder and nobody has changed it since."""
+    if name not in known:
+        return False
+    try:
+        return sum_of(files.read(name, None, folder).content) in known[name]
+    except files.BadFile:
+        return False
+
+
+def strange(folder: Path) -> list[str]:
+    """Files and folders within `folder` that are not ours, in order; links, pipes and devices never are."""
+    known = noted(folder)
+    parents = {parent.as_posix() for name in known for parent in Path(name).parents}
+    found = []
+    for place, inner, names in os.walk(folder):
+        here = Path(place).relative_to(folder)
+        for name in inner:
+            path = (here / name).as_posix()
+            if path not in parents or (folder / path).is_symlink():
+                found.append(f"{path}/")
+        for name in names:
+            path = (here / name).as_posix()
+            if path not in (LIST, f"{LIST}.new") and not is_ours(folder, path, known):
+                found.append(path)
+    return sorted(found)
+
+
+def remove(folder: Path) -> bool:
+    """Remove what is ours of a folder, and the folder where nothing else is left in it; whether it is gone."""
+    known = noted(folder)
+    for name in known:
+        if is_ours(folder, name, known):
+            (folder / name).unlink()
+    for name in (LIST, f"{LIST}.new"):
+        (folder / name).unlink(missing_ok=True)
+    return prune(folder)
+
+
+def prune(folder: Path) -> bool:
+    """Remove the empty folders from `folder` on; whether it is gone itself."""
+    for place, _, _ in os.walk(folder, topdown=False):
+        with contextlib.suppress(OSError):
+            os.rmdir(place)
+    return not os.path.lexists(folder)
+
+
+def beside(path: Path) -> Path:
+    """The first of NAME-2, NAME-3 ... beside a path that is not there."""
+    numbered = (path.with_name(f"{path.stem}-{k}{path.suffix}") for k in itertools.count(2))
+    return next(other for other in numbered if not os.path.lexists(other))
+
+
+@contextlib.contextmanager
+def alone(folder: Path) -> Iterator[None]:
+    """Nobody else puts results into a place within `folder` meanwhile, where the file system knows locks."""
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        with contextlib.suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def is_plain_folder(path: Path) -> bool:
+    """A folder, no link to one."""
+    try:
+        return stat.S_ISDIR(path.lstat().st_mode)
+    except OSError:
+        return False

@@ -1,0 +1,220 @@
+"""Calls the core's Python API with arguments that are wrong at random; prints the number of each call before it is made.
+
+    api_worker.py SEED FIRST COUNT
+
+Every call must end with a result or an exception; after it the core must still give the right bits. What would end the
+process ends this one, and the last number tells where.
+"""
+
+import random
+import signal
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from extrados import _core
+from extrados.core import arch, dem, mechanism, motion, rocking, sla
+from extrados.core.ground import Ground, MotionSet
+
+BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+LAW = dem.Law(1e8, 1e8, 0.6, damping=1e-3)
+
+
+def wall(xy, held, connect, thickness, young, nu, band, strength, energy, lateral, axis, points, bar, area, node, direction,
+         stiffness, constant, reference, room, watch, way, share, load, damage, threads) -> Any:  # fmt: skip
+    """A wall of one element, a bar and a spring: all that can be asked of a model."""
+    soft = sla.Softening(strength, energy)
+    groups = [
+        sla.Plane("Q4", connect, thickness, young, nu, band, soft, lateral=lateral, axis=axis, points=points),
+        sla.Bars(bar, area, young, band),
+        sla.Springs(node, direction, stiffness),
+    ]
+    model = sla.Model(xy, sla.Freedoms.make(4, held), groups, sla.Behaviour(), threads=threads)
+    with model:
+        model.factorise()
+        model.loads(constant, reference)
+        events = model.run(room, [sla.Monitor(watch, way, share)], sla.Stop(load=load))
+        found = events.load, model.displacement(load), model.report(load), model.residual()
+        before, standing = model.damage(), model.standing()
+        model.renew(before, standing)
+        model.set_damage(before * damage)
+        return *found, before
+
+
+def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_time, output_step, step, fraction, settle, domain,
+           gravity, shift, rate, mover, travel, begin, lasts, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
+    """A block on a support that moves, shaken."""
+    bodies = dem.Bodies(
+        centroid, mass, inertia, [part, BOX - [0.0, 1.0]], owner, [outer, np.ones(4, bool)], depth, [LAW], {joint: law}
+    )
+    options = dem.Options(
+        end_time, output_step, step, fraction, settle, domain=domain, gravity=gravity, threads=threads, mass_damping=0.1
+    )
+    moves = (dem.SupportMove(mover, travel, 0.0, 0.0, begin, lasts),)
+    with (
+        dem.Model(bodies, options, shift=shift, rate=rate, moves=moves) as model,
+        MotionSet([Ground(samples=samples, step=dt)]) as motions,
+    ):
+        run = model.run(motions, number, scale=scale, times=times)
+        return run.reason, run.place, run.energy, run.contacts.force
+
+
+def rockers(mass, inertia, height, toe, restitution, linear, kind, parameters, samples, dt, start, breaks, wave, body, shake, scale,
+            end_time, output_step, start_rotation, tolerance, room, threads) -> Any:  # fmt: skip
+    """Blocks under sampled and analytic motions: an ensemble, and one with its history."""
+    made = rocking.block_body(mass, inertia, height, toe, toe, restitution, linear)
+    other = rocking.Body(kind, parameters)
+    grounds = [
+        Ground(samples=samples, step=dt, start=start),
+        Ground(breaks=breaks, linear=np.zeros((1, 1, 2)), harmonic=wave),
+    ]
+    found = rocking.ensemble(
+        [made, other],
+        grounds,
+        body,
+        shake,
+        scale,
+        end_time,
+        start_rotation=start_rotation,
+        tolerance=tolerance,
+        threads=threads,
+    )
+    one = rocking.history(made, grounds[1], 1.0, output_step, scale=1.0, start_rotation=0.01, room=room)
+    return found.outcome, found.peak, found.stop_time, one.rotation, one.events
+
+
+def motions(kind, parameters, points, step, intensity, frequency, amplitude, wanted, lines, spacing, scaling, factor, duration, seed,
+            first, count, window, periods, dampings, series, length, period, threads) -> Any:  # fmt: skip
+    """Everything that is computed of motions."""
+    strength = motion.line_spectrum(intensity, frequency, amplitude, wanted, lines)
+    width = motion.line_widths(lines, spacing)
+    size = motion.line_amplitudes(strength, width, scaling, factor, duration)
+    made = motion.generate(lines, size, window, step, seed, first, count, threads)
+    spectra = motion.response_spectra(series, step, periods, dampings, threads=threads)
+    back = motion.fourier_inverse(motion.fourier(series, length), length)
+    return (
+        motion.envelope(kind, parameters, points, step), motion.phases(seed, first, points), made, spectra.sd, back,
+        motion.oscillator(series, step, period, 0.05), motion.measures(series, step, threads).arias, motion.kinematics(series, step),
+    )  # fmt: skip
+
+
+def small(
+    mass, centroid, inertia, joint, hinge, opposite, before, after, alpha, beta, a, b, kind, points, connect, force
+) -> Any:
+    """The functions that keep nothing."""
+    return (
+        arch.restitution(mass, centroid, inertia, joint, hinge, opposite), mechanism.restitution(mass, inertia, before, after),
+        sla.intervals(alpha, beta, a, b), sla.body_force(kind, points, BOX, connect, force),
+        sla.teeth(sla.Softening(1e5, 50.0), alpha, beta), sla.largest_band(sla.Softening(1e5, 50.0), alpha),
+    )  # fmt: skip
+
+
+def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
+    rng = np.random.default_rng(3)
+    push = np.zeros((4, 2))
+    push[2, 0] = 1e3
+    return [
+        (wall, dict(
+            xy=BOX, held=[(0, 0), (0, 1), (1, 0), (1, 1)], connect=np.array([[0, 1, 2, 3]]), thickness=0.2, young=1e9, nu=0.2, band=0.5,
+            strength=1e5, energy=50.0, lateral=0.0, axis=np.nan, points=(2, 2), bar=np.array([[0, 2]]), area=1e-4,
+            node=np.array([[2, -1]]), direction=np.array([[0, 0]]), stiffness=np.array([1e6]), constant=np.zeros((4, 2)),
+            reference=push, room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9, damage=1.0, threads=2,
+        )),
+        (blocks, dict(
+            centroid=np.array([[0.5, 0.5], [0.5, -0.5]]), mass=np.array([2000.0, 0.0]), inertia=np.array([300.0, 0.0]), part=BOX,
+            owner=[0, 1], outer=np.ones(4, bool), depth=1.0, joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
+            settle=50, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), shift=None, rate=None, mover=1, travel=0.001, begin=0.0,
+            lasts=0.01, times=np.array([0.0, 0.01]), scale=1.0, number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
+        )),
+        (rockers, dict(
+            mass=1000.0, inertia=1500.0, height=2.0, toe=0.5, restitution=(0.9, 0.9), linear=False, kind=rocking.block_body(
+                1000.0, 1500.0, 2.0, 0.5, 0.5, (0.9, 0.9)).kind, parameters=np.array([0.0, 1000.0, 1500.0, 2.0, 0.5, 0.5, 0.9, 0.9]),
+            samples=4.0 * rng.normal(size=(2, 9)), dt=0.05, start=0.0, breaks=np.array([0.0, 1.0]),
+            wave=np.array([[[[5.0, 0.0, 9.0, 0.0]]]]), body=[0, 1], shake=[0, 1], scale=1.0, end_time=[1.0, 1.2], output_step=0.1,
+            start_rotation=0.001, tolerance=1e-8, room=100, threads=2,
+        )),
+        (motions, dict(
+            kind="arctangent", parameters=np.array([0.5, 1.0, 0.1, 0.0]), points=20, step=0.05, intensity=[5.0, 6.0],
+            frequency=[0.5, 1.0, 5.0], amplitude=np.ones((2, 3)), wanted=5.5, lines=[0.6, 1.2, 3.0], spacing="log", scaling="energy",
+            factor=1.0, duration=1.0, seed=7, first=0, count=3, window=np.ones(30), periods=[0.3, 1.0], dampings=[0.05],
+            series=rng.normal(size=40), length=64, period=0.7, threads=2,
+        )),
+        (small, dict(
+            mass=np.ones(3), centroid=rng.normal(size=(3, 2)), inertia=np.ones(3), joint=np.array([0, 1, 2, 3]), hinge=rng.normal(size=(4, 2)),
+            opposite=rng.normal(size=(4, 2)), before=rng.normal(size=(3, 3)), after=rng.normal(size=(3, 3)), alpha=1e9, beta=0.5,
+            a=np.ones((2, 3)), b=np.ones((2, 3)), kind="Q4", points=(2, 2), connect=[[0, 1, 2, 3]], force=[[0.0, 1.0]],
+        )),
+    ]  # fmt: skip
+
+
+def spoiled(value: Any, rng: random.Random) -> Any:
+    """An argument that is wrong, or odd."""
+    array = np.array(value) if not isinstance(value, str) and value is not None else np.zeros(3)
+    flat = array.astype(float, copy=True) if array.dtype.kind in "iufb" else np.zeros(3)
+    if flat.ndim and flat.size and rng.random() < 0.5:  # one entry
+        k = rng.randrange(flat.size)
+        put = rng.choice(
+            (-1, -2, 0, 1, 3, 4, 9, 77, 2**31 - 1, -(2**31), 2**40, 1e300, 5e-324, 1e-9, 0.5, np.nan, np.inf, -np.inf)
+        )
+        if array.dtype.kind in "iu" and np.isfinite(put) and abs(put) < 2**62 and put == int(put):
+            whole = array.astype(np.int64, copy=True)
+            whole.flat[k] = int(put)
+            return whole
+        flat.flat[k] = put
+        return flat
+    return rng.choice((
+        None, "", "x", b"x", True, -1, 0, 1, 2, 3, 64, 10**6, 2**31 - 1, -(2**31), 2**63, 10**30, 0.5, -0.5, 1e300, -1e300, 5e-324, np.nan,
+        np.inf, 1j, [], [[]], {}, (), [None], ["a"], object(), np.zeros(0), np.zeros((0, 2)), np.zeros((2, 0)), np.zeros((1, 1, 1)),
+        np.ones(1), np.ones(2), np.ones((3, 3)), np.ones((4, 2)), np.array(2), np.array("x"), flat.T, np.flip(flat), flat.ravel(),
+        flat.astype(np.float32), flat.astype(complex), flat.astype(object), np.asfortranarray(flat), np.concatenate([flat.ravel()] * 2),
+        flat.ravel()[:-1], np.broadcast_to(np.float64(1.0), (4, 2)), np.ma.masked_array(flat, flat > 0), flat * 1e18, -flat, flat.tolist(),
+    ))  # fmt: skip
+
+
+def bits(value: Any) -> bytes:
+    """The bytes of a result."""
+    if isinstance(value, dict):
+        return b"".join(bits(v) for _, v in sorted(value.items()))
+    if isinstance(value, tuple | list):
+        return b"".join(map(bits, value))
+    return repr(value).encode() if isinstance(value, str) else np.asarray(value).tobytes()
+
+
+PATIENCE = 3.0  # seconds of the processor; then a call is asked to stop, as by Ctrl-C: it may have an age to compute
+
+
+def main() -> None:
+    signal.signal(signal.SIGPROF, lambda *_: _core.api_support.set_cancel(1))
+    seed, first, count = map(int, sys.argv[1:])
+    np.seterr(all="ignore")
+    calls = _valid()
+    right = [bits(function(**keys)) for function, keys in calls]
+    for number in range(first, first + count):
+        rng = random.Random(seed * 1_000_003 + number)
+        k = rng.randrange(len(calls))
+        function, keys = calls[k]
+        changed = dict(keys)
+        names = rng.sample(sorted(keys), rng.choice((1, 1, 1, 2, 3)))
+        for name in names:
+            changed[name] = spoiled(keys[name], rng)
+        told = ", ".join(f"{name}={changed[name]!r:.60}".replace("\n", " ") for name in names)
+        print(f"{number}\t{function.__name__}({told})", end="\t", flush=True)
+        signal.setitimer(signal.ITIMER_PROF, PATIENCE, PATIENCE)
+        try:
+            function(**changed)
+            end = "result"
+        except MemoryError:
+            end = "MemoryError"
+        except Exception as error:
+            end = type(error).__name__
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
+        if number % 20 == 0 and bits(calls[k][0](**calls[k][1])) != right[k]:
+            end = "WRONG: the core no longer gives the right bits"
+        print(end, flush=True)
+    print("end", flush=True)
+
+
+if __name__ == "__main__":
+    main()

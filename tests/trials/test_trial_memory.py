@@ -1,0 +1,52 @@
+"""Memory that runs out: an error in words, no signal, no hanging."""
+
+import json
+import subprocess
+import sys
+
+import trials
+
+#: Lets the process grow by so many MB after the core was loaded, then runs starters
+LIMITED = """
+import json, resource, sys
+from pathlib import Path
+import extrados.core.sla
+from extrados.analyses.context import Context
+from extrados.decks.explain import starter
+from extrados.decks.reader import read_text
+from extrados.running.run import compute
+kind, room = sys.argv[1], int(sys.argv[2])
+deck = read_text(starter(kind).encode(), "deck.toml", Path("/nowhere"))
+used = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+resource.setrlimit(resource.RLIMIT_AS, (used + room * 2**20, resource.getrlimit(resource.RLIMIT_AS)[1]))
+run = compute(Context(deck, threads=2))
+resource.setrlimit(resource.RLIMIT_AS, (resource.getrlimit(resource.RLIMIT_AS)[1],) * 2)
+print(json.dumps([(row["status"], row["reason"]) for row in run.analyses]))
+"""
+
+
+def test_memory_that_is_lowered_after_the_start() -> None:
+    """Every size from none to plenty: OpenBLAS would wait for ever, or crash, where its buffer finds no room."""
+    trial = trials.Trial(
+        "memory-lowered", "runs with lowered memory that end in a signal, hang or fail without saying so"
+    )
+    kinds = ("sla", "dem", "fragility", "motion", "tilt") if trials.SHARE > 0.0 else ("sla",)
+    rooms = (0, 1, 4, 8, 16, 32, 48, 64, 96, 128, 160, 200, 260, 400) if trials.SHARE > 0.0 else (4, 64)
+    ends: dict[str, int] = {}
+    for kind in kinds:
+        for room in rooms:
+            trial.tried += 1
+            try:
+                run = subprocess.run(
+                    [sys.executable, "-c", LIMITED, kind, str(room)], capture_output=True, text=True, timeout=600,
+                )  # fmt: skip
+            except subprocess.TimeoutExpired:
+                trial.fail(f"{kind}, {room} MB: hangs")
+                continue
+            rows = json.loads(run.stdout) if run.returncode == 0 else []
+            if run.returncode < 0 or not rows or any("internal error" in reason for _, reason in rows):
+                trial.fail(f"{kind}, {room} MB: {run.returncode} {rows} {run.stderr[-300:]}")
+            for status, _ in rows:
+                ends[status] = ends.get(status, 0) + 1
+    trial.notes.append(", ".join(f"{n} {status}" for status, n in sorted(ends.items())))
+    trial.close(len(kinds) * len(rooms))

@@ -1,0 +1,138 @@
+"""Joints of no thickness in sequentially linear analysis: one joint against Coulomb's law, and buildings of stones against
+limit analysis with friction."""
+
+import numpy as np
+import pytest
+
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
+from extrados.core.sla import EVENT, Behaviour, Freedoms, Joints, Model, Monitor, Softening, Stop
+from extrados.decks.reader import make_deck
+
+KN, KS, MU, C, GII = 82e9, 36e9, 0.75, 0.35e6, 125.0  # J4D: Pa/m, Pa/m, -, Pa, N/m
+
+
+def one_joint(
+    pressure: float, *, proportional: float = 0.0, law: str = "exponential", ripple: float = 0.1, friction: float = MU,
+    cohesion: float = C, slip: float = 4e-3, events: int = 2000,
+):  # fmt: skip
+    """Shear of 1 m x 1 m of joint whose upper side moves as one: constant `pressure` [Pa], and `proportional` Pa of
+    pressure for each Pa of shear."""
+    xy = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
+    free = Freedoms.make(4, [(n, d) for n in (0, 1) for d in (0, 1)], [[(2, d, 1.0), (3, d, 1.0)] for d in (0, 1)])
+    joint = Joints(
+        np.array([[0, 1, 2, 3]]), np.array([[0.0, 1.0]]), np.array([[0.5, 0.5]]), KN, KS, friction,
+        cohesion=Softening(cohesion, GII, law, ripple) if cohesion else None, dry=not cohesion, small=1.0,
+    )  # fmt: skip
+    constant, reference = np.zeros((4, 2)), np.zeros((4, 2))
+    constant[2, 1], reference[2] = -pressure, [1.0, -proportional]
+    with Model(xy, free, [joint], Behaviour(floor=1e-9, closure=True)) as model:
+        model.loads(constant, reference)
+        return model.run(events, [Monitor.of(2, 0), Monitor.of(2, 1)], Stop(displacement=slip))
+
+
+def coulomb(events, pressure: np.ndarray | float, law: str = "exponential", friction: float = MU) -> np.ndarray:
+    """c(slip) + mu p at the inelastic slip of each event [Pa]."""
+    slip = np.maximum(events.monitors[:, 0] - events.load / KS, 0.0)
+    worn = C * slip / GII
+    cohesion = C * np.exp(-worn) if law == "exponential" else C * np.maximum(1.0 - 0.5 * worn, 0.0)
+    return cohesion + friction * pressure
+
+
+@pytest.mark.parametrize("law", ["exponential", "linear"])
+@pytest.mark.parametrize("pressure", [0.1e6, 0.5e6, 1.0e6])
+def test_a_joint_follows_coulomb_under_constant_pressure(pressure: float, law: str) -> None:
+    """Peaks of the teeth lie on the curve raised by the ripple of the cohesion; what is left is friction alone."""
+    ripple = 0.05
+    found = one_joint(pressure, law=law, ripple=ripple, slip=2e-2)
+    assert found.equilibrium.all()
+    raised = coulomb(found, pressure, law)
+    assert (found.load <= raised + 1.05 * ripple * C).all()
+    peaks = found.code == EVENT["wear"]
+    assert (found.load[peaks] >= raised[peaks] - 1.05 * ripple * C).all()
+    assert found.load[0] == pytest.approx(C * (1.0 + ripple) + MU * pressure, rel=0.01)
+    assert found.load[-1] == pytest.approx(MU * pressure, abs=1.05 * ripple * C) and not found.load[-1] < MU * pressure
+    assert found.reason == "no point limits the load"  # it slides on under its friction
+    # Work: the energy of mode II, and friction over the slip
+    slip = found.monitors[-1, 0] - found.load[-1] / KS
+    assert found.dissipated[-1] == pytest.approx(GII + MU * pressure * slip, rel=0.03)
+    assert found.ledger_error < 1e-9
+
+
+def test_a_joint_follows_coulomb_under_proportional_pressure() -> None:
+    """tau grows with its pressure r tau: it slides at c / (1 - mu r), and softens by the same factor."""
+    ratio, ripple = 0.6, 0.05
+    found = one_joint(0.0, proportional=ratio, ripple=ripple)
+    exact = coulomb(found, ratio * found.load)
+    peaks = (found.code == EVENT["wear"]) & (found.load > 0.1 * found.load.max())
+    assert peaks.sum() > 10
+    assert found.load[0] == pytest.approx(C * (1.0 + ripple) / (1.0 - MU * ratio), rel=0.01)
+    assert np.abs(found.load - exact)[peaks].max() < 2.2 * ripple * C / (1.0 - MU * ratio)
+    assert found.ledger_error < 1e-9
+
+
+def test_pressure_that_holds_the_joint_never_lets_it_slide() -> None:
+    found = one_joint(0.0, proportional=1.0 / MU + 0.01)
+    assert found.reason == "no point limits the load" and not len(found)
+
+
+def test_energy_of_mode_two_is_spent() -> None:
+    for law in ("linear", "exponential"):
+        found = one_joint(0.0, law=law, friction=0.0, slip=0.05)
+        assert found.crack_total == pytest.approx(GII, rel=0.01)
+
+
+def test_a_dry_joint_slides_at_its_friction() -> None:
+    found = one_joint(0.3e6, cohesion=0.0, slip=1e-2)
+    assert found.load.max() == pytest.approx(MU * 0.3e6, rel=1e-4)
+
+
+STRUCTURES = {
+    "arch": {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7},
+    "block": {"kind": "block", "width": 1.0, "height": 4.0},
+    "column": {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4},
+    "vault": {"kind": "vault", "preset": "dejong-a"},
+    "brickwork": {"kind": "brickwork", "unit_length": 0.5, "unit_height": 0.25, "units": 3, "courses": 4},
+}  # fmt: skip
+
+
+def capacity(structure: dict, friction: float | str, kind: str, **options):
+    data = {"structure": structure, "joints": {"friction": friction}, "analysis": {"kind": kind, **options}}
+    return run_analyses(Context(make_deck(data)))[0]
+
+
+@pytest.mark.parametrize(
+    ("kind", "friction", "below", "above"),
+    [
+        ("arch", 0.7, 1e-4, 1e-4),  # Oppenheim: hinges, as without sliding
+        ("vault", 0.7, 1e-4, 1e-4),
+        ("block", 0.7, 1e-4, 1e-4),  # rocks at width over height
+        ("block", 0.2, 0.005, 0.002),  # slides
+        ("column", 0.2, 0.005, 0.002),
+        ("brickwork", 0.7, 0.06, 0.005),
+    ],
+)
+def test_the_load_of_limit_analysis_with_friction(kind: str, friction: float, below: float, above: float) -> None:
+    limit = capacity(STRUCTURES[kind], friction, "tilt").results["collapse_acceleration_g"]
+    found = capacity(STRUCTURES[kind], friction, "sla")
+    assert not found.reason
+    assert (1.0 - below) * limit < found.results["peak_acceleration_g"] < (1.0 + above) * limit
+
+
+def test_no_sliding_keeps_what_hinges() -> None:
+    found = capacity(STRUCTURES["brickwork"], "no-sliding", "sla")
+    assert found.results["peak_acceleration_g"] == pytest.approx(1.5, rel=1e-4)
+    assert "do not slide" in found.answer
+    sliding = capacity(STRUCTURES["block"], 0.2, "sla")
+    assert "do not slide" not in sliding.answer
+
+
+def test_bad_joints_are_refused() -> None:
+    arch = STRUCTURES["arch"]
+    for joints, word in (
+        ({"cohesion": 1e5}, "no shear_energy"), ({"tension": 1e5}, "no fracture_energy"),
+        ({"compressive_strength": 1e6}, "go together"),
+        ({"cohesion": 1e6, "shear_energy": 1e-3, "normal_stiffness": 1e9}, "snap back"),
+    ):  # fmt: skip
+        data = {"structure": arch, "joints": joints, "analysis": {"kind": "sla"}}
+        assert word in run_analyses(Context(make_deck(data)))[0].reason

@@ -1,0 +1,49 @@
+"""A build of the program of its own, apart from that of the environment: with other options, or with faults."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+#: What belongs to the program and its tests
+PARTS = ("c", "fortran", "python", "tests", "cases", "docs", "tools", "meson.build", "meson.options", "pyproject.toml",
+         "Makefile", "README.md", "CHANGELOG.md", "CONTRIBUTING.md", "CITATION.cff", "LICENSE")  # fmt: skip
+
+
+def copy(place: Path) -> None:
+    """Copy the sources to a folder; files that have not changed keep their times, and a build there stays good."""
+    for part in PARTS:
+        source = ROOT / part
+        files = [source] if source.is_file() else [p for p in source.rglob("*") if p.is_file()]
+        for path in files:
+            if "__pycache__" in path.parts:
+                continue
+            target = place / path.relative_to(ROOT)
+            if not target.exists() or target.read_bytes() != path.read_bytes():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(path, target)
+
+
+def build(place: Path, *options: str) -> None:
+    """Build the sources in a folder, new or again, and put the compiled module where they find it."""
+    meson = Path(sys.executable).with_name("meson")
+    environment = {**os.environ, "PATH": f"{meson.parent}{os.pathsep}{os.environ['PATH']}"}
+    folder = place / "build"
+    if not (folder / "build.ninja").exists():
+        run = [str(meson), "setup", str(folder), str(place), "-Dwerror=false", *options]
+        subprocess.run(run, check=True, env=environment, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        [str(meson), "compile", "-C", str(folder)], check=True, env=environment,
+        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+    )  # fmt: skip
+    package = place / "python" / "extrados"
+    for made in (*(folder / "python").glob("_core*.so"), folder / "python" / "_build_info.py"):
+        shutil.copy2(made, package / made.name)
+
+
+def environment(place: Path, **more: str) -> dict[str, str]:
+    """What Python needs to import the program from there: `python -S`, so that the environment's own is not found."""
+    path = [str(place / "python"), *(p for p in sys.path if p and "lib-dynload" not in p)]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(path), "PYTHONDONTWRITEBYTECODE": "1", **more}
