@@ -385,6 +385,26 @@ def test_check_lists_and_draws_what_run_refuses(tmp_path: Path) -> None:
     assert good.exit_code == 0 and "0 places amiss" in good.output and good.output.rstrip().endswith("ok")
 
 
+def test_check_leaves_the_files_of_others(tmp_path: Path) -> None:
+    """What extrados did not write, or what was changed since, stays; what it wrote is replaced."""
+    out = tmp_path / "mine"
+    out.mkdir()
+    (out / "geometry.png").write_text("my own picture")
+    words = ["check", str(CHURCH), "--out", str(out)]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    assert (out / "geometry.png").read_text() == "my own picture" and (out / "geometry-2.png").exists()
+    with (out / "geometry.csv").open("a") as stream:
+        stream.write("a remark of mine\n")
+    (out / "geometry.png").unlink()
+    found = CliRunner().invoke(app, words)
+    assert found.exit_code == 0 and "geometry-2.csv" in found.output
+    assert (out / "geometry.csv").read_text().endswith("a remark of mine\n")
+    assert sorted(p.name for p in out.glob("geometry*")) == [
+        "geometry-2.csv", "geometry.csv", "geometry.png", "geometry.svg",
+    ]  # fmt: skip
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["mine"]
+
+
 def test_check_makes_buildings_that_are_no_surveys_too(tmp_path: Path) -> None:
     deck = tmp_path / "vault.toml"
     text = '[structure]\nkind = "vault"\npreset = "dejong-a"\n{}[[analysis]]\nkind = "tilt"\n'
