@@ -23,6 +23,7 @@ NEAR = 1e-2  # misfit of an iterate whose pattern is worth trying by programmes
 TAKEN = 1e-5  # worst residual of a state that no programme has made exact
 MOST_JOINTS = 1500  # walls of more are not brought down by programmes, which take too long
 ACTIVE = 1e-9  # of the total load, or of the fastest motion: more than zero
+NEUTRAL = 1e-9  # of the fastest motion: joints that move by more
 COHESIONS = 60  # rounds of fictitious cohesion
 MORE_STARTS = 12  # where none of those asked for leads to a state
 DESCENTS = 20
@@ -34,7 +35,8 @@ INFINITY = highspy.kHighsInf
 @dataclass(frozen=True)
 class CoulombState:
     """gamma, corner forces (joints, 3) over the total load, shares of the forces that answer to movement, twists
-    (blocks, 3) and motion (joints, 3); starts: the gamma at which each start ended that gave a state."""
+    (blocks, 3) and motion (joints, 3); starts: the gamma at which each start ended that gave a state; falling: the stone
+    that slides out in a state at rest."""
 
     gamma: float
     corners: np.ndarray
@@ -43,6 +45,7 @@ class CoulombState:
     motion: np.ndarray
     residuals: Residuals
     starts: tuple[float, ...]
+    falling: int | None = None
 
 
 Forces = tuple[float, np.ndarray, np.ndarray]  # load, corner forces, shares of the forces that answer
@@ -98,6 +101,23 @@ class CoulombProblem(CollapseProblem):
             self.sense * gamma, corners, share, u.reshape(-1, 3), self.motion(u), residuals,
             tuple(self.sense * state[0] for state, _ in ended),
         )  # fmt: skip
+
+    def neutral(self, stone: int) -> CoulombState | None:
+        """The state at rest in which a stone slides down under its own weight against all that friction holds, whatever the
+        load. None where there is none."""
+        u = np.zeros(self.system.equations)
+        u[3 * stone + 1] = -1.0
+        motion = self.motion(u)
+        least = NEUTRAL * float(np.abs(motion).max())
+        slides = np.column_stack([motion[:, 2] < -least, motion[:, 2] > least])
+        found = self._least_forces(Gives(motion[:, :2] > least, slides, SIDES * (self.answers_t @ u) > least), 0.0, 0.0)
+        if found is None:
+            return None
+        (_, corners, share), _ = found
+        residuals = self.residuals(0.0, corners, share, u)
+        if residuals.worst > TAKEN:
+            return None
+        return CoulombState(0.0, corners, share, u.reshape(-1, 3), motion, residuals, (0.0,), stone)
 
     def _descent(
         self, u: np.ndarray | None, gives: Gives, scatter: np.random.Generator, at_least: float
@@ -164,7 +184,9 @@ class CoulombProblem(CollapseProblem):
             held = held + scatter.uniform(0.1, 0.6) * (normal - held)
         return None
 
-    def _least_forces(self, gives: Gives, at_least: float) -> tuple[Forces, np.ndarray] | None:
+    def _least_forces(
+        self, gives: Gives, at_least: float, at_most: float = INFINITY
+    ) -> tuple[Forces, np.ndarray] | None:
         """Least load of forces that are zero where ends part, and at their limit where joints slide or ties yield.
 
         Also, for each end and sense that gives way (4, joints), by how much the load would fall per force gained if it did
@@ -185,7 +207,7 @@ class CoulombProblem(CollapseProblem):
         lower = np.concatenate([system.right, np.zeros(2 * m)])
         upper = np.concatenate([system.right, np.where(slides.T.ravel(), 0.0, INFINITY)])
         low, high = self._bounds()
-        low[-1] = max(at_least, -INFINITY)
+        low[-1], high[-1] = max(at_least, -INFINITY), at_most
         high[0 : 3 * m : 3][parts[:, 0]] = high[1 : 3 * m : 3][parts[:, 1]] = 0.0
         answers = slice(3 * m, -1)
         least, most = gives.held & self.bounded

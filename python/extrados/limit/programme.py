@@ -8,7 +8,7 @@ from scipy import sparse
 
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.coulomb import CoulombProblem, CoulombState
-from extrados.limit.equilibrium import spanning_tree
+from extrados.limit.equilibrium import hanging_stones, spanning_tree
 from extrados.limit.graphic import senses
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
@@ -234,7 +234,7 @@ class LimitAnalysis:
         if self.strength is None and self.certificate() is not None:
             raise NoEquilibrium("no admissible thrust line")
         problem = CoulombProblem(self._equations, self._mu, direction, self._crush)
-        found = problem.least(self.starts, 0.0)
+        found = problem.least(self.starts, 0.0) or self._neutral(problem)
         if found is None:
             self._refuse_immovable(direction)
             lower, upper = (
@@ -247,6 +247,14 @@ class LimitAnalysis:
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())
         return self._read(found.gamma, found.corners, found.share, found.twist, found.motion, taken)
+
+    def _neutral(self, problem: CoulombProblem) -> CoulombState | None:
+        """A state at rest in which a stone that friction alone holds between its neighbours slides out of them, by which the
+        load does no work: the structure bears nothing that can be relied on. None where there is none."""
+        if self._crush is not None:
+            return None
+        found = (problem.neutral(stone) for stone in hanging_stones(self.assembly))
+        return next((state for state in found if state is not None), None)
 
     def without_dilatancy_between(self, direction: int) -> tuple[float | None, float | None]:
         """Drucker's bounds (1954) on the collapse load without dilatancy: of joints without friction, and of joints whose

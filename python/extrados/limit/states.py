@@ -10,6 +10,8 @@ from extrados.limit.systems import Constraints
 
 # A joint whose motion at one end is this much smaller than at the other turns about the former.
 HINGE = 1e-4
+# Of the work of the dead loads: less of the load is none.
+NO_WORK = 1e-9
 # Joints that move less than this part of the fastest block are at rest.
 AT_REST = 1e-7
 
@@ -96,7 +98,9 @@ def read_mechanism(
     dead = float((loads.dead / unit * twist).sum())
     if loads.resistance is not None:
         taken += loads.resistance.taken(loads.resistance.work(twist / unit))
-    upper = (taken - dead - float(dual @ constraints.lower)) / live
+    # Where the load does no work the motion is neutral at any load, and bounds that at rest.
+    driven = live if abs(live) > NO_WORK * abs(dead) else abs(dead)
+    upper = (taken - dead - float(dual @ constraints.lower)) / driven
     x, y = (assembly.centroid / size).T
     velocity = np.column_stack([twist[:, 0] - twist[:, 2] * y, twist[:, 1] + twist[:, 2] * x, twist[:, 2]])
 
@@ -110,7 +114,7 @@ def read_mechanism(
         (j, "intrados" if abs(opening_p[j]) < abs(opening_q[j]) else "extrados")
         for j in np.flatnonzero(moves & turns).tolist()
     ]
-    scale = 1.0 / (abs(live) * size)
+    scale = 1.0 / (abs(driven) * size)
     return Mechanism(
         velocity * np.array([size, size, 1.0]) * scale, hinges, np.flatnonzero(moves & ~turns).tolist(),
         opening_p * size * scale, opening_q * size * scale, slip * size * scale, upper, defect,

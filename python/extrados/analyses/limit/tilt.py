@@ -158,6 +158,12 @@ def _non_dilatant(limit: LimitAnalysis, result: Result) -> dict[str, out.NonDila
             equilibrium_residual=r.equilibrium, friction_residual=r.friction, tension_residual=r.tension,
             overlap_residual=r.overlap, complementarity_residual=r.complementarity, work_residual=r.work,
         )  # fmt: skip
+        if found.falling is not None:
+            stone = limit.assembly.block_names[found.falling]
+            result.warnings.append(
+                f"{stone} hangs between its neighbours by friction alone, and slides out of them at any load in a state without "
+                f"dilatancy: {'to +x' if direction > 0 else 'to -x'} nothing is borne that can be relied on"
+            )
         if r.worst > SETTLED:
             result.warnings.append(
                 f"the state without dilatancy {'to +x' if direction > 0 else 'to -x'} obeys the laws of the joints to {r.worst:.1e} only"
