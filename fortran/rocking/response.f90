@@ -131,8 +131,11 @@ contains
             else
                call run%impact(s)
             end if
-         else if (run%step%q >= body%limit(side_index(run%problem%side))) then
-            call run%fall()
+            cycle
+         end if
+         s = crossing_fraction(run%step, run%q, run%v, body%limit(side_index(run%problem%side)))
+         if (s > 0.0_wp) then
+            call run%fall(s)
          else
             call run%move_on(t_next)
          end if
@@ -383,13 +386,13 @@ contains
    end subroutine impact
 
    !> The rotation passes the limit within the step
-   subroutine fall(state)
+   subroutine fall(state, fraction)
       class(run_state), intent(inout) :: state
-      real(wp) :: s, limit
+      real(wp), intent(in) :: fraction  !! of the step
+      real(wp) :: limit
       limit = state%problem%body%limit(side_index(state%problem%side))
-      s = crossing_fraction(state%step, limit)
-      if (associated(state%history)) call state%history%cover(state%problem, state%step, s)
-      state%t = state%step%t + s * state%step%h
+      if (associated(state%history)) call state%history%cover(state%problem, state%step, fraction)
+      state%t = state%step%t + fraction * state%step%h
       state%answer%outcome = outcome_collapse
       state%answer%stop_time = state%t
       call state%note_peak(limit)
