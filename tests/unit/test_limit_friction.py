@@ -55,23 +55,23 @@ def test_residuals_see_what_is_wrong() -> None:
     assembly = bond(5, 6)
     problem = CoulombProblem(system_of(assembly), np.full(len(assembly.a), 0.65), 1)
     found = problem.least(2, 0.0)
-    gamma, corners, twist = found.gamma, found.corners, found.twist.ravel()
-    assert problem.residuals(gamma, corners, twist).worst < 1e-12
-    assert problem.residuals(gamma + 1e-3, corners, twist).equilibrium > 1e-5
-    assert problem.residuals(gamma + 1e-3, corners, twist).work > 1e-4
+    gamma, corners, twist, none = found.gamma, found.corners, found.twist.ravel(), np.empty(0)
+    assert problem.residuals(gamma, corners, none, twist).worst < 1e-12
+    assert problem.residuals(gamma + 1e-3, corners, none, twist).equilibrium > 1e-5
+    assert problem.residuals(gamma + 1e-3, corners, none, twist).work > 1e-4
     pulled, sheared = corners.copy(), corners.copy()
     pulled[0, 0] -= 1.0
     sheared[0, 2] += 1.0
-    assert problem.residuals(gamma, pulled, twist).tension > 0.1
-    assert problem.residuals(gamma, sheared, twist).friction > 0.1
-    assert problem.residuals(gamma, corners, -twist).overlap > 0.1
+    assert problem.residuals(gamma, pulled, none, twist).tension > 0.1
+    assert problem.residuals(gamma, sheared, none, twist).friction > 0.1
+    assert problem.residuals(gamma, corners, none, -twist).overlap > 0.1
     dilatant = LimitAnalysis(assembly, 0.65, form="sparse")
     _, mechanism = dilatant.collapse()
     size = assembly.size
     x, y = assembly.centroid.T
     v = mechanism.velocity
     other = np.column_stack([(v[:, 0] + v[:, 2] * y) / size, (v[:, 1] - v[:, 2] * x) / size, v[:, 2]])
-    assert problem.residuals(gamma, corners, other.ravel()).complementarity > 1e-3
+    assert problem.residuals(gamma, corners, none, other.ravel()).complementarity > 1e-3
 
 
 def test_single_chains_show_no_difference() -> None:

@@ -18,6 +18,7 @@ from extrados.core.sla_parts import (
     LAWS,
     STOPS,
     Bars,
+    Bedding,
     Behaviour,
     Events,
     Freedoms,
@@ -39,6 +40,7 @@ __all__ = [
     "STOPS",
     "BadElement",
     "Bars",
+    "Bedding",
     "Behaviour",
     "Events",
     "FreeNode",
@@ -201,12 +203,21 @@ class Model(Owner):
         reach = group.reach if isinstance(group, Plane) else None
         rows: list[tuple[float, ...]] = []
         tension = _softenings(group.tension, count)
+        bedded = [
+            law is not None and bed is not None for law, bed in zip(tension, _beddings(group, count), strict=True)
+        ]
+        plain = [None if b else law for b, law in zip(bedded, tension, strict=True)]
         if reach is None:
-            numbers = [_one_band(tension, young, band, rows)]
-            ladder = np.zeros((2, count), dtype=np.int32)
+            number, ladder = _one_band(plain, young, band, rows), np.zeros((2, count), dtype=np.int32)
         else:
-            number, ladder = _many_bands(tension, young, band, real("reach", reach, (count, 2)), rows)
-            numbers = [number]
+            number, ladder = _many_bands(plain, young, band, real("reach", reach, (count, 2)), rows)
+        if any(bedded):
+            ends = np.column_stack([band, band]) if reach is None else np.asarray(reach)
+            stretch = np.array([(1.0, 1.0) if bed is None else bed.stretch() for bed in _beddings(group, count)])
+            other = [law if b else None for b, law in zip(bedded, tension, strict=True)]
+            more, rungs = _many_bands(other, young, band, ends * stretch, rows)
+            number, ladder = np.where(bedded, more, number), np.where(bedded, rungs, ladder)
+        numbers = [number]
         numbers.append(_one_band(_softenings(group.compression, count), young, band, rows))
         if isinstance(group, Joints):
             slip = _each("shear stiffness", group.shear_stiffness, count)
@@ -249,7 +260,7 @@ class Model(Owner):
             properties = _rows(
                 _each("thickness", group.thickness, count), young, _each("nu", group.nu, count),
                 _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
-                _each("confinement", group.confinement, count),
+                _each("confinement", group.confinement, count), *_bed_rows(group, count),
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
@@ -427,6 +438,28 @@ def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) 
     if len(each) != count:
         raise ValueError(f"{len(each)} softening laws for {count} elements")
     return each
+
+
+def _beddings(group: Plane | Bars | Joints, count: int) -> list[Bedding | None]:
+    """The bed joints of each element."""
+    bedding = group.bedding if isinstance(group, Plane) else None
+    each = [bedding] * count if bedding is None or isinstance(bedding, Bedding) else list(bedding)
+    if len(each) != count:
+        raise ValueError(f"bed joints of {len(each)} elements for {count}")
+    return each
+
+
+def _bed_rows(group: Plane, count: int) -> np.ndarray:
+    """(5, elements) the components of the core's `bedding`: none where nothing cracks."""
+    rows = np.zeros((5, count))
+    rows[3] = 1.0
+    if group.bedding is None:
+        return rows
+    width = _each("band", group.band, count) if group.reach is None else np.zeros(count)
+    for k, (bed, law) in enumerate(zip(_beddings(group, count), _softenings(group.tension, count), strict=True)):
+        if bed is not None and law is not None:
+            rows[:, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
+    return rows
 
 
 def _one_band(laws: list[Softening | None], young: np.ndarray, band: np.ndarray, rows: list) -> np.ndarray:

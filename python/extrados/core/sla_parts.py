@@ -65,6 +65,37 @@ class Stop:
     refuse_overload: bool = False
 
 
+#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane.f90)
+LEAST_SHARE = 0.2
+
+
+@dataclass(frozen=True)
+class Bedding:
+    """Masonry in courses: the tension law is that across the bed joints, along them it is different.
+
+    angle of the bed joints to x [rad]; strength, energy along them over those across them; shear factor
+    sqrt(fx fy) / shear strength, at least 1 (Lourenco, de Borst and Rots 1997: the root of their alpha).
+    """
+
+    angle: float = 0.0
+    strength: float = 1.0
+    energy: float = 1.0
+    shear: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not (self.strength > 0.0 and self.energy > 0.0 and self.shear >= 1.0):
+            raise ValueError("bedded masonry needs ratios above 0 and a shear factor of at least 1")
+
+    def stretch(self) -> tuple[float, float]:
+        """Least and greatest f^2 / G over all crack directions, over that across the bed joints: the bands whose teeth
+        are those of these cracks, over their own."""
+        a, b = self.strength - 1.0, self.energy - 1.0
+        # q = nx^2 of a crack's normal in the axes of the joints: 0, 1, and where (1 + a q)^2 / (1 + b q) is extreme
+        places = [0.0, 1.0, min(max((b - 2.0 * a) / (a * b), 0.0), 1.0) if a * b != 0.0 else 0.0]
+        ratios = [(1.0 + a * q) ** 2 / (1.0 + b * q) for q in places]
+        return min(ratios) * (LEAST_SHARE if self.shear > 1.0 else 1.0), max(ratios)
+
+
 @dataclass(frozen=True)
 class Plane:
     """Plane-stress elements of one kind, all arrays by element (or one value for all).
@@ -74,7 +105,8 @@ class Plane:
     softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
     strength that reduces the tensile one (0 none); `confinement` growth of the compressive strength per lateral pressure; `axis` angle of the only crack normal allowed [rad], NaN
     where cracks choose theirs; `joint`: cracks there keep the shear stiffness, so that the joint opens but does not
-    slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
+    slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle; `bedding` one for all or a
+    sequence by element, None where the strength is the same in all directions.
     """
 
     kind: str
@@ -92,6 +124,7 @@ class Plane:
     joint: bool = False
     reach: np.ndarray | None = None
     confinement: float | np.ndarray = 0.0
+    bedding: Bedding | Sequence[Bedding | None] | None = None
 
     @property
     def points_each(self) -> int:

@@ -1,15 +1,19 @@
 """supports: an arch whose right support spreads or settles, from rest until it falls."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.common import geometry_arrays, state_arrays
+from extrados.analyses.limit.common import geometry_arrays, spoken_ties, state_arrays, tie_arrays, tie_rows, ties_of
 from extrados.analyses.limit.tables import Supports
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import in_order, is_stack
+from extrados.limit.loads import tilt_loads
 from extrados.limit.places import place_of
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.limit.resistance import together
 from extrados.limit.settlement import settle
 from extrados.limit.supports import support_movement
 from extrados.results import limit as out
@@ -30,6 +34,10 @@ def run(context: Context, options: Supports) -> Result:
     """States on the way, the movement at the fall, how the thrust and the hinges change."""
     if context.building.initial.movements:
         return _any_structure(context)
+    if context.building.ties:
+        raise Refused(
+            "supports: an arch with [[ties]] is followed for small movements only: give [[initial.movements]]"
+        )
     try:
         arch = in_order(context.building.blocks())
     except BadGeometry as error:
@@ -113,7 +121,9 @@ def _any_structure(context: Context) -> Result:
         movement[j] += one.dx, one.dy, np.radians(one.turn)
     if not movement.any():
         raise Refused("initial.movements: nothing moves")
-    limit = LimitAnalysis(assembly, building.friction())
+    loads = tilt_loads(assembly)
+    loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)))
+    limit = LimitAnalysis(assembly, building.friction(), loads=loads)
     try:
         found = settle(limit, movement)
     except NoEquilibrium as error:
@@ -143,9 +153,11 @@ def _any_structure(context: Context) -> Result:
             for j, sign in enumerate(np.where(assembly.b == GROUND, 1.0, -1.0).tolist())
             if GROUND in (assembly.a[j], assembly.b[j])
         ],
+        **tie_rows(building, loads, found.state),
     )
     result.arrays = {
         **geometry_arrays(assembly),
+        **tie_arrays(building, loads, {"settled": found.state}),
         **state_arrays(assembly, "settled", found.state, "while supports give way"),
         "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
         "settled_opening": Array(motion, ("joint", "component"), "m", "opening at the first and second end, slip"),
@@ -170,5 +182,6 @@ def _any_structure(context: Context) -> Result:
         + (f" and {len(opened) - 6} more" if len(opened) > 6 else "")
         + (f"; {len(slid)} of them slide" if slid else "")
         + f". Its weight does {found.work:.4g} J of work."
+        + spoken_ties(result.results.ties)
     )
     return result

@@ -242,6 +242,18 @@ def _softening(material: Material, options: Sla, factor: float = 1.0) -> core.So
     )  # fmt: skip
 
 
+def _bedding(material: Material) -> core.Bedding | None:
+    """Bed joints of masonry whose strength depends on the direction."""
+    along, across = material.tensile_strength_parallel, material.tensile_strength
+    if along is None or across is None or material.fracture_energy is None:
+        return None
+    energy = material.fracture_energy_parallel or material.fracture_energy
+    shear = (
+        1.0 if material.shear_strength is None else max(1.0, float(np.sqrt(along * across)) / material.shear_strength)
+    )
+    return core.Bedding(np.radians(material.bed_angle), along / across, energy / material.fracture_energy, shear)
+
+
 def _crushing(material: Material, options: Sla) -> core.Softening | None:
     if material.crushing_energy is None:
         return None
@@ -260,7 +272,11 @@ def _plane(
         None if s else _softening(m, options, float(f))
         for m, s, f in zip(materials, group.linear, factors, strict=True)
     ]
-    widest = band if reach is None else reach[:, 1]
+    beds = [None if t is None else _bedding(m) for m, t in zip(materials, tension, strict=True)]
+    if options.cracking == "isotropic" and any(bed is not None for bed in beds):
+        raise BadGeometry("tensile_strength_parallel needs cracks with a direction: isotropic cracking has none")
+    # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
+    widest = (band if reach is None else reach[:, 1]) * [1.0 if bed is None else bed.stretch()[1] for bed in beds]
     for rows, widths, energy in ((tension, widest, "fracture_energy"), (crushing, band, "crushing_energy")):
         for k in np.argsort(-widths):
             if rows[k] is not None:
@@ -278,6 +294,7 @@ def _plane(
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
         group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None, reach,
         np.array([m.confinement for m in materials]),
+        beds if any(bed is not None for bed in beds) else None,
     )  # fmt: skip
 
 
@@ -330,6 +347,10 @@ def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
     if ends[0] == ends[1]:
         raise BadGeometry(f"a bar from {bar.start} to {bar.end} begins and ends at the same node")
     material = mesh.named[bar.material]
+    if material.tensile_strength_parallel is not None:
+        raise BadGeometry(
+            f"a bar of {bar.material!r}: tensile_strength_parallel is for masonry, a bar has one strength"
+        )
     length = float(np.hypot(*(mesh.xy[ends[1]] - mesh.xy[ends[0]])))
     return core.Bars(
         np.array([ends]), bar.area, material.young, options.crack_band or length,

@@ -53,7 +53,7 @@ def makeup(model: SlaModel) -> Makeup:
         for sense, found in laws.items():
             found.append([*_law(getattr(group, sense)), group.band])
         if isinstance(group, core.Plane):
-            laws["tension"].append(group.reach)
+            laws["tension"] += [group.reach, group.bedding]
             laws["compression"].append(group.confinement)
             fixed.append([group.axis, group.joint, group.lateral, group.selective])
     return Makeup(

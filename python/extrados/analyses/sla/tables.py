@@ -84,7 +84,7 @@ class Sla(BuildingAnalysis):
     view: ClassVar = "mesh"
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
-        "material.compressive_strength", "joints.tension",
+        "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength", "joints.tension",
     )  # fmt: skip
     starter_structure: ClassVar = "panel"
     starter: ClassVar = {"target_displacement": '"2 mm"', "ripple": "0.2"}
