@@ -48,12 +48,24 @@ contains
       s = root_between(step%cv, step%degree, 0.0_wp, 0.0_wp, 1.0_wp)
    end function turning_fraction
 
-   !> Fraction of the step at which q rises through a level
-   pure function crossing_fraction(step, level) result(s)
+   !> Fraction of the step at which q first rises through a level, or 0 where it does not: also where it is back below
+   !> at the end
+   pure function crossing_fraction(step, q, v, level) result(s)
       type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: q  !! at the start, below the level
+      real(wp), intent(in) :: v  !! at the start
       real(wp), intent(in) :: level
       real(wp) :: s
-      s = root_between(step%cq, step%degree, level, 0.0_wp, 1.0_wp)
+      real(wp) :: last
+
+      s = 0.0_wp
+      last = 1.0_wp
+      if (step%q < level) then
+         if (.not. (v > 0.0_wp .and. step%v <= 0.0_wp) .or. max(q, step%q) + 2.0_wp * v * step%h < level) return
+         last = turning_fraction(step)
+         if (step%coordinate(last) < level) return
+      end if
+      s = root_between(step%cq, step%degree, level, 0.0_wp, last)
    end function crossing_fraction
 
    !> Where a polynomial passes a level, to rounding: Newton's method from the false position, by halves where it

@@ -31,8 +31,8 @@ module rocking_response
       real(wp) :: start_v = 0.0_wp       !! initial rate [rad/s]
       integer :: start_side = 1          !! side of the initial rotation
       integer :: max_steps = 50000000    !! attempts
-      !> Stop once the motion is over and the energy left cannot reach the barrier: the outcome and
-      !> the peak are then known. For maps and ensembles.
+      !> Stop once the motion is over and the energy left reaches neither the barrier nor past the greatest rotation
+      !> so far: the outcome and the peak are then known. For maps and ensembles.
       logical :: stop_when_safe = .false.
    end type response_options
 
@@ -84,6 +84,7 @@ module rocking_response
       procedure :: impact
       procedure :: fall
       procedure :: move_on
+      procedure :: past_its_peak
       procedure :: conclude
       procedure :: count_attempt
       procedure :: quiet
@@ -131,8 +132,11 @@ contains
             else
                call run%impact(s)
             end if
-         else if (run%step%q >= body%limit(side_index(run%problem%side))) then
-            call run%fall()
+            cycle
+         end if
+         s = crossing_fraction(run%step, run%q, run%v, body%limit(side_index(run%problem%side)))
+         if (s > 0.0_wp) then
+            call run%fall(s)
          else
             call run%move_on(t_next)
          end if
@@ -383,13 +387,13 @@ contains
    end subroutine impact
 
    !> The rotation passes the limit within the step
-   subroutine fall(state)
+   subroutine fall(state, fraction)
       class(run_state), intent(inout) :: state
-      real(wp) :: s, limit
+      real(wp), intent(in) :: fraction  !! of the step
+      real(wp) :: limit
       limit = state%problem%body%limit(side_index(state%problem%side))
-      s = crossing_fraction(state%step, limit)
-      if (associated(state%history)) call state%history%cover(state%problem, state%step, s)
-      state%t = state%step%t + s * state%step%h
+      if (associated(state%history)) call state%history%cover(state%problem, state%step, fraction)
+      state%t = state%step%t + fraction * state%step%h
       state%answer%outcome = outcome_collapse
       state%answer%stop_time = state%t
       call state%note_peak(limit)
@@ -403,6 +407,7 @@ contains
    subroutine move_on(state, t_next)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: t_next
+      real(wp) :: energy
       logical :: was_quiet, whole
       call state%note_turning()
       if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
@@ -418,8 +423,28 @@ contains
       call state%advance_segment()
       if (.not. (state%options%stop_when_safe .and. was_quiet .and. state%v <= 0.0_wp)) return
       if (state%q >= state%problem%body%critical(side_index(state%problem%side))) return
-      state%over = energy_of(state%problem, state%q, state%v) < barrier_of(state%problem)
+      energy = energy_of(state%problem, state%q, state%v)
+      state%over = energy < barrier_of(state%problem)
+      if (state%over) state%over = state%past_its_peak(energy)
    end subroutine move_on
+
+   !> Is the greatest rotation known, as the energy left after the next impact reaches no further on either side?
+   function past_its_peak(state, energy) result(answer)
+      class(run_state), intent(in) :: state
+      real(wp), intent(in) :: energy  !! of now, on the way back to rest [J]
+      logical :: answer
+      real(wp) :: m, m_next, half_dm, dv, dh, reach(2)
+      integer :: i
+      logical :: closed
+      associate (body => state%problem%body, side => state%problem%side)
+         call body%coefficients(side, 0.0_wp, m, half_dm, dv, dh, closed)
+         call body%coefficients(-side, 0.0_wp, m_next, half_dm, dv, dh, closed)
+         do i = 1, 2
+            reach(i) = body%potential(3 - 2 * i, min(1.0_wp, state%answer%peak_ratio) * body%critical(i))
+         end do
+         answer = energy * body%restitution(side_index(-side))**2 * m_next / m <= minval(reach)
+      end associate
+   end function past_its_peak
 
    !> Outcome and whether it is final
    subroutine conclude(state)
