@@ -290,14 +290,25 @@ class Events:
         return float(np.abs(gap).max() / scale) if scale > 0.0 else 0.0
 
     @staticmethod
+    def none() -> "Events":
+        """No events, one monitor."""
+        columns = {name: np.zeros(0) for name in Events.__dataclass_fields__ if name not in ONCE}
+        columns |= {name: np.zeros(0, dtype=int) for name in ("point", "code", "number")}
+        return Events(**columns | {"equilibrium": np.zeros(0, dtype=bool), "monitors": np.zeros((0, 1))})
+
+    @staticmethod
     def join(parts: Sequence["Events"]) -> "Events":
         """Batches one behind the other."""
         last = parts[-1]
         columns = {
             name: np.concatenate([getattr(p, name) for p in parts])
             for name in Events.__dataclass_fields__
-            if name not in ("reason", "guard", "interrupted", "crack_total")
+            if name not in ONCE
         }
         return Events(
             **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total
         )
+
+
+#: What events have once, not each
+ONCE = ("reason", "guard", "interrupted", "crack_total")

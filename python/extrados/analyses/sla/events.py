@@ -6,7 +6,7 @@ same bits as one that was never interrupted.
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -54,22 +54,32 @@ class Curve:
     before: float = 0.0  # control displacement of the constant loads alone, in the sense of the load [m]
     most_compliance: float = np.inf  # beyond it only the floor of the stiffness carries
     stones: bool = False  # of joints that open without teeth
+    name: str = ""  # of a stage
+    unit: float = 0.0  # resultant of the reference load of a stage [N]
+    acceleration: float | None = None  # of the reference load of a stage
+    already: float = 0.0  # load in the direction of the reference load that was on before [N]
+    driven: bool = False  # the multiplier is a displacement of supports, the load their force
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
 
     @property
     def sense(self) -> str:
         return "+" if self.sign > 0 else "-"
 
+    def force(self, unit: float) -> np.ndarray:
+        """The load of each event [N]."""
+        return self.events.pull if self.driven else self.already + self.events.load * unit
+
     def envelope(self, unit: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and loads [N] of the envelope; it begins at the constant loads' displacement."""
         fine = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
-        return envelope(self.events.monitors[fine, 0], self.events.load[fine] * unit, self.before)
+        d, p = envelope(self.events.monitors[fine, 0], self.force(unit)[fine] - self.already, self.before)
+        return d, p + self.already
 
     @property
     def peak(self) -> int:
         """The event of the greatest load in equilibrium, passed or not; -1 where there is none."""
         carried = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
-        load = np.where(carried, self.events.load, -np.inf)
+        load = np.where(carried, self.force(1.0), -np.inf)
         return int(load.argmax()) if len(load) and np.isfinite(load.max()) else -1
 
     def passed(self, unit: float) -> bool:
@@ -80,6 +90,14 @@ class Curve:
         if self.events.reason in ended:
             return True
         return fallen(*self.envelope(unit))
+
+    @staticmethod
+    def stopped(core_model: core.Model, stage_a: core.Events) -> "Curve":
+        """No event of the reference load: the run was interrupted under the constant loads."""
+        none = core.Events.none()
+        none.interrupted = True
+        damage = core_model.damage()
+        return Curve(none, stage_a, [], damage, damage, 0.0, 1, [], core_model.equations, core_model.points)
 
 
 def run_curves(
@@ -110,7 +128,7 @@ def run_curves(
                 )
             core_model.set_damage(damage)
         else:
-            stage_a, rubs = _start(core_model, model, options, progress, warnings, chain and chain(0))
+            stage_a, rubs = bring_on_constant_loads(core_model, model, options, progress, warnings, chain and chain(0))
         start = core_model.damage()
         ledger, events = _totals(stage_a)
         for number, sense in enumerate(options.directions):
@@ -125,9 +143,13 @@ def run_curves(
             if options.solution == "incremental":
                 curve = _incremental_stage(core_model, model, options, sign, progress)
             else:
-                curve = _reference_stage(
+                curve = run_reference_loads(
                     core_model, model, options, sign, progress,
                     bool(stage_a is None and damage is None and not rubs), chain and chain(sign),
+                    core.Stop(
+                        displacement=np.inf if options.target_displacement is None else options.target_displacement,
+                        fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
+                    ),
                 )  # fmt: skip
             curve.stage_a, curve.before = stage_a, before
             curve.damage_start = start
@@ -144,7 +166,7 @@ def _totals(stage: core.Events | None) -> tuple[tuple[float, float, float], int]
     return (float(stage.external[-1]), float(stage.dissipated[-1]), float(stage.crack[-1])), int(stage.number[-1])
 
 
-def _start(
+def bring_on_constant_loads(
     core_model: core.Model,
     model: SlaModel,
     options: Sla,
@@ -214,7 +236,7 @@ def _constant_stage(
     return events
 
 
-def _reference_stage(
+def run_reference_loads(
     core_model: core.Model,
     model: SlaModel,
     options: Sla,
@@ -222,14 +244,14 @@ def _reference_stage(
     progress: Callable[[float, float, str], None],
     fresh: bool,
     chain: Chain | None,
+    stop: core.Stop,
 ) -> Curve:
-    """Events under A + lambda B; states at the wanted events, at the peak and at the end."""
+    """Events under A + lambda B until `stop`; states at the wanted events, at the peak and at the end.
+
+    fresh: A was not brought on with damage before; it must be carried.
+    """
     begin = time.perf_counter()
-    target = np.inf if options.target_displacement is None else options.target_displacement
-    stop = core.Stop(
-        displacement=target, fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
-        refuse_overload=fresh and bool(np.any(model.constant)),
-    )  # fmt: skip
+    stop = replace(stop, refuse_overload=fresh and bool(np.any(model.constant)))
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
     way = UnderWay((core_model.damage(), 0))
     if chain is not None and chain.state is not None:
@@ -269,10 +291,12 @@ def _reference_stage(
                 "them: let constant_damage = true bring them on with damage, or lower them"
             ) from None
         spent = time.perf_counter() - clock
+        if model.driven:  # as of a force that moves them
+            part.compliance = 1.0 / np.maximum(part.compliance, np.finfo(float).tiny)
         way.parts.append(part)
         if len(part):
             most = floor * way.parts[0].compliance[0]
-            load = np.where(part.equilibrium & (part.compliance <= most), part.load, -np.inf)
+            load = np.where(part.equilibrium & (part.compliance <= most), part.pull if model.driven else part.load, -np.inf)
             if part.reason == "mechanism" and model.mesh.has_joints:
                 load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:
@@ -292,7 +316,7 @@ def _reference_stage(
         events.equilibrium[-1] = False
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
-    curve.stones = model.mesh.has_joints
+    curve.stones, curve.already, curve.driven = model.mesh.has_joints, model.already, model.driven
     if len(events):
         curve.most_compliance = floor * float(events.compliance[0])
     if len(events):
