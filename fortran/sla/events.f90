@@ -152,27 +152,13 @@ contains
             if (.not. abs(model%lambda) <= farthest * merge(abs(model%lambda_held), model%peak, driven)) reason = stop_lost
          end if
          ! Friction makes the structure unsymmetric: beyond its limit it may answer the load the other way; but what
-         ! slides back sticks at once
-         if (too_soft(model%work(3), model%first_compliance, rules%compliance, driven)) then
+         ! slides back sticks at once. Supports that move also move what has no stiffness left
+         if (.not. (driven .or. abs(model%work(3)) <= rules%compliance * model%first_compliance)) then
             if (model%pending(3) /= code_stick) reason = stop_mechanism
          end if
          if (reason /= stop_none) return
       end do
    end subroutine run_events
-
-   !> Has the compliance grown by a ratio; of supports that move, has their stiffness fallen by it
-   pure function too_soft(now, first, ratio, driven) result(yes)
-      real(wp), intent(in) :: now
-      real(wp), intent(in) :: first
-      real(wp), intent(in) :: ratio
-      logical, intent(in) :: driven
-      logical :: yes
-      if (driven) then
-         yes = .not. now * ratio >= first
-      else
-         yes = .not. abs(now) <= ratio * first
-      end if
-   end function too_soft
 
    !> The multiplier at which monitor 1 has its target, where all points admit it
    pure subroutine meet_target(model, rules, found, first, equation, share, ratio, lambda, met)
@@ -751,8 +737,10 @@ contains
       change = 0.0_wp
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
+         ! From there on A does the work lambda fa.ub, also beside the forces of friction, where fb.ua is another.
          if (model%carried) model%external = model%external - 0.5_wp * now(1)
-         model%external = model%external + 0.5_wp * s**2 * (now(1) + lambda * (now(2) + cross + lambda * now(3)))
+         model%external = model%external + 0.5_wp * s**2 * (now(1) + lambda * (now(2) + &
+            merge(now(2), cross, model%carried) + lambda * now(3)))
          model%recorded = .true.
       else
          associate (event => model%event)

@@ -295,7 +295,7 @@ def run_reference_loads(
             part.compliance = 1.0 / np.maximum(part.compliance, np.finfo(float).tiny)
         way.parts.append(part)
         if len(part):
-            most = floor * way.parts[0].compliance[0]
+            most = np.inf if model.driven else floor * way.parts[0].compliance[0]
             load = np.where(part.equilibrium & (part.compliance <= most), part.pull if model.driven else part.load, -np.inf)
             if part.reason == "mechanism" and model.mesh.has_joints:
                 load[-1] = -np.inf  # on the way of the mechanism
@@ -317,7 +317,7 @@ def run_reference_loads(
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
     curve.stones, curve.already, curve.driven = model.mesh.has_joints, model.already, model.driven
-    if len(events):
+    if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before

@@ -189,6 +189,9 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
             f"mechanism_ratio: {ratio:g} is beyond what cracks that keep {floor:g} of their stiffness can show: what they "
             f"keep would carry the load; at most {MOST_OF_FLOOR / floor:g}"
         )
+    # Of stages, of which each has its own, that while the constant loads come on
+    growing = reference if not options.stages else constant
+    control = control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
     return SlaModel(
         mesh, freedoms, groups,
         core.Behaviour(
@@ -196,7 +199,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
             floor,
         ),
-        constant, reference, unit, control_of(mesh, options, reference, unit), bands, np.concatenate(points),
+        constant, reference, unit, control, bands, np.concatenate(points),
         ratio, acceleration_of(reference_loads),
     )  # fmt: skip
 

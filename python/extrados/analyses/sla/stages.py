@@ -174,11 +174,23 @@ def run_stages(
             wall.displacement = core_model.displacement(reached)
             core_model.end_stage(reached)
             wall.damage = core_model.damage()
-        wall.applied = staged.constant + reached * staged.reference
-        wall.ledger = (float(events.external[-1]), float(events.dissipated[-1]), float(events.crack[-1]))
+            wall.applied = staged.constant + reached * staged.reference
+            wall.ledger = (float(events.external[-1]), float(events.dissipated[-1]), float(events.crack[-1]))
+            if model.slides:
+                # Friction that slid is a spring again, whose energy was counted as dissipated
+                gained = _stored(core_model, staged, wall.applied, reached) - float(events.stored[-1])
+                wall.ledger = (wall.ledger[0], wall.ledger[1] - gained, wall.ledger[2])
         wall.events = int(events.number[-1])
         wall.loads.append((staged.reference, reached))
     return curves
+
+
+def _stored(core_model: core.Model, staged: SlaModel, applied: np.ndarray, reached: float) -> float:
+    """The elastic energy of a stage's last state, all loads constant [J]."""
+    if len(staged.moved):
+        core_model.supports(staged.moved[:, 0] + reached * staged.moved[:, 1], np.zeros(len(staged.moved)))
+    core_model.loads(applied, np.zeros_like(applied), carried=True)
+    return float(core_model.run(1, [staged.control], core.Stop(load=0.0)).stored[0])
 
 
 def _prepare(
