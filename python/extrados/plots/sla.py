@@ -160,7 +160,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             fine = get(f"{prefix}event_equilibrium") > 0
             color = style.THRUST if not prefix else style.SAFE
             begin = 1e3 * numbers.displacement_of_constant_loads_m
-            ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.25, alpha=0.4)
+            on = next((1e-3 * s.start_load_N for s in numbers.get("stages", []) if not s.prefix), 0.0)
+            ax.plot(np.append(begin, d[fine]), np.append(on, p[fine]), color=color, linewidth=0.25, alpha=0.4)
             if (~fine).any():
                 ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,

@@ -85,11 +85,12 @@ def _stages(
         )  # fmt: skip
     if options.stages[options.main :] and main.name != options.stage_names[options.main]:
         result.warnings.append(f"the numbers are those of stage {main.name}, the last that began")
-    result.answer = "; ".join(
-        f"stage {stage['name']} ended at {stage['end_load_N'] / 1e3:.4g} kN by: {stage['stop']}"
+    ends = "; ".join(
+        f"{stage['name']} at {stage['end_load_N'] / 1e3:.4g} kN by: {stage['stop']}"
         for stage in found
         if stage["end_load_N"] is not None
-    ).capitalize() + f". Of stage {main.name}: {result.answer}"
+    )
+    result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"
     return found
 
 
