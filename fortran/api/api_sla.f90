@@ -85,7 +85,7 @@ contains
    end subroutine reactions
 
    !> A batch of events
-   subroutine run(handle, room, limits, refuse_overload, proportional, monitors, entries, first, freedom, share, &
+   subroutine run(handle, room, limits, refuse_overload, variant, monitors, entries, first, freedom, share, &
                   counts, reals, integers, monitored, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
@@ -97,7 +97,8 @@ contains
       !> [m], the side it is reached from, loads like B already on; see stop_rules
       real(c_double), intent(in) :: limits(7)
       integer(c_int), intent(in) :: refuse_overload
-      integer(c_int), intent(in) :: proportional        !! 1: without equilibrium all loads go down together
+      !> 1: without equilibrium all loads go down together, 2: what a tooth sets free is put on at the load reached
+      integer(c_int), intent(in) :: variant
       integer(c_int), intent(in) :: monitors
       integer(c_int), intent(in) :: entries
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
@@ -141,7 +142,7 @@ contains
          if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > 2)) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
          rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0, &
-            proportional /= 0, limits(5), limits(6), limits(7))
+            variant == 1, variant == 2, limits(5), limits(6), limits(7))
          fate = status_out_of_memory
          allocate (equation(entries), weight(entries), log%reals(11, room), log%integers(4, room), &
             log%monitors(monitors, room), stat=info)

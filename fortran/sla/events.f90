@@ -40,6 +40,8 @@ module sla_events
       !> Where no multiplier suits all points: all loads of the last state in equilibrium are scaled down together
       !> (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides
       logical :: proportional = .false.
+      !> The forces that a tooth sets free go onto the others at the load reached, before it grows again
+      logical :: release = .false.
       real(wp) :: target = unbounded               !! of monitor 1 [m]: the stage ends in the state that has it
       real(wp) :: side = 0.0_wp                    !! +1: it is reached from below, -1: from above, 0: there is none
       real(wp) :: already = 0.0_wp                 !! loads like B that are on already, over B
@@ -84,9 +86,20 @@ contains
             status = status_cancelled
             return
          end if
+         if (rules%release .and. model%pending(1) /= 0) call hold_state(model, status)
+         if (status /= status_ok) return
          if (model%pending(1) /= 0) then
             call apply_event(model, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
+         end if
+         if (model%releasing) then
+            call set_free(model, found, status)
+            if (status /= status_ok) return
+            call record(model, found, .not. model%releasing, first, equation, share, ratio, log)
+            if (.not. abs(model%work_now(3)) <= rules%compliance * model%first_compliance) reason = stop_mechanism
+            if (reason /= stop_none .and. .not. driven) return
+            reason = stop_none
+            cycle
          end if
          call scan_model(model, found, status)
          if (status /= status_ok) return
@@ -159,6 +172,84 @@ contains
          if (reason /= stop_none) return
       end do
    end subroutine run_events
+
+   !> Keep the state in which a tooth is about to pass, from which its forces are set free
+   subroutine hold_state(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer :: info
+      call bring_all(model, status)
+      if (status /= status_ok) return
+      model%tree%settled = .false.
+      if (.not. allocated(model%from)) then
+         allocate (model%from, mold=model%ua, stat=info)
+         if (info /= 0) status = status_out_of_memory
+         if (info /= 0) return
+      end if
+      if (model%releasing) then
+         model%from(:) = model%from + model%released * (model%ua + model%lambda * model%ub - model%from)
+      else
+         model%from(:) = model%ua + model%lambda * model%ub
+      end if
+      model%releasing = .true.
+      model%released = 0.0_wp
+   end subroutine hold_state
+
+   !> Go the straight way from the state held to that of equilibrium at the load reached, up to the first point that
+   !> leaves its strength on it, which is the next to be damaged; model%releasing is false at the end of the way
+   subroutine set_free(model, found, status)
+      type(element_model), intent(inout) :: model
+      type(scan_result), intent(out) :: found
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: way(:)
+      real(wp) :: load, excess, total, part
+      integer :: g, k, n, info
+
+      n = model%equations
+      call bring_all(model, status)
+      if (status /= status_ok) return
+      model%tree%settled = .false.
+      if (size(model%moved, 1) > 0) call follow_supports(model)
+      allocate (way, mold=model%ua, stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      way(:) = model%ua + model%lambda * model%ub - model%from
+      do k = 1, size(model%list)
+         model%list(k) = k
+      end do
+      found = scan_result()
+      call scan_list(model, model%from, way, model%noise * max(abs(model%lambda), 1.0_wp), scan_result(), 1, &
+         size(model%list), found)
+      part = 1.0_wp
+      if (found%empty%point /= 0) then
+         part = 0.0_wp
+         call choose(model, found%empty)
+      else if (found%hi%value < 1.0_wp) then
+         part = max(found%hi%value, 0.0_wp)
+         call choose(model, found%hi)
+      end if
+      model%lambda = model%lambda_recorded
+      model%released = part
+      ! Energy: the loads go on at their value; what is above that of equilibrium is lost on the way
+      model%force = 0.0_wp
+      do g = 1, size(model%holders)
+         call model%holders(g)%group%force(way, model%force)
+      end do
+      excess = 0.5_wp * dot_product(way(1:n), model%force(1:n))
+      load = dot_product(model%fa(1:n) + model%lambda * model%fb(1:n), way(1:n))
+      total = model%work_now(1) + model%lambda * (2.0_wp * model%work_now(2) + model%lambda * model%work_now(3))
+      model%external = model%external + part * load
+      model%dissipated = model%dissipated + excess * (1.0_wp - (1.0_wp - part)**2)
+      model%free = [0.5_wp * total - (1.0_wp - part) * load + (1.0_wp - part)**2 * excess, &
+         model%support(1, 2) + model%lambda * model%support(2, 2) - &
+         (1.0_wp - part) * dot_product(model%force(n + 1:), model%moved(:, 2))]
+      model%event%rank = 0
+      model%releasing = part < 1.0_wp
+      if (model%releasing) return
+      model%work = model%work_now
+      model%cross = model%work_now(2)
+      model%support_was = model%support
+   end subroutine set_free
 
    !> The multiplier at which monitor 1 has its target, where all points admit it
    pure subroutine meet_target(model, rules, found, first, equation, share, ratio, lambda, met)
@@ -576,7 +667,11 @@ contains
       status = status_ok
       select type (group => model%holders(model%pending(1))%group)
       class is (point_group)
-         call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
+         if (model%releasing) then
+            call group%damage(model%pending(2), model%pending(3), 0.0_wp, model%from, model%ub, model%event, tooth)
+         else
+            call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
+         end if
       end select
       model%pending = 0
       model%events = model%events + 1
@@ -588,6 +683,10 @@ contains
             before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
                dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
             model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i)) - event%origin(i)
+            if (model%releasing) then
+               model%before(i) = dot_product(event%w(1:n, i), model%from(event%index(1:n)))
+               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i)**2
+            end if
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -827,6 +926,15 @@ contains
          end if
          log%monitors(k, log%count) = model%scale * log%monitors(k, log%count)
          if (k == 1) model%slope = slope
+      end do
+      if (.not. model%releasing) return
+      log%reals([4, log_reals], log%count) = model%free
+      do k = 1, size(log%monitors, 1)
+         log%monitors(k, log%count) = 0.0_wp
+         do i = int(first(k)), int(first(k + 1)) - 1
+            log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * ((1.0_wp - model%released) * &
+               model%from(equation(i)) + model%released * (model%ua(equation(i)) + model%lambda * model%ub(equation(i))))
+         end do
       end do
    end subroutine record
 

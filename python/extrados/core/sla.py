@@ -38,6 +38,7 @@ __all__ = [
     "LAWS",
     "REPORT",
     "STOPS",
+    "VARIANTS",
     "BadElement",
     "Bars",
     "Bedding",
@@ -67,6 +68,8 @@ MOST_TEETH = 4096
 #: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
 #: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
 HELD, HELD_RATE, MARK, MODE = 1, 6, 8, 10
+#: What happens after a tooth and where equilibrium is lost, see Model.run
+VARIANTS = ("load-unload", "proportional", "force-release")
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
 BAND_STEP = 1.02
 
@@ -338,12 +341,13 @@ class Model(Owner):
         return np.array(force)
 
     def run(
-        self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None, *, proportional: bool = False
+        self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None, *, variant: str = VARIANTS[0]
     ) -> Events:
         """Up to `room` events; the last one recorded is chosen but not applied until the next call.
 
-        proportional: where no multiplier suits all points all loads of the last state in equilibrium go down together
-        (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides.
+        variant: "load-unload", where no multiplier suits all points the constant loads stay and the greatest lower limit
+        decides; "proportional", all loads of the last state in equilibrium go down together; "force-release", the forces
+        that a tooth sets free go onto the others at the load reached, before it grows again.
         """
         stop = stop or Stop()
         if room < 1 or not monitors:
@@ -355,7 +359,8 @@ class Model(Owner):
         direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
         limits = [min(stop.load, huge), min(stop.displacement, huge), stop.fraction, stop.compliance, stop.target, stop.side, stop.already]
         counts, reals, ints, watched, cracked, status = long_call(
-            _core.api_sla.run, self.handle, int(room), real("stop", limits, (7,)), int(stop.refuse_overload), int(proportional), first,
+            _core.api_sla.run, self.handle, int(room), real("stop", limits, (7,)), int(stop.refuse_overload),
+            VARIANTS.index(variant), first,
             _rows(node, direction), real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
         interrupted = status == status_code("cancelled")

@@ -113,9 +113,9 @@ def run_curves(
     chain: where the states of the curve of a sense, +1 or -1, are kept on its way, and of 0, of the constant loads;
     none are without it.
     """
-    if model.slides and (options.solution == "incremental" or options.without_equilibrium == "proportional"):
+    if model.slides and (options.solution == "incremental" or options.without_equilibrium != "load-unload"):
         raise Refused(
-            "joints that slide keep forces that neither an incremental solution nor loads that go down together can "
+            "joints that slide keep forces that neither an incremental solution nor other variants can "
             'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload'
         )
     curves = []
@@ -259,11 +259,12 @@ def run_reference_loads(
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
     before = way.seconds
-    proportional = options.without_equilibrium == "proportional"
+    variant = options.without_equilibrium
+    release = variant == "force-release"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     while (done := way.done) < options.events:
-        if done % KEPT == 0 and done:
+        if done % KEPT == 0 and done and not release:  # what is on its way from one point to others has no name
             damage, standing = core_model.damage(), core_model.standing()
             try:
                 core_model.renew(damage, standing)
@@ -282,7 +283,7 @@ def run_reference_loads(
             room = min(room, ahead[0] + 1 - done)
         clock = time.perf_counter()
         try:
-            part = core_model.run(room, [model.control], stop, proportional=proportional)
+            part = core_model.run(room, [model.control], stop, variant=variant)
         except CoreError as error:
             if error.status != status_code("beyond_strength"):
                 raise
@@ -326,8 +327,8 @@ def run_reference_loads(
         if not (done - 1 in wanted and states):
             states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
-        if peak >= 0 and peak not in {s.event for s in states} and not events.interrupted:
-            state = _replay(core_model, model, sign, events, peak, way.before_best, proportional)
+        if peak >= 0 and peak not in {s.event for s in states} and not (events.interrupted or release):
+            state = _replay(core_model, model, sign, events, peak, way.before_best, variant)
             if state is None:
                 curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
             else:
@@ -375,7 +376,7 @@ def _replay(
     events: core.Events,
     event: int,
     before: tuple[np.ndarray, int],
-    proportional: bool,
+    variant: str,
 ) -> State | None:
     """The state of an event that has passed, run again from the damage kept before it."""
     damage, first = before
@@ -387,7 +388,7 @@ def _replay(
             core_model.renew(damage, core_model.standing_at(float(events.load[first - 1])))
 
     begin()
-    again = core_model.run(event - first + 1, [model.control], core.Stop(), proportional=proportional)
+    again = core_model.run(event - first + 1, [model.control], core.Stop(), variant=variant)
     # Near a mechanism of stiff stones the last digits of the load, and so the order of events, depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
     away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
@@ -395,13 +396,13 @@ def _replay(
         return None
     if away[-1]:
         begin()
-        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop(), proportional=proportional)
+        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop(), variant=variant)
         away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
         near = np.flatnonzero(~away & again.equilibrium)
         if not len(near):
             return None
         begin()
-        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop(), proportional=proportional)
+        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop(), variant=variant)
     return _state(core_model, event, again)
 
 

@@ -223,11 +223,12 @@ class Sla(BuildingAnalysis):
         "one point after the other; or, to compare, steps of arc length with a secant iteration in which all overloaded "
         "points lose teeth at once: `events` counts its steps then",
     )
-    without_equilibrium: Literal["load-unload", "proportional"] = key(
+    without_equilibrium: Literal["load-unload", "proportional", "force-release"] = key(
         "load-unload",
         "where no multiplier of B suits all points: A stays and the greatest lower limit decides, or all loads of the "
-        "last state in equilibrium go down together (intermittent proportional loading)",
-        source="thesis 4.3.1; Pari, Hendriks and Rots 2020",
+        "last state in equilibrium go down together (intermittent proportional loading); or the load never comes back: "
+        "what a tooth sets free goes onto the other points before the load grows again (force release)",
+        source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[Annotated[int, Field(ge=1)]] = key(
