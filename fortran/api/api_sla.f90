@@ -335,7 +335,7 @@ contains
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model, model_standing
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(out) :: values(30)
+      real(c_double), intent(out) :: values(31)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       values = 0.0_c_double
@@ -352,7 +352,7 @@ contains
       use sla_handle, only : model_take, stage_factored, stage_loaded
       use sla_model, only : element_model, model_resume
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(in) :: values(30)
+      real(c_double), intent(in) :: values(31)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       !f2py threadsafe

@@ -96,9 +96,8 @@ contains
             call set_free(model, found, status)
             if (status /= status_ok) return
             call record(model, found, .not. model%releasing, first, equation, share, ratio, log)
-            if (.not. abs(model%work_now(3)) <= rules%compliance * model%first_compliance) reason = stop_mechanism
-            if (reason /= stop_none .and. .not. driven) return
-            reason = stop_none
+            if (too_soft(model, driven, rules%compliance)) reason = stop_mechanism
+            if (reason /= stop_none) return
             cycle
          end if
          call scan_model(model, found, status)
@@ -165,13 +164,27 @@ contains
             if (.not. abs(model%lambda) <= farthest * merge(abs(model%lambda_held), model%peak, driven)) reason = stop_lost
          end if
          ! Friction makes the structure unsymmetric: beyond its limit it may answer the load the other way; but what
-         ! slides back sticks at once. Supports that move also move what has no stiffness left
-         if (.not. (driven .or. abs(model%work(3)) <= rules%compliance * model%first_compliance)) then
+         ! slides back sticks at once
+         if (too_soft(model, driven, rules%compliance)) then
             if (model%pending(3) /= code_stick) reason = stop_mechanism
          end if
          if (reason /= stop_none) return
       end do
    end subroutine run_events
+
+   !> Has the compliance to the growing load grown by a ratio; supports that move also move what has no stiffness left,
+   !> unless the constant loads carry it away
+   pure function too_soft(model, driven, ratio) result(yes)
+      type(element_model), intent(in) :: model
+      logical, intent(in) :: driven
+      real(wp), intent(in) :: ratio
+      logical :: yes
+      if (driven) then
+         yes = model%first_constant > 0.0_wp .and. .not. model%work_now(1) <= ratio * model%first_constant
+      else
+         yes = .not. abs(merge(model%work_now(3), model%work(3), model%releasing)) <= ratio * model%first_compliance
+      end if
+   end function too_soft
 
    !> Keep the state in which a tooth is about to pass, from which its forces are set free
    subroutine hold_state(model, status)

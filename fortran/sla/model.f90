@@ -24,7 +24,7 @@ module sla_model
    real(wp), parameter :: least_ratio = 1.0e-13_wp
    !> No tooth or change of a stored damage has a greater number
    real(wp), parameter :: most_damage = 1.0e8_wp
-   integer, parameter :: standing_values = 30   !! numbers that tell where the event loop stands
+   integer, parameter :: standing_values = 31   !! numbers that tell where the event loop stands
 
    type :: element_model
       integer :: stage = 0                               !! how far it is built, see sla_handle
@@ -76,6 +76,7 @@ module sla_model
       real(wp) :: dissipated = 0.0_wp                    !! [J] along the straight way between events
       real(wp) :: cracked = 0.0_wp                       !! [J] at constant strain: the area of the teeth
       real(wp) :: first_compliance = 0.0_wp              !! fb.ub at the start of the stage
+      real(wp) :: first_constant = 0.0_wp                !! work of the constant loads and supports there [J]
       real(wp) :: peak = 0.0_wp                          !! greatest |lambda| in equilibrium of the stage
       real(wp) :: peak_displacement = 0.0_wp             !! of monitor 1 there [m]
       real(wp) :: slope = 0.0_wp                         !! of monitor 1 per unit lambda [m]
@@ -436,6 +437,7 @@ contains
       model%recorded = .false.
       model%carried = carried
       model%first_compliance = model%work_now(3)
+      model%first_constant = model%work_now(1)
       model%support_was = model%support
 
       model%noise = 0.0_wp
@@ -463,7 +465,7 @@ contains
          model%cracked, model%first_compliance, model%peak, model%peak_displacement, model%slope, model%residual, &
          real(model%guard, wp), real(model%events, wp), merge(1.0_wp, 0.0_wp, model%recorded), &
          merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4]), &
-         model%scale, model%scale_recorded, model%lambda_held]
+         model%scale, model%scale_recorded, model%lambda_held, model%first_constant]
    end function model_standing
 
    !> Go on from where an event loop stood, after its loads and its damage were set and the factor made: the
@@ -498,6 +500,7 @@ contains
       model%scale = values(28)
       model%scale_recorded = values(29)
       model%lambda_held = values(30)
+      model%first_constant = values(31)
       model%event%rank = 0
       call model_solve(model, status)
       model%held = held_work(model, model%lambda_recorded)

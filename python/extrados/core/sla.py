@@ -446,7 +446,7 @@ class Model(Owner):
         Whoever goes on from the same two gets the same bits, after whatever history. Raises FreeNode.
         """
         self.set_damage(damage)
-        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (30,))), "stored events")
+        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (31,))), "stored events")
 
 
 def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:

@@ -65,7 +65,7 @@ def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     figures += [_section(run, name, folder, i, *arrays) for i, arrays in enumerate(sections)]
     figures.append(_energy(run, name, folder))
     if run[name].stages:
-        figures += [_all_stages(run, name, folder), _cracks_by_stage(run, name, folder)]
+        figures += [_all_stages(run, name, folder), *_cracks_by_stage(run, name, folder)]
     return figures
 
 
@@ -86,6 +86,7 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 low, high = get("envelope_displacement"), get("envelope_load")
                 ax.plot(1e3 * sense * low, 1e-3 * sense * high, color=color, linewidth=1.4, label=stage.name)
                 ax.plot(d[:1], p[:1], "o", color=color, markersize=4)
+            _measured(run, name, ax, any(not stages[k].prefix for k, _ in panel))
             ax.axhline(0.0, color="#999", linewidth=0.5)
             ax.set_xlabel("control displacement [mm]")
             ax.set_ylabel("load [kN]")
@@ -117,8 +118,8 @@ def _panels_of_stages(run: Stored, name: str) -> list[list[tuple[int, int]]]:
     return panels
 
 
-def _cracks_by_stage(run: Stored, name: str, folder: Path) -> tuple[str, str]:
-    """Cracks at the end of each stage, one magnification and one scale of widths for all."""
+def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Cracks at the end of each stage, one magnification and one scale of widths for all; none where no state was kept."""
     shown = []
     for stage in run[name].stages:
         if f"{stage.prefix}state_event" in run.arrays[name]:
@@ -126,8 +127,10 @@ def _cracks_by_stage(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 run.array(name, f"{stage.prefix}state_event") - 1
             ]
             shown += [(stage.prefix, int(s), f"end of stage {stage.name}") for s in np.flatnonzero(held > 0)[-1:]]
+    if not shown:
+        return []
     title = _draw_cracks(run, name, folder, shown, f"{name}-stage-cracks")
-    return title, "Cracks on the deformed shape at the end of each stage, all to one scale."
+    return [(title, "Cracks on the deformed shape at the end of each stage, all to one scale.")]
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -141,18 +144,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             at, load = (run.array(other, f"event_{n}") for n in ("displacement", "load"))
             ax.plot(at * 1e3, load / 1e3, "o-", color="#8a8a8a", markersize=3, linewidth=0.8,
                     label=f"incremental, {run[other].stop}")  # fmt: skip
-        if "measured_displacement" in run.arrays[name]:
-            test = get("measured_displacement") * 1e3
-            least, greatest = get("measured_least") / 1e3, get("measured_greatest") / 1e3
-            if (greatest > least).any():
-                ax.fill_between(test, least, greatest, color="#d9d9d9", linewidth=0, label="tests, least to greatest")
-            ax.plot(
-                test,
-                0.5 * (least + greatest),
-                color="#8c8c8c",
-                linewidth=1.2,
-                label="tests, mean" if (greatest > least).any() else "test",
-            )
+        _measured(run, name, ax, True)
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
             if numbers is None:
                 continue
@@ -194,9 +186,26 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
 
 
+def _measured(run: Stored, name: str, ax: Axes, here: bool) -> None:
+    """The measured curve in grey, behind, where there is one and it belongs `here`."""
+    if not here or "measured_displacement" not in run.arrays[name]:
+        return
+    test = run.array(name, "measured_displacement") * 1e3
+    least, greatest = (run.array(name, f"measured_{end}") / 1e3 for end in ("least", "greatest"))
+    band = bool((greatest > least).any())
+    if band:
+        ax.fill_between(
+            test, least, greatest, color="#d9d9d9", linewidth=0, zorder=0.5, label="tests, least to greatest"
+        )
+    ax.plot(
+        test, 0.5 * (least + greatest), color="#8c8c8c", linewidth=1.2, zorder=0.6,
+        label="tests, mean" if band else "test",
+    )  # fmt: skip
+
+
 def _incremental(run: Stored, name: str) -> list[str]:
     """The incremental analyses of the same run, to be drawn behind a curve of events."""
-    steps = [n for n, a in run.arrays.items() if "event_scale" in a and (run.array(n, "event_point") < 0).any()]
+    steps = [n for n, a in run.arrays.items() if "event_scale" in a and (run.array(n, "event_point") < 0).all()]
     return [] if name in steps else steps
 
 

@@ -312,6 +312,8 @@ def run_reference_loads(
     events, states = core.Events.join(way.parts), way.states
     events.monitors *= sign  # positive in the sense of the load
     collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+    if events.reason == "mechanism" and len(events) and model.driven:
+        events.equilibrium[-1] = False  # the constant loads carry it away
     if collapsed and model.mesh.has_joints:
         # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
         events.equilibrium[-1] = False
