@@ -84,8 +84,8 @@ class Curve:
 
     def passed(self, unit: float) -> bool:
         """Was the greatest load a peak: did the load fall after it, or the wall become a mechanism under it?"""
-        if self.peak < 0:
-            return False
+        if self.peak < 0 or (self.name and not self.force(unit)[self.peak] > 0.0):
+            return False  # a stage may begin under a load of the opposite sense and never leave it
         ended = ("mechanism", FELL, "no point limits the load") if self.stones else ("mechanism", FELL)
         if self.events.reason in ended:
             return True
