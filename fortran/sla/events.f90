@@ -105,7 +105,7 @@ contains
          if (size(model%moved, 1) > 0) call follow_supports(model)
          model%hot(:, 1) = [found%hi%group, found%hi%point]
          model%hot(:, 2) = [found%lo%group, found%lo%point]
-         equilibrium = found%empty%point == 0 .and. found%hi%value >= found%lo%value
+         equilibrium = found%empty%point == 0 .and. .not. crossed(found)
          if (rules%refuse_overload .and. .not. model%recorded .and. .not. equilibrium) then
             status = status_beyond_strength
             return
@@ -306,6 +306,17 @@ contains
          model%work_now = model%work_now + [2.0_wp * change(1, 1), change(1, 2) + change(2, 1), 2.0_wp * change(2, 2)]
       end associate
    end subroutine follow_supports
+
+   !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at the
+   !> same load, then close, many times over.
+   pure function crossed(found) result(yes)
+      type(scan_result), intent(in) :: found
+      logical :: yes
+      real(wp), parameter :: rounding = 1.0e-9_wp
+      yes = found%hi%value < found%lo%value
+      if (yes .and. found%hi%value < unbounded .and. found%lo%value > -unbounded) yes = &
+         found%lo%value - found%hi%value > rounding * max(abs(found%hi%value), abs(found%lo%value))
+   end function crossed
 
    !> Limits over all points; regions that cannot hold the least ones are left out. The same for any number of
    !> threads
