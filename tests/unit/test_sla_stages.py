@@ -172,3 +172,44 @@ def test_what_stands_beside_stages_is_told() -> None:
         make_deck(wall([PRESS, PRESS]))
     with pytest.raises(DeckError, match="there is no stage 'pull'"):
         make_deck(wall([PRESS], main_stage="pull"))
+
+
+@pytest.mark.parametrize("algorithm", ["update", "refactor"])
+def test_force_release(algorithm) -> None:
+    """What a tooth sets free goes onto the others at the displacement reached: it never comes back; the way ends in the
+    equilibrium of a linear analysis; no state in equilibrium exceeds a strength, and the energies balance, of which more
+    is dissipated than the teeth take. The peak is near that of load-unload."""
+    stages = [PRESS, move(6e-4, name="push", hold=[{**TOP, "fix": "y"}])]
+    found = {
+        variant: run_deck(wall(stages, events=3000, without_equilibrium=variant, algorithm=algorithm))
+        for variant in ("load-unload", "force-release")
+    }
+    back, on = (r.results["stages"][1] for r in found.values())
+    r = found["force-release"]
+    held = r["event_equilibrium"] > 0
+    moved = r["event_displacement"][held]
+    assert (np.diff(moved) > -1e-12).all() and (np.diff(found["load-unload"]["event_displacement"]) < 0.0).any()
+    assert on["energy_residual_ratio"] < 1e-10 and on["residual_ratio"] < 1e-8
+    assert on["dissipated_energy_J"] > on["crack_energy_J"] > 0.0
+    assert on["greatest_load_N"] / back["greatest_load_N"] == pytest.approx(0.979, abs=0.01)
+    assert on["end_load_N"] / back["end_load_N"] == pytest.approx(0.955, abs=0.02)
+
+
+def test_where_nothing_moves_teeth_take_load_away() -> None:
+    """Without constant loads and with cracks that stay: each release ends at the same displacement under a lower load."""
+    r = run_deck(wall([move(4e-4)], events=600, cracking="orthotropic", without_equilibrium="force-release"))
+    held = r["event_equilibrium"] > 0
+    load, still = r["event_load"][held], np.abs(np.diff(r["event_displacement"][held])) < 1e-12
+    assert still.sum() > 50
+    assert (np.diff(load)[still] < 0.0).all()
+
+
+def test_force_release_under_a_force_ends_at_the_peak() -> None:
+    push = {"name": "push", "reference": [{"kind": "spread", "edge": "top", "fx": 1e3}]}
+    found = {
+        variant: run_deck(wall([push], events=3000, without_equilibrium=variant, ripple=0.1)).results
+        for variant in ("load-unload", "force-release")
+    }
+    assert found["force-release"]["stop"] == "mechanism"
+    peaks = [r["peak_load_N"] for r in found.values()]
+    assert peaks[1] == pytest.approx(peaks[0], rel=0.02)

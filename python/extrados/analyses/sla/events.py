@@ -305,7 +305,8 @@ def run_reference_loads(
         done += len(part)
         if done and done - 1 in wanted:
             way.states.append(_state(core_model, done - 1, part))
-        progress(done, options.events, f"event {done}, load {part.load[-1] * model.unit:.4g} N" if len(part) else "")
+        load = (part.pull if model.driven else model.already + part.load * model.unit)[-1:]
+        progress(done, options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
         if part.reason or part.interrupted or not len(part):
             break
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
