@@ -16,6 +16,8 @@ from extrados.results.store import Stored
 CRACKS = LinearSegmentedColormap.from_list("cracks", ["#f4a261", "#d1495b", "#7b2d8b", "#10002b"])
 LOST, ENVELOPE = "#d9822b", "#1f4e79"
 CORNERS = {3: 3, 6: 3, 4: 4, 8: 4}
+#: Panels that stand beside each other at most; one more does before the next row begins
+MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 #: What the names of the figures of each sense of the load have in them
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
@@ -73,8 +75,12 @@ def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     """Loads against displacements of all stages; those in one direction, or its opposite, share a panel."""
     stages = run[name].stages
     panels = _panels_of_stages(run, name)
-    with style.figure(4.6 * len(panels) + 0.6, 4.0, columns=len(panels)) as (fig, axes):
-        for ax, panel in zip(axes, panels, strict=True):
+    columns = min(len(panels), 2)
+    rows = -(-len(panels) // columns)
+    with style.figure(4.8 * columns + 0.4, 3.8 * rows, rows=rows, columns=columns) as (fig, axes):
+        for ax in axes[len(panels) :]:
+            ax.set_axis_off()
+        for ax, panel in zip(axes, panels, strict=False):
             for k, sense in panel:
                 stage = stages[k]
                 get = lambda n, prefix=stage.prefix: run.array(name, f"{prefix}{n}")  # noqa: E731
@@ -245,7 +251,10 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
     most = max(float(get(prefix, f"width_{d}", s).max()) for prefix, s, _ in shown for d in "ns")
     edges = _outline(run, name)
     with _panels(span, len(shown)) as (fig, axes):
-        for ax, (prefix, s, words) in zip(axes, shown, strict=True):
+        drawn = None
+        for ax in axes[len(shown) :]:
+            ax.set_axis_off()
+        for ax, (prefix, s, words) in zip(axes, shown, strict=False):
             moved, load = get(prefix, "displacement", s), get(prefix, "load", s)
             shape = xy + factor * moved
             _wall(ax, _polygons(run, name, shape), facecolors="white", edgecolors="#e4e4e4")
@@ -267,10 +276,10 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
                 lines.set_array(1e3 * width[wide])
                 ax.add_collection(lines)
                 drawn = lines
-            if most > 1e-9 and len(ax.collections) > 2:
-                fig.colorbar(drawn, ax=ax, shrink=0.7, label="crack width [mm]")
             style.section_axes(ax)
-            ax.set_title(f"{words}, {load / 1e3:.4g} kN, displacements x {factor:g}")
+            ax.set_title(f"{words}, {load / 1e3:.4g} kN\ndisplacements x {factor:g}")
+        if drawn is not None:
+            fig.colorbar(drawn, ax=list(axes), shrink=0.7, label="crack width [mm]")
         return style.save(fig, folder, file)
 
 
@@ -285,7 +294,9 @@ def _panels(span: np.ndarray, count: int):
     """Panels side by side for upright walls, one below the other for long ones."""
     if span[0] > 2.2 * span[1]:
         return style.figure(8.0, count * min(8.0 * span[1] / span[0] + 1.1, 5.0), rows=count)
-    return style.figure(4.8 * count, min(4.8 * span[1] / span[0], 9.0) + 0.6, columns=count)
+    columns = count if count <= MOST_BESIDE + 1 else MOST_BESIDE
+    rows = -(-count // columns)
+    return style.figure(4.8 * columns, rows * (min(4.8 * span[1] / span[0], 9.0) + 0.6), rows=rows, columns=columns)
 
 
 def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
