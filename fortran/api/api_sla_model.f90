@@ -34,8 +34,8 @@ contains
       call distribute(kind, nx, ny, xy, connect, density, force, bad, status)
    end subroutine body_force
 
-   !> A model on nodes; equation 0 is held
-   subroutine create(nodes, xy, equation, factor, cracking, retention, closure, most_changes, floor, handle, status)
+   !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
+   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register
@@ -43,6 +43,7 @@ contains
       integer(c_int), intent(in) :: nodes
       real(c_double), intent(in) :: xy(2, nodes)          !! [m]
       integer(c_int), intent(in) :: equation(2, nodes)
+      integer(c_int), intent(in) :: moved
       real(c_double), intent(in) :: factor(2, nodes)
       integer(c_int), intent(in) :: cracking              !! of the list sla_cracking
       real(c_double), intent(in) :: retention             !! negative: thesis Eq. 4.11
@@ -63,7 +64,7 @@ contains
       options%closure = closure /= 0
       options%most_changes = int(most_changes)
       options%floor = floor
-      call model_new(xy, equation, factor, options, model, status)
+      call model_new(xy, equation, moved, factor, options, model, status)
       if (status == status_ok) then
          call model_register(model, handle, status)
       else
