@@ -61,16 +61,21 @@ def _gif(pictures: list[bytes], rate: int) -> bytes:
     from PIL import Image
 
     first, *_ = {_size(p) for p in pictures}
-    palette = None
-    frames = []
-    for picture in pictures:
+
+    def drawn(picture: bytes) -> Image.Image:
         try:
             with Image.open(io.BytesIO(picture), formats=["JPEG"]) as image:
-                drawn = image.convert("RGB").resize(first)
+                return image.convert("RGB").resize(first)
         except OSError:
             raise BadFilm("a picture cannot be read") from None
-        palette = palette or drawn.quantize(128)
-        frames.append(drawn.quantize(palette=palette, dither=Image.Dither.NONE))
+
+    # One palette for all pictures, or their colours would flicker: that of a few of them side by side
+    some = pictures[:: max(1, len(pictures) // 6)]
+    strip = Image.new("RGB", (first[0] // 2 + 1, (first[1] // 2 + 1) * len(some)))
+    for k, picture in enumerate(some):
+        strip.paste(drawn(picture).reduce(2), (0, k * (first[1] // 2 + 1)))
+    palette = strip.quantize(128)
+    frames = [drawn(picture).quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
     out = io.BytesIO()
     frames[0].save(
         out, "GIF", save_all=True, append_images=frames[1:], duration=max(20, round(1000 / rate)), loop=0, optimize=False

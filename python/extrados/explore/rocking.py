@@ -17,6 +17,8 @@ from extrados.schema.constants import GRAVITY
 
 #: Pictures of a history, and points of its curves
 MOST_PICTURES, MOST_POINTS = 600, 1600
+#: Times at which a history is known
+MOST_OUTPUTS = 20_000
 #: What each round of the map adds: every 4th, every 2nd, every cell
 STRIDES = (4, 2, 1)
 #: Shares of the sampling at which a motion is drawn
@@ -30,8 +32,8 @@ def history(
     rocker = building.rocker(options.form == "linear")
     motion = context.motion
     end = options.end_time or motion.end + rest_time(rocker)
-    step = max(options.output_step, end / MOST_POINTS)
-    response = run_history(context, options.model_copy(update={"output_step": step}), rocker.body, end, 12, rocker.start_rotation)  # fmt: skip
+    fine = options.model_copy(update={"output_step": max(options.output_step, end / MOST_OUTPUTS)})
+    response = run_history(context, fine, rocker.body, end, 12, rocker.start_rotation)
     words: dict[str, Any] = {
         "outcome": response.outcome, "settled": response.settled, "half_cycles": response.half_cycles,
         "impacts": response.impacts, "impact_times_s": [t for kind, t, _ in response.events if kind == "impact"][:400],
@@ -41,15 +43,18 @@ def history(
         "answer": answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift),
         "warnings": [*rocker.warnings, *motion.notes],
     }  # fmt: skip
-    keep = slice(None, None, max(1, -(-len(response.time) // MOST_POINTS)))
+    moving = np.flatnonzero(response.rotation)
+    last = float(response.time[moving[-1]]) if len(moving) else 0.0
+    words["active_s"] = min(max(1.05 * last, 1.2 * min(motion.end, end)), float(response.time[-1]) if len(response.time) else end)
+    shown = min(int(np.searchsorted(response.time, words["active_s"])) + 1, len(response.time))
+    keep = slice(0, shown, max(1, -(-shown // MOST_POINTS)))
     arrays = {
         "time": response.time[keep], "rotation": response.rotation[keep], "ground": response.ground[keep] / GRAVITY,
         "kinetic": response.kinetic[keep], "potential": response.potential[keep], "ledger": response.ledger[keep],
     }  # fmt: skip
     if still or not len(response.time):
         return words, arrays
-    every = max(1, -(-len(response.time) // MOST_PICTURES))
-    index = np.arange(0, len(response.time), every)
+    index = np.arange(0, shown, max(1, -(-shown // MOST_PICTURES)))
     states = States(*(getattr(response, k)[index] for k in ("rotation", "rate", "acceleration", "ground", "vertical")))
     made = shapes(rocker, states)
     arrays["picture_time"] = response.time[index]

@@ -15,7 +15,7 @@ import socket
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from starlette.applications import Starlette
 from starlette.requests import Request
@@ -38,6 +38,9 @@ from extrados.explore.guard import (
 )
 from extrados.explore.session import Session
 from extrados.schema.files import confine
+
+if TYPE_CHECKING:
+    import uvicorn
 
 log = logging.getLogger(__name__)
 STATIC = Path(__file__).parent / "static"
@@ -221,19 +224,25 @@ def new_token() -> str:
     return secrets.token_urlsafe(24)
 
 
-def serve(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> None:
-    """Serve pages on a listening socket until a signal ends it."""
+def configured(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> "uvicorn.Config":
+    """How uvicorn serves pages on a listening socket: bounded in all that a stranger could send."""
     import uvicorn
 
     port = sock.getsockname()[1]
-    config = uvicorn.Config(
+    return uvicorn.Config(
         application(token, hosts_of(port), folder, deck), log_level="warning", access_log=False, server_header=False,
         ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, ws_ping_interval=20.0,
         ws_ping_timeout=60.0, limit_concurrency=64, timeout_keep_alive=10, timeout_graceful_shutdown=1,
         h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http="h11", loop="asyncio",
     )  # fmt: skip
+
+
+def serve(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> None:
+    """Serve pages on a listening socket until a signal ends it."""
+    import uvicorn
+
     with contextlib.suppress(KeyboardInterrupt):
-        uvicorn.Server(config).run(sockets=[sock])
+        uvicorn.Server(configured(sock, token, folder, deck)).run(sockets=[sock])
 
 
 def main() -> None:

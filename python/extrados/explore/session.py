@@ -8,6 +8,7 @@ import shutil
 import tempfile
 import tomllib
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -152,7 +153,7 @@ class Session:
         self.document = Document(raw.decode("utf-8-sig"))
         same = message.get("here") == "same"
         if not same:
-            self.view = statics.View()
+            self.view = statics.View(lines=self.view.lines)
         self._held = None
         try:
             reply = self._scene()
@@ -407,7 +408,10 @@ class Session:
                 place = np.array(_numbers(wanted, 2)) + self.anchor
                 assembly = self._there().deck.building.blocks()
                 through = statics.nearest(assembly, place, chain or next(iter(assembly.chains), None))
-        self.view = statics.View(gamma, chain, through)
+        lines = view.lines
+        if isinstance(message.get("lines"), list):
+            lines = frozenset(str(name)[:20] for name in message["lines"][:20])
+        self.view = statics.View(gamma, chain, through, lines)
         yield self._scene()
 
     def _rest(self, _: dict[str, Any]) -> Iterator[Reply]:
@@ -440,7 +444,7 @@ class Session:
             return Reply({"scene": {"empty": str(error)}, "deck": self._deck_words()})
         self.anchor = hands.anchor_of(structure, assembly) if self._held is None else self._held
         if self.view.through is not None and self.view.through[0] >= len(assembly.a):
-            self.view = statics.View(self.view.gamma, self.view.chain, None)
+            self.view = replace(self.view, through=None)
         made = statics.picture(building, options, self.view, self.anchor)
         found = hands.handles_of(structure, assembly)
         if name is not None and options.load:

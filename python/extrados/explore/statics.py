@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import limit_of
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
@@ -29,11 +30,12 @@ PICTURES = 13  # of a mechanism that moves
 @dataclass(frozen=True)
 class View:
     """What the page wants to see: the tilt as gamma [g]; the chain whose thrust is least and greatest; the place
-    [joint, share] that a line shall pass."""
+    [joint, share] that a line shall pass; which lines are drawn."""
 
     gamma: float = 0.0
     chain: str | None = None
     through: tuple[int, float] | None = None
+    lines: frozenset[str] = frozenset(("least", "most", "through", "plus"))
 
 
 @dataclass
@@ -87,12 +89,16 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     except Immovable as error:
         words |= {"stands": True, "immovable": str(error)}
         return made
+    except (NoAnswer, Refused) as error:
+        words |= {"stands": None, "unknown": str(error)}
+        return made
     plus, minus = ends["plus"][0].gamma, -ends["minus"][0].gamma
     words["capacity"] = {"plus_g": plus, "minus_g": minus}
     words["stands"] = plus >= 0.0 and minus >= 0.0
     made.mechanisms = {name: mechanism for name, (_, mechanism) in ends.items()}
     for name, (state, mechanism) in ends.items():
-        _line(made, name, state, anchor)
+        if name in view.lines:
+            _line(made, name, state, anchor)
         made.arrays[f"{name}_velocity"] = mechanism.velocity
         words[f"{name}_hinges"] = _hinges(assembly, mechanism, anchor)
         words[f"{name}_sliding"] = [
@@ -111,11 +117,12 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
         try:
             least, most = limit.thrust(chains[chain], view.gamma)
             for name, state in (("least", least), ("most", most)):
-                _line(made, name, state, anchor)
+                if name in view.lines:
+                    _line(made, name, state, anchor)
                 words[f"{name}_N"] = thrust_of(assembly, state, chains[chain])
                 words[f"{name}_touches"] = _touches(assembly, state, anchor)
             shown = least
-            if view.through is not None and view.through[0] < len(assembly.a):
+            if view.through is not None and "through" in view.lines and view.through[0] < len(assembly.a):
                 shown = limit.through(*view.through, view.gamma)
                 _line(made, "through", shown, anchor)
                 joint = view.through[0]
@@ -141,6 +148,8 @@ def detail(made: Picture, anchor: np.ndarray) -> tuple[dict[str, Any], dict[str,
     arrays: dict[str, np.ndarray] = {}
     limit, assembly = made.limit, made.assembly
     if limit is None:
+        return words, arrays
+    if made.words["stands"] is None:
         return words, arrays
     if not made.words["stands"]:
         try:

@@ -4,25 +4,24 @@ import { stage } from "./stage.js";
 import { structurePanel } from "./structure.js";
 import { motionPanel } from "./motion.js";
 import { resultsPanel } from "./results.js";
-import { teachPanel } from "./teach.js";
 import { outMenu } from "./out.js";
 import { sidebar } from "./sidebar.js";
 
 const REST = 130; // ms without a change, after which the hand rests
 const KEPT = "extrados-kept";
-const TABS = [["structure", "Structure"], ["motion", "Motion"], ["results", "Results"], ["teach", "Teach"]];
+const TABS = [["structure", "Structure"], ["motion", "Motion"], ["results", "Results"]];
 
 export function mount(root, transport, film, { embedded = false } = {}) {
   const app = {
     root, transport, film, embedded, words: {}, scene: null, arrays: {}, handles: [], deck: null, text: "", name: "", source: {}, forms: [], drops: [],
-    detail: null, tab: "structure", view: { gamma: 0, through: null, chain: null }, welcome: null, timings: [],
+    detail: null, resting: true, tab: "structure", view: { gamma: 0, through: null, chain: null }, welcome: null, timings: [],
     layers: { least: true, most: true, through: true, plus: true, minus: false, central: false, reactions: true, joints: true },
     ask, change, show, edit, say, open, rest, on, undo: () => travel(-1), redo: () => travel(1), typed, setTab, remember, dialog,
   };
   const listeners = {};
   const waiting = new Map(); // number of a message -> what to do with its replies
   const flying = new Map(); // lane -> {busy, next}
-  let counter = 0, resting = null, past = [], future = [], travelling = false, connected = false, wasOpen = false;
+  let counter = 0, resting = null, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
 
   function on(event, listener) { (listeners[event] ??= []).push(listener); }
   function tell(event, ...rest) { for (const listener of listeners[event] ?? []) listener(...rest); }
@@ -127,7 +126,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       flying.clear(); waiting.clear();
       const kept = wasOpen && app.text ? { text: app.text, name: app.name, ...app.source, drops: app.drops } : null;
       ask({ do: "hello", kept });
-      if (kept && (app.view.gamma || app.view.through)) ask({ do: "show", gamma: app.view.gamma, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
+      if (kept && (app.view.gamma || app.view.through)) ask({ do: "show", gamma: app.view.gamma, lines: app.view.lines, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
       if (wasOpen) say("The server is back; this page has its state again.");
     } else {
       banner.hidden = false;
@@ -138,7 +137,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   transport.onreply = ({ words, arrays }) => {
     const entry = waiting.get(words.of);
     if (words.complaints || words.bad) {
-      say((words.complaints ?? [words.bad]).join("\n"), true);
+      if (!["rocking", "domain", "impulse"].includes(words.to)) say((words.complaints ?? [words.bad]).join("\n"), true);
       tell("complaint", words, entry?.message);
       entry?.reply?.(words, arrays);
       if (entry) landed(entry);
@@ -149,7 +148,9 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (words.scene) {
       app.scene = words.scene; app.arrays = arrays; app.handles = words.handles ?? []; app.deck = words.deck; app.anchor = words.anchor ?? [0, 0]; app.detail = null;
       if (words.opened !== undefined) opened(words);
+      app.turned();
       drawing.show(app.scene, arrays, app.handles, words.opened === true);
+      if (["drag", "set"].includes(words.to)) dirty = true;
       tell("scene", words.opened === true, entry?.message);
       if (!["open", "hello"].includes(words.to)) say("");
       rest();
@@ -183,11 +184,14 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     tell("text");
   }
   function rest() {
+    app.resting = true; // until the text is that of what is seen
     clearTimeout(resting);
     resting = setTimeout(() => ask({ do: "rest", lane: "rest" }), REST);
   }
   function settled(words) {
     app.text = words.text; app.forms = words.forms; app.name = words.name;
+    dirty = false;
+    app.resting = ["drag", "set", "show"].some((lane) => [...flying.keys()].some((key) => key.startsWith(lane)));
     remember();
     tell("text");
   }
@@ -202,6 +206,11 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
   }
   function travel(way) {
+    if (dirty) { // the last change is not in the history yet
+      clearTimeout(resting);
+      ask({ do: "rest" }, { reply: (words) => { if (words.text !== undefined) travel(way); } });
+      return;
+    }
     if (way < 0 ? past.length < 2 : !future.length) return;
     if (way < 0) future.push(past.pop()); else past.push(future.pop());
     travelling = true;
@@ -308,12 +317,12 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   // Layers over the drawing
 
-  const LAYERS = [["least", "Least thrust"], ["most", "Greatest thrust"], ["through", "Through a point"], ["plus", "Collapse +x"], ["minus", "Collapse −x"], ["central", "Most central"], ["reactions", "Reactions"], ["joints", "Joints"]];
+  const LAYERS = [["least", "Least thrust"], ["most", "Greatest"], ["through", "Through a point"], ["plus", "Collapse +x"], ["minus", "Collapse −x"], ["central", "Central"], ["reactions", "Reactions"], ["joints", "Joints"]];
   const playButton = h("button", { class: "layer", "aria-pressed": "false", title: "Let the mechanism move", onclick: () => mechanism() }, "▶ Mechanism");
   layersBar.append(...LAYERS.map(([name, label]) => h("button", { class: `layer ${name}`, "aria-pressed": String(Boolean(app.layers[name])), "data-layer": name, onclick: (e) => {
     app.layers[name] = !app.layers[name];
     e.currentTarget.setAttribute("aria-pressed", String(app.layers[name]));
-    drawing.redraw();
+    show({ lines: Object.keys(app.layers).filter((key) => app.layers[key]) });
     tell("layers");
   } }, h("i", { class: "swatch" }), label)), playButton, h("span", { class: "spring" }));
   let swing = null;
@@ -349,20 +358,24 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (!e.target.closest?.(".stones, .joints, .thrust")) return;
     const edge = drawing.svg.getBoundingClientRect();
     app.layers.through = true;
+    app.view.lines = Object.keys(app.layers).filter((key) => app.layers[key]);
     layersBar.querySelector("[data-layer=through]").setAttribute("aria-pressed", "true");
-    show({ through: drawing.modelOf(e.clientX - edge.left, e.clientY - edge.top) });
+    show({ lines: app.view.lines, through: drawing.modelOf(e.clientX - edge.left, e.clientY - edge.top) });
   });
-  on("scene", () => drawing.setTheta(Math.atan(app.scene.gamma ?? 0)));
+  const turned = () => drawing.setTheta(app.tab === "motion" ? 0 : Math.atan(app.scene?.gamma ?? 0));
+  app.turned = turned;
 
   top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": "Help", title: "Help (?)", onclick: help }, "?"));
   sidebar(app, side);
   structurePanel(app, lower);
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);
-  teachPanel(app, lower);
   on("tab", (name) => {
     wide.hidden = name !== "results"; stageFrame.hidden = lower.hidden = name === "results";
     if (name !== "structure") app.stopMechanism();
+    turned();
+    drawing.fit();
+    drawing.redraw();
   });
   setTab("structure");
   app.connected = () => connected;

@@ -178,7 +178,7 @@ export function chart(box, options = {}) {
     context.putImageData(image, 0, 0);
     const half = (a) => (a.length > 1 ? (a[1] - a[0]) / 2 : a[0] / 2);
     const x0 = it.X(xs[0] - half(xs)), x1 = it.X(xs[nx - 1] + half(xs)), y0 = it.Y(ys[ny - 1] + half(ys)), y1 = it.Y(ys[0] - half(ys));
-    back.append(s("image", { href: canvas.toDataURL(), x: x0, y: y0, width: x1 - x0, height: y1 - y0, preserveAspectRatio: "none", style: "image-rendering: pixelated", "clip-path": `url(#${id})` }));
+    back.append(s("image", { href: canvas.toDataURL(), x: x0, y: y0, width: x1 - x0, height: y1 - y0, preserveAspectRatio: "none", class: "pixels", "clip-path": `url(#${id})` }));
   }
   function rgb(text) {
     const hex = text.trim().replace("#", "");

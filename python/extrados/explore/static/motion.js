@@ -27,7 +27,8 @@ export function motionPanel(app, lower, frame) {
     h("select", { "aria-label": "Speed", onchange: (e) => { it.speed = Number(e.target.value); } }, SPEEDS.map(([v, label]) => h("option", { value: v, selected: v === it.speed }, label))),
     h("label", {}, h("input", { type: "checkbox", onchange: (e) => { it.stop = e.target.checked; } }), " stop at impacts"));
   const answer = h("div", { class: "motion-words", hidden: true }, words, impulse);
-  frame.append(answer, player);
+  frame.prepend(answer);
+  frame.append(player);
 
   const charts = {
     pulse: chart(boxes.pulse, { ondraw: pulseHandles }),
@@ -74,7 +75,7 @@ export function motionPanel(app, lower, frame) {
   const blank = (title) => ({ title, x: { label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [], span: [0, 1] });
   function begin(kind) {
     const g = app.scene?.capacity ? Math.max(1.6 * app.scene.capacity.plus_g, 0.02) : 0.3;
-    const amplitude = `${Number(g.toPrecision(2))} g`, time = Number((0.25 * Math.sqrt(app.scene?.size_m ?? 4)).toPrecision(2));
+    const amplitude = `${Number(g.toPrecision(2))} g`, time = Number((0.08 * Math.sqrt(app.scene?.size_m ?? 4)).toPrecision(2));
     const tables = { "step-pulse": { kind, amplitude, duration: time }, "sine-pulse": { kind, amplitude, period: 2 * time }, harmonic: { kind, amplitude, frequency: 1, duration: 6 }, record: { kind, file: "extrados:el-centro-1940" } };
     if (tables[kind]) app.change({ motion: tables[kind] });
   }
@@ -82,7 +83,8 @@ export function motionPanel(app, lower, frame) {
     it.words = told; it.arrays = arrays;
     const verdict = { "no-hinging": "It does not rock. ", recovery: "It rocks and recovers. ", collapse: "It comes down. " }[told.outcome] ?? "";
     words.replaceChildren(h("b", { class: told.outcome === "collapse" ? "bad" : "good" }, verdict), told.answer, ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${w}`)));
-    const end = arrays.time.length ? arrays.time[arrays.time.length - 1] : 1;
+    it.end = told.active_s || 1;
+    const end = it.end;
     set(slider, { max: end });
     slider.disabled = !arrays.pose;
     it.time = Math.min(it.time, end);
@@ -102,12 +104,12 @@ export function motionPanel(app, lower, frame) {
       const flat = (v) => ({ x: Float32Array.of(0, arrays.time.at(-1) || 1), y: Float32Array.of(v, v) });
       const level = flat(critical), under = flat(-1e3 * told.critical_rad[1]);
       const showLimit = most > 0.25 * critical;
-      charts.history.draw({ title: "Rotation", x: { array: "time", label: "time", unit: "s" }, y: { label: "rotation", unit: "mrad" }, symmetric: true, marks: Float64Array.from(told.impact_times_s),
+      charts.history.draw({ title: "Rotation", x: { array: "time", label: "time", unit: "s" }, y: { label: "rotation", unit: "mrad" }, symmetric: true, span: [0, it.end], marks: Float64Array.from(told.impact_times_s),
         series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: "now", factor: 1e3, unnamed: true, colour: 0 },
           ...(showLimit ? [{ array: level.y, x: level.x, label: "critical", dashed: true, colour: 1, unnamed: true }, { array: under.y, x: under.x, label: "critical", dashed: true, colour: 1, unnamed: true }] : [])] }, arrays);
-      const axis = { array: "time", label: "time", unit: "s" };
+      const axis = { array: "time", label: "time", unit: "s" }, span = [0, it.end];
       const big = Math.max(...[...arrays.potential, ...arrays.kinetic].map(Math.abs), 1e-12), kilo = big > 2000 ? [1e-3, "kJ"] : [1, "J"];
-      if (shownThird === "energy") charts.energy.draw({ title: "Energy", x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: "supplied less lost", dashed: true, factor: kilo[0] }] }, arrays);
+      if (shownThird === "energy") charts.energy.draw({ title: "Energy", span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: "supplied less lost", dashed: true, factor: kilo[0] }] }, arrays);
     }
     drawMap();
     cursors();
@@ -208,7 +210,7 @@ export function motionPanel(app, lower, frame) {
   function seek(time, tellIt = true) {
     const a = it.arrays;
     if (!a?.pose || app.tab !== "motion") return;
-    const end = a.time.length ? a.time[a.time.length - 1] : 0;
+    const end = it.end;
     it.time = Math.min(Math.max(time, 0), end);
     slider.value = it.time;
     clock.textContent = `${it.time.toFixed(3)} s of ${end.toFixed(2)} s`;
@@ -244,7 +246,7 @@ export function motionPanel(app, lower, frame) {
   function run() {
     const a = it.arrays;
     if (!a?.pose) return;
-    const end = a.time[a.time.length - 1];
+    const end = it.end;
     if (it.time >= end - 1e-6) it.time = 0;
     play.textContent = "❚❚"; play.setAttribute("aria-label", "Pause");
     let last = performance.now();

@@ -8,7 +8,8 @@ export function alone(svg, background) {
   const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll("*")], to = [copy, ...copy.querySelectorAll("*")];
   from.forEach((element, k) => {
     const style = getComputedStyle(element);
-    to[k].setAttribute("style", STYLED.map((name) => `${name}:${style.getPropertyValue(name)}`).join(";"));
+    // attributes, since the page's own policy lets no style be written into elements
+    for (const name of STYLED) to[k].setAttribute(name, style.getPropertyValue(name));
     for (const name of ["class", "tabindex", "role"]) to[k].removeAttribute(name);
   });
   for (const hidden of copy.querySelectorAll("[data-handle]")) hidden.remove();
@@ -72,7 +73,7 @@ export function outMenu(app) {
   function movement() {
     if (app.tab === "motion" && app.motion.arrays?.pose) {
       const a = app.motion.arrays;
-      return { start: 0, end: a.time[a.time.length - 1], real: true, seek: app.motion.seek, label: () => `${app.motion.time.toFixed(2)} s` };
+      return { start: 0, end: app.motion.end, real: true, seek: app.motion.seek, label: () => `${app.motion.time.toFixed(2)} s` };
     }
     const column = app.results.columns[0], times = column.arrays.body_time;
     if (app.tab === "results" && times?.length > 1) return { start: times[0], end: times[times.length - 1], real: column.words.body.unit === "s", seek: (t) => column.seek(t, false), label: () => `${column.words.body.label} ${column.time.toPrecision(3)} ${column.words.body.unit}` };

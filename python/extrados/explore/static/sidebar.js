@@ -1,11 +1,12 @@
 // Beside the drawing: what the structure bears, its sizes, its deck.
+import { teachPanel } from "./teach.js";
 import { degrees, download, h, number, quantity } from "./dom.js";
 
 const NAMES = { structure: "Structure", motion: "Motion", joints: "Joints", material: "Material", supports: "Supports", initial: "Start" };
 
 export function sidebar(app, box) {
-  const pages = { answer: h("div", { class: "page answer" }), sizes: h("div", { class: "page sizes" }), deck: h("div", { class: "page deck" }) };
-  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck" };
+  const pages = { answer: h("div", { class: "page answer" }), sizes: h("div", { class: "page sizes" }), deck: h("div", { class: "page deck" }), teach: h("div", { class: "page teach" }) };
+  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Exercises" };
   const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Beside the drawing" }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => choose(name) }, labels[name])));
   box.append(tabs, ...Object.values(pages));
   let chosen = "answer";
@@ -26,6 +27,7 @@ export function sidebar(app, box) {
     const parts = [];
     const c = scene.capacity;
     if (scene.immovable) parts.push(h("p", { class: "verdict good" }, scene.immovable));
+    else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, "Limit analysis has no answer: "), scene.unknown));
     else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "It cannot stand. "), app.detail?.why ?? "No thrust line stays within the stones."));
     else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "It comes down. "), `${number(scene.gamma, 3)} g is more than it bears.`));
     else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? "It stands when tilted. " : "It stands. "), `As a mechanism it comes down at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
@@ -92,7 +94,7 @@ export function sidebar(app, box) {
     if (form.sort === "choice") input = h("select", { id, onchange: (e) => put(e.target.value) }, (form.choices.includes(form.value) ? form.choices : [form.value ?? "", ...form.choices]).map((c) => h("option", { value: c, selected: c === form.value }, String(c))));
     else if (form.sort === "yes") input = h("input", { id, type: "checkbox", checked: form.value === true, onchange: (e) => put(e.target.checked) });
     else {
-      const text = form.value === null ? "" : typeof form.value === "number" ? number(form.value, 7) : String(form.value);
+      const text = form.value === null ? "" : typeof form.value === "number" ? String(Number(form.value.toPrecision(7))) : String(form.value);
       const send = (e) => {
         const raw = e.target.value.trim().replaceAll("−", "-");
         if (raw === text.replaceAll("−", "-")) return;
@@ -135,11 +137,12 @@ export function sidebar(app, box) {
   app.on("welcome", (w) => adder.replaceChildren(h("option", { value: "" }, "Add analysis…"), ...w.kinds.analysis.map((k) => h("option", { value: k }, k))));
   app.on("complaint", (words, message) => { if (message?.do === "open" && message.here === "same") complaints.replaceChildren(...(words.complaints ?? [words.bad]).map((c) => h("li", {}, c))); });
 
-  function fill() { if (chosen === "answer") answer(); else if (chosen === "sizes") sizes(); else deck(); }
+  function fill() { if (chosen === "answer") answer(); else if (chosen === "sizes") sizes(); else if (chosen === "deck") deck(); }
   let due = false;
   app.on("scene", () => { complaints.replaceChildren(); if (chosen === "answer" && !due) { due = true; requestAnimationFrame(() => { due = false; answer(); }); } });
   app.on("detail", () => { if (chosen === "answer") answer(); });
   app.on("layers", () => { if (chosen === "answer") answer(); });
   app.on("text", fill);
+  teachPanel(app, pages.teach);
   choose("answer");
 }

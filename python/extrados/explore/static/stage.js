@@ -80,10 +80,13 @@ export function stage(box, hands) {
   /** Fit what is there, with room for handles around it. */
   function fit() {
     if (!it.bounds) return;
-    let [x0, y0, x1, y1] = it.bounds;
-    const size = Math.max(x1 - x0, y1 - y0, 1e-9);
-    const room = { left: 46, right: 46, top: 64, bottom: 58 };
-    y0 = Math.min(y0, 0); x0 -= 0.06 * size; x1 += 0.06 * size;
+    const [a0, b0, a1, b1] = it.bounds, size = Math.max(a1 - a0, b1 - b0, 1e-9);
+    const room = { left: 40, right: 46, top: 50, bottom: 44 };
+    // what the ground's turn makes of the building and the ground beside it
+    const c = Math.cos(view.theta), n = Math.sin(view.theta), reach = 0.12 * (a1 - a0);
+    const turned = [[a0, b1], [a1, b1], [a0, b0], [a1, b0], [a0 - reach, 0], [a1 + reach, 0]].map(([x, y]) => [c * x + n * y, c * y - n * x]);
+    const xs = turned.map((p) => p[0]), ys = turned.map((p) => p[1]);
+    const x0 = Math.min(...xs), x1 = Math.max(...xs), y0 = Math.min(...ys), y1 = Math.max(...ys, y0 + 0.2 * size);
     const k = Math.min((view.w - room.left - room.right) / (x1 - x0), (view.h - room.top - room.bottom) / (y1 - y0));
     view.k = Math.max(k, 1e-6);
     view.cx = room.left + (view.w - room.left - room.right) / 2 - (view.k * (x0 + x1)) / 2;
@@ -171,7 +174,7 @@ export function stage(box, hands) {
       s("path", { d: `M${x} ${y - 4}V${y}H${x + step * view.k}V${y - 4}` }),
       s("text", { x: x + step * view.k + 6, y: y + 1, text: quantity(step, "m", 1) }),
     );
-    if (scene.gamma) ruler.append(s("text", { x: view.w - 14, y: view.h - 12, "text-anchor": "end", text: `ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }));
+    if (view.theta) ruler.append(s("text", { x: view.w - 14, y: 18, "text-anchor": "end", text: `ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }));
   }
   function drawMarks(scene, layers) {
     const parts = [];

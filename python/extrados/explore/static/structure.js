@@ -9,7 +9,7 @@ export function structurePanel(app, lower) {
   const panel = h("div", { class: "cards", "data-for": "structure" }, polygonBox, gaugeBox);
   lower.append(panel);
   new ResizeObserver(draw).observe(panel);
-  app.on("tab", (name) => { panel.hidden = !["structure", "teach"].includes(name); });
+  app.on("tab", (name) => { panel.hidden = name !== "structure"; });
   app.on("scene", draw);
 
   function draw() {

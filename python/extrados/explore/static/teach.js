@@ -86,27 +86,29 @@ export const EXERCISES = [
   },
 ];
 
-export function teachPanel(app, lower) {
+export function teachPanel(app, box) {
   const list = h("ol", { class: "exercises" });
   const text = h("div", { class: "exercise", "aria-live": "polite" });
-  const panel = h("div", { class: "card teach", "data-for": "teach" }, h("div", { class: "card-head" }, h("h2", {}, "Exercises")), h("div", { class: "teach-body" }, list, text));
-  lower.append(panel);
+  box.append(h("p", {}, "Five questions about masonry, each with a structure to try things on."), list, text);
   const done = new Set(JSON.parse(read("extrados-exercises") ?? "[]"));
   let current = null;
   function read(key) { try { return localStorage.getItem(key); } catch { return null; } }
   function items() {
-    list.replaceChildren(...EXERCISES.map((x, k) => h("li", {}, h("button", { "aria-current": current === k ? "true" : null, onclick: () => begin(k) }, x.title, done.has(k) ? h("span", { class: "tick", "aria-label": "done" }, " ✓") : null))));
+    list.replaceChildren(...EXERCISES.map((x, k) => h("li", {}, h("button", { "aria-current": current === k ? "true" : null, onclick: () => begin(k) }, x.title, done.has(k) ? h("span", { class: "tick", role: "img", "aria-label": "done" }, " ✓") : null))));
   }
   function begin(k) {
     current = k;
     const x = EXERCISES[k];
-    app.open({ text: x.deck, name: `exercise-${k + 1}.toml`, here: "root" });
-    if (x.tab === "motion") app.setTab("motion");
+    app.open({ text: x.deck, name: `exercise-${k + 1}.toml` });
+    app.setTab(x.tab);
     const told = h("p", { class: "told", role: "status" });
     const say = (good, words) => {
       told.className = `told ${good ? "good" : "bad"}`;
       told.textContent = words;
-      if (good) { done.add(k); try { localStorage.setItem("extrados-exercises", JSON.stringify([...done])); } catch { /* a browser without storage */ } items(); }
+      if (!good) return;
+      done.add(k);
+      try { localStorage.setItem("extrados-exercises", JSON.stringify([...done])); } catch { /* a browser without storage */ }
+      items();
     };
     const check = () => {
       if (!app.scene || app.scene.empty) return;
@@ -115,17 +117,6 @@ export function teachPanel(app, lower) {
     };
     text.replaceChildren(h("h3", {}, x.title), h("p", {}, x.task), h("p", { class: "question" }, x.question), h("div", { class: "row" }, h("button", { class: "first", onclick: check }, "Check"), h("button", { onclick: () => begin(k) }, "Begin again")), told);
     items();
-    app.exercise = { k, check, panel };
-    panel.classList.add("begun");
-    sync();
   }
-  function sync() {
-    const motion = app.tab === "motion" && current !== null && EXERCISES[current].tab === "motion";
-    panel.hidden = app.tab !== "teach" && !motion;
-    lower.classList.toggle("with-teach", !panel.hidden);
-  }
-  app.on("tab", sync);
   items();
-  text.replaceChildren(h("p", {}, "Five questions about masonry, each with a structure to try things on. Choose one."));
-  sync();
 }
