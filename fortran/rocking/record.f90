@@ -8,7 +8,7 @@ module rocking_record
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: response_history, energy_of, cannot_fall
+   public :: response_history, energy_of, cannot_reach
 
    !> Gauss points of a step
    real(wp), parameter :: node(3) = [0.1127016653792583_wp, 0.5_wp, 0.8872983346207417_wp]
@@ -135,37 +135,26 @@ contains
       energy = 0.5_wp * m * rate**2 + problem%body%potential(problem%side, rotation)
    end function energy_of
 
-   !> Too little energy is left to reach the critical rotation of any side, over the restraints as they are now
-   pure function cannot_fall(problem, rotation, rate) result(answer)
+   !> Too little energy is left to reach a share of the critical rotation of any side, over the restraints as they are now
+   pure function cannot_reach(problem, rotation, rate, share) result(answer)
       type(equation_of_motion), intent(in) :: problem
       real(wp), intent(in) :: rotation  !! below the critical one [rad]
       real(wp), intent(in) :: rate      !! [rad/s]
+      real(wp), intent(in) :: share     !! at most 1
       logical :: answer
-      real(wp) :: energy, barrier
+      real(wp) :: energy, barrier, there
       integer :: i
       energy = energy_of(problem, rotation, rate)
-      if (.not. allocated(problem%memory)) then
-         answer = energy < barrier_of(problem)
-         return
-      end if
       answer = .true.
       do i = 1, 2
          if (.not. problem%body%free(i)) cycle
-         barrier = problem%body%potential(3 - 2 * i, problem%body%critical(i)) &
-            + problem%body%held%work_to(side_index(problem%side), rotation, i, problem%body%critical(i), problem%memory)
+         there = share * problem%body%critical(i)
+         barrier = problem%body%potential(3 - 2 * i, there)
+         if (allocated(problem%memory)) barrier = barrier &
+            + problem%body%held%work_to(side_index(problem%side), rotation, i, there, problem%memory)
          answer = answer .and. energy < barrier
       end do
-   end function cannot_fall
-
-   !> The lower of the two energy barriers [J]
-   pure function barrier_of(problem) result(energy)
-      type(equation_of_motion), intent(in) :: problem
-      real(wp) :: energy
-      real(wp) :: barrier(2)
-      barrier = [problem%body%potential(1, problem%body%critical(1)), &
-         problem%body%potential(-1, problem%body%critical(2))]
-      energy = minval(barrier, mask=problem%body%free)
-   end function barrier_of
+   end function cannot_reach
 
    !> Work of the ground over the first part of a step, by three Gauss points on the dense output
    !> (thesis Eq. 6.4)

@@ -9,6 +9,7 @@ import numpy as np
 
 from extrados.building.devices import AddedHinge, Damper
 from extrados.building.errors import BadGeometry, NoView
+from extrados.building.geometry.anchors import Anchored, stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
 from extrados.building.mesh.mesh import Mesh
@@ -181,6 +182,21 @@ class Building:
                     known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
                     groups = ", ".join([*assembly.groups, "ground"])
                     raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}")
+
+    def anchored(self) -> Anchored:
+        """The stones at the ends of its ties, in their order; BadGeometry where an end is in none, or in several."""
+        assembly = self.blocks()
+        block, point = np.full((len(self.ties), 2), GROUND), np.zeros((len(self.ties), 2, 2))
+        for k, tie in enumerate(self.ties):
+            point[k] = tie.start, tie.far
+            block[k, 0] = stone_at(assembly, point[k, 0], tie.start_stone, f"{tie.name}, start")
+            if tie.ground is None:
+                block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end")
+            if block[k, 0] == block[k, 1]:
+                raise BadGeometry(
+                    f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'"
+                )
+        return Anchored(block, point)
 
     def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that

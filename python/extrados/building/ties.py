@@ -16,7 +16,9 @@ class Tie(Table):
     name: str | None = key(None, "what answers call it; default tie 1, tie 2 and so on", max_length=80)
     start: Point = key(about="[x, y] where it is anchored in a stone")
     end: Point | None = key(None, "[x, y] where it is anchored in another stone; or give `ground`")
-    ground: Point | None = key(None, "[x, y] where it is anchored in the ground, which moves with the supports")
+    ground: Point | None = key(
+        None, "[x, y] where it is anchored in the ground, which stays where it is though supports may move"
+    )
     start_stone: str | None = key(
         None, "name of the stone at `start`, where that lies between two or in none", max_length=80
     )

@@ -95,8 +95,18 @@ class FrameModel(MechanismModel):
 
     @cached_property
     def body(self) -> Body:
-        a = self.assembly
+        return self.rebounding(1.0)
+
+    def rebounding(self, factor: float) -> Body:
+        a, (right, left) = self.assembly, self.restitution
         columns, lintel = float(a.mass[:-1].sum()), float(a.mass[-1])
         inertia = float(a.inertia[:-1].sum()) + 2.0 * lintel * a.radius**2
         half = 0.5 * a.width
-        return block_body(columns + 2.0 * lintel, inertia, 0.5 * a.height, half, half, self.restitution)
+        return block_body(
+            columns + 2.0 * lintel,
+            inertia,
+            0.5 * a.height,
+            half,
+            half,
+            (min(1.0, factor * right), min(1.0, factor * left)),
+        )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from extrados.building.errors import NoView
+from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel, block_model
 from extrados.building.rockers.frame import FrameModel
@@ -49,6 +50,12 @@ class Rocker:
         """Another body of the same structure, of other impacts, with what holds this one."""
         return body if self.restraints is None else self.restraints.hold(body)
 
+    def rebounding(self, factor: float) -> "Rocker":
+        """The same with c_v times a factor, as long as an impact creates no energy."""
+        return replace(
+            self, body=self.held(self.model.rebounding(factor)), restitution=min(1.0, factor * self.restitution)
+        )
+
     @property
     def scale(self) -> float:
         """Length [m] whose root scales durations, as R does for an arch (thesis Eq. 5.7): sqrt(scale/g) is 2.5 / p of
@@ -56,8 +63,12 @@ class Rocker:
         return self.length if isinstance(self.model, ArchModel) else GRAVITY * (2.5 * self.time_unit) ** 2
 
 
-def make_rocker(building: "Building", linear: bool = False) -> Rocker:
-    """The building as one rocking mechanism; NoView says why there is none."""
+def make_rocker(building: "Building", linear: bool = False, stones: Assembly | None = None) -> Rocker:
+    """The building as one rocking mechanism; NoView says why there is none.
+
+    stones: instead of the building's own, as they might be too; an arch of these need not be symmetric and rocks by
+    two mechanisms.
+    """
     structure, ratio = building.structure, building.initial.rotation_ratio
     if structure is None:
         raise NoView("the deck has no [structure]")
@@ -65,7 +76,7 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
         raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow")
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
     if structure.rocks_as == "block" or (piers is not None and len(piers.mass) == 1):
-        block = block_model(building, linear)
+        block = block_model(building, linear, stones)
         alpha = block.alpha
         made = Rocker(
             structure.kind, structure.word, block, block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])),
@@ -73,10 +84,10 @@ def make_rocker(building: "Building", linear: bool = False) -> Rocker:
             ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
         )  # fmt: skip
         return _restrained(made, building)
-    stones = building.blocks() if piers is None else piers
+    given, stones = stones is not None, stones or (building.blocks() if piers is None else piers)
     if linear:
         raise NoView('form = "linear" is known of blocks and columns only')
-    if isinstance(stones, ArchAssembly) and not _is_restrained(building):
+    if not given and isinstance(stones, ArchAssembly) and not _is_restrained(building):
         arch = ArchModel(stones, building.joints.restitution)
         limits = arch.limits
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
