@@ -72,6 +72,11 @@ class Deck:
         """The hash by which results are told from those of another deck."""
         return self.sha256 or hashlib.sha256(repr(self.data).encode()).hexdigest()
 
+    @property
+    def default_out(self) -> Path:
+        """results/<deck name> below the current folder."""
+        return Path("results") / (Path(self.path).stem or "deck")
+
     def resolved(self) -> dict[str, Any]:
         """All keys with their defaults, in SI."""
         own = {name: getattr(self.building, name).model_dump() for name in PROPERTIES}

@@ -191,7 +191,8 @@ def _proof(limit: LimitAnalysis) -> str:
 def why_not(limit: LimitAnalysis) -> str:
     """Why no thrust line is admissible upright: stones with nothing below, or the joints it leaves and by how much."""
     assembly = limit.assembly
-    if hanging := hanging_stones(assembly):
+    hanging = hanging_stones(assembly)
+    if hanging and not LimitAnalysis(assembly, loads=limit.loads).stands():  # else friction alone would hold them
         names = [assembly.block_names[i] for i in hanging]
         more = f" and {len(names) - 4} more" if len(names) > 4 else ""
         return f"nothing bears {', '.join(names[:4])}{more} from below"

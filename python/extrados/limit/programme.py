@@ -46,6 +46,9 @@ CREEPS = 0.25
 # Of the joints' length: where the search for the most central line may end.
 SETTLED = 1e-9
 
+# Of the joints' length: room for a line through a place that rounding has found
+HAIR = 1e-9
+
 # Of the joints' length: to which the most central line of a wall is found.
 LEAST_PART = 1e-3
 
@@ -361,6 +364,32 @@ class LimitAnalysis:
         found = [self.optimise(sign * cost, (gamma, gamma)) for sign in (1.0, -1.0)]
         least, greatest = (self._state(solution, corners) for solution, _, corners in found)
         return least, greatest
+
+    def through(self, joint: int, position: float, gamma: float = 0.0) -> State:
+        """The state at gamma whose line passes a joint as near to `position` (0 at p, 1 at q) as any line can, and keeps
+        as far from the ends of the other joints as it may."""
+        m = len(self.assembly.a)
+        here = np.array([joint])
+        near = self._rows(here, (-position, 1.0 - position, 0.0)) + self._rows(here, (position, position - 1.0, 0.0))
+        whole = self._whole()
+        rows = whole + near
+        slack, cost = np.zeros(len(rows.lower)), np.zeros(self.system.unknowns + 1)
+        # z >= |n_q - position N|, which is least
+        slack[-2:], cost[-1] = -1.0, 1.0
+        programme = Programme(self.system, rows, slack)
+        corners = self.system.corners(programme.minimise(cost, (gamma, gamma)).x[:-1])
+        found = corners[joint, 1] / max(corners[joint, :2].sum(), 1e-300)
+        # A hair of room: the place was found to rounding.
+        near = self._rows(here, (HAIR - found, 1.0 - found + HAIR, 0.0)) + self._rows(
+            here, (found + HAIR, found - 1.0 + HAIR, 0.0)
+        )
+        rows = whole + near
+        slack, cost = np.zeros(len(rows.lower)), -cost
+        others = np.setdiff1d(self._joints, here)
+        share = np.maximum(corners[others, :2].sum(axis=1), CARRIES)
+        slack[others] = slack[m + others] = share
+        programme = Programme(self.system, rows, slack)
+        return self._state(solution := programme.minimise(cost, (gamma, gamma)), self.system.corners(solution.x[:-1]))
 
     def central(self, gamma: float = 0.0, start: list[State] | None = None) -> tuple[State, float]:
         """The most central state at a given gamma, and the least part of the joints' length that holds it.

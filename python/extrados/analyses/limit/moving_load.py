@@ -359,7 +359,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
     place = f"x = {r.worst_place_m:.2f} m ({100 * r.worst_place_over_span:.0f} % of the {way})"
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
-        factors = "" if r.live_load_factor == 1.0 else f", already {r.live_load_factor:.4g} times itself,"
+        factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
         text = (
             f"The {what} bears {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
             f"the most dangerous place, with its first axle at {place}{heading}: {r.collapse_load_N / 1e3:.4g} kN then stand on it."
