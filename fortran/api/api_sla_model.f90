@@ -107,8 +107,8 @@ contains
       !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
       !> angle of the only crack normal allowed [rad], growth of the compressive strength per lateral pressure
       real(c_double), intent(in) :: property(6, elements)
-      !> Table of tension teeth (0 none), first and last of them where the crack band follows the crack's direction (0 it
-      !> does not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
+      !> Table of tension teeth (0 none), first and last of them where the crack band follows the direction of the crack (0
+      !> where not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
       integer(c_int), intent(in) :: choice(5, elements)
       integer(c_int), intent(out) :: bad                      !! inverted element
       integer(c_int), intent(out) :: status
