@@ -72,14 +72,19 @@ contains
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
       type(bound) :: scaled
-      real(wp) :: ratio(size(first) - 1), reached, at
+      real(wp), allocatable :: ratio(:)
+      real(wp) :: reached, at
       logical :: equilibrium, driven, met
+      integer :: info
 
       driven = any(abs(model%moved(:, 2)) > 0.0_wp)
       at = 0.0_wp
       reason = stop_none
-      status = status_ok
+      status = status_out_of_memory
       log%count = 0
+      allocate (ratio(size(first) - 1), stat=info)
+      if (info /= 0) return
+      status = status_ok
       call watch(model, first, equation, share, ratio)
       do while (log%count < size(log%reals, 2))
          if (cancel_requested()) then
@@ -473,8 +478,8 @@ contains
                call group%damage(worst%point, worst%code, lambda, model%ua, model%ub, event, tooth)
                count = count + 1
                do i = 1, event%rank
-                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * dot_product(event%w(1:event%entries, i), &
-                     model%ua(event%index(1:event%entries)) + lambda * model%ub(event%index(1:event%entries)))**2
+                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * &
+                     along(event, i, model%ua, model%ub, lambda)**2
                end do
             end do
          end select
@@ -704,11 +709,10 @@ contains
          if (event%rank == 0) return
          n = event%entries
          do i = 1, event%rank
-            before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
-               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            before(:, i) = [component(event, i, model%ua), component(event, i, model%ub)]
             model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i)) - event%origin(i)
             if (model%releasing) then
-               model%before(i) = dot_product(event%w(1:n, i), model%from(event%index(1:n)))
+               model%before(i) = component(event, i, model%from)
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i)**2
             end if
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
@@ -739,12 +743,12 @@ contains
                   event%w(unknown(1:f), i)
                b(f + 1:2 * f) = b(f + 1:2 * f) + event%sign(i) * (before(2, i) - event%hold(2, i)) * &
                   event%w(unknown(1:f), i)
-               model%fo(event%index(1:n)) = model%fo(event%index(1:n)) - &
-                  event%sign(i) * event%origin(i) * event%w(1:n, i)
-               model%fh(event%index(1:n), 1) = model%fh(event%index(1:n), 1) - &
-                  event%sign(i) * event%hold(1, i) * event%w(1:n, i)
-               model%fh(event%index(1:n), 2) = model%fh(event%index(1:n), 2) - &
-                  event%sign(i) * event%hold(2, i) * event%w(1:n, i)
+               do k = 1, n
+                  associate (to => event%index(k), w_k => event%w(k, i))
+                     model%fo(to) = model%fo(to) - event%sign(i) * event%origin(i) * w_k
+                     model%fh(to, :) = model%fh(to, :) - event%sign(i) * event%hold(:, i) * w_k
+                  end associate
+               end do
             end do
          end do
          if (f > 0) then
@@ -771,8 +775,7 @@ contains
             end do
          end if
          do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
-            after = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
-               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            after = [component(event, i, model%ua), component(event, i, model%ub)]
             model%work_now = model%work_now + event%sign(i) * &
                [before(1, i) * after(1), before(1, i) * after(2), before(2, i) * after(2)]
          end do
@@ -961,6 +964,19 @@ contains
          end do
       end do
    end subroutine record
+
+   !> w_i . x over the entries of an event
+   pure function component(event, i, x) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * x(event%index(k))
+      end do
+   end function component
 
    !> w_i . (x + lambda y) over the entries of an event: dot_product would gather them in memory that it does not ask
    !> for

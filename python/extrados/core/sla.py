@@ -268,7 +268,7 @@ class Model(Owner):
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(*tables, (1 + int(group.joint)) * given.astype(np.int32), *ladder),
+                properties, _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32)),
             )  # fmt: skip
             what = "element"
         if not isinstance(group, Bars):
