@@ -91,7 +91,7 @@ module sla_model
       real(wp) :: lambda_held = 0.0_wp                   !! of the last state in equilibrium
       logical :: releasing = .false.                     !! the forces of the last tooth are being set free
       real(wp) :: released = 0.0_wp                      !! part of the way from `from` in the state chosen
-      real(wp) :: free(2) = 0.0_wp                       !! on that way: stored energy [J], force that moves supports [N]
+      real(wp) :: free(2) = 0.0_wp                       !! there: stored energy [J], force that moves supports [N]
       real(wp), allocatable :: from(:)                   !! (0:n + moved) displacements before they are set free [m]
       integer :: hot(2, 2) = 0                           !! group and point of the last upper and lower limit
    end type element_model

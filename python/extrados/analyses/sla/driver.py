@@ -63,9 +63,7 @@ def _run(context: Context, options: Sla) -> Result:
     return result
 
 
-def _stages(
-    result: Result, model: SlaModel, options: Sla, curves: list[Curve], main: Curve
-) -> list[dict[str, Any]]:
+def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], main: Curve) -> list[dict[str, Any]]:
     """Numbers of all stages; arrays, tables, files and warnings of those that do not stand for the analysis."""
     found = []
     for k, curve in enumerate(curves, 1):

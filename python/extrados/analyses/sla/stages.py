@@ -136,9 +136,7 @@ def run_stages(
             core_model.set_damage(wall.damage)
             if len(staged.moved):
                 core_model.supports(*staged.moved.T)
-            core_model.loads(
-                staged.constant, staged.reference, carried=True, events=wall.events, ledger=wall.ledger
-            )
+            core_model.loads(staged.constant, staged.reference, carried=True, events=wall.events, ledger=wall.ledger)
             if staged.driven:
                 staged = replace(staged, already=float(core_model.reactions()[:, 0] @ staged.moved[:, 1]))
             start = core_model.displacement(0.0)
