@@ -724,8 +724,12 @@ contains
             return
          end if
          model%origin_energy = model%origin_energy + event%shift
-         f = count(event%index(1:n) <= model%equations)     ! the others are those of supports
-         unknown(1:f) = pack([(i, i = 1, n)], event%index(1:n) <= model%equations)
+         f = 0
+         do i = 1, n
+            if (event%index(i) > model%equations) cycle     ! of a support that moves
+            f = f + 1
+            unknown(f) = i
+         end do
          ! (K - W S W') du = W S (W' u - origin - hold). Stiffening first: no way-station is less definite than the
          ! ends.
          changes = 0
@@ -957,8 +961,10 @@ contains
       do k = 1, size(log%monitors, 1)
          log%monitors(k, log%count) = 0.0_wp
          do i = int(first(k)), int(first(k + 1)) - 1
-            log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * ((1.0_wp - model%released) * &
-               model%from(equation(i)) + model%released * (model%ua(equation(i)) + model%lambda * model%ub(equation(i))))
+            associate (q => equation(i))
+               log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * (model%from(q) + &
+                  model%released * (model%ua(q) + model%lambda * model%ub(q) - model%from(q)))
+            end associate
          end do
       end do
    end subroutine record

@@ -51,7 +51,7 @@ module sla_model
       real(wp), allocatable :: moved(:, :)               !! (moved, 2) supports, constant and per multiplier [m]
       real(wp), allocatable :: reaction(:, :)            !! (moved, 2) their forces under A and per multiplier [N]
       integer, allocatable :: beside(:, :)               !! (2, elements) group and element at a moved support
-      real(wp) :: support(2, 2) = 0.0_wp                 !! work of the reactions to A and B on moved(:, 1) and (:, 2) [J]
+      real(wp) :: support(2, 2) = 0.0_wp                 !! work of both reactions on both columns of `moved` [J]
       real(wp) :: support_was(2, 2) = 0.0_wp             !! of the last state
       !> (0:n + moved) displacements where the tree brought them up to date, see model_displacements [m]
       real(wp), allocatable :: ua(:), ub(:)
