@@ -38,8 +38,8 @@ docs: setup  ## the references of decks and results, from their models
 	@.venv/bin/extrados explain --manual > docs/decks.md
 	@.venv/bin/extrados explain --results > docs/results.md
 
-table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3)
-	@$(PYTHON) -m extrados.analyses.rocking.criterion
+table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints it by another impact rule
+	@$(PYTHON) -m extrados.analyses.rocking.criterion $(RULE)
 
 wheel: setup
 	@$(PYTHON) -m pip wheel --no-deps --no-build-isolation -w dist .

@@ -127,6 +127,7 @@ contains
 
       subroutine events(fate)
          use common_status, only : status_bad_index, status_out_of_memory
+         use common_threads, only : threads_available
          use sla_events, only : run_events, stop_rules, event_log
          use sla_handle, only : check_nodes
          integer(c_int), intent(out) :: fate
@@ -151,6 +152,7 @@ contains
             equation(k) = model%equation(freedom(2, k), freedom(1, k))
             weight(k) = share(k) * model%factor(freedom(2, k), freedom(1, k))
          end do
+         model%threads = threads_available(model%threads)
          call run_events(model, rules, first, equation, weight, log, reason, fate)
          counts = [int(log%count, c_int), int(model%guard, c_int), reason]
          reals(:, 1:log%count) = log%reals(:, 1:log%count)

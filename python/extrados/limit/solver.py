@@ -14,6 +14,7 @@ from extrados.limit.systems import Constraints, Reduced, Sparse
 
 FEASIBILITY = 1e-10
 BOUND = 1e5  # of the scaled unknowns; reached only where the structure cannot be moved at all
+MADE_UP = 1e-6  # of the value: what bounds may have of it by rounding
 INFINITY = highspy.kHighsInf
 
 
@@ -26,6 +27,13 @@ class Solution:
     equations: np.ndarray
     columns: np.ndarray
     value: float
+
+    @property
+    def made_up(self) -> float:
+        """What the bounds of the unknowns have of the value: forces at the bound may hold each other, as in stones wedged
+        without sliding, and count for nothing then."""
+        bounded = np.abs(self.x) > 0.99 * BOUND
+        return float(np.abs(self.columns * self.x)[bounded].sum())
 
 
 class Programme:
@@ -68,7 +76,9 @@ class Programme:
             row_upper = np.concatenate([system.right, np.full(k, INFINITY)])
         most = np.full(n, BOUND if e == 0 else INFINITY)
         least = -most
-        least[system.shares], most[system.shares] = 0.0, 1.0
+        if (answers := system.loads.resistance) is not None:
+            least[system.shares] = np.maximum(answers.low, least[system.shares])
+            most[system.shares] = np.minimum(answers.high, most[system.shares])
         basis = self._solver.getBasis()
         passed = self._solver.passModel(
             n, e + k, len(value), int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,

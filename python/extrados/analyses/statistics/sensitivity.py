@@ -23,7 +23,7 @@ MOST_MOTIONS = 4096  # held in memory
 def sensitivity(
     context: Context,
     names: list[str],
-    models: Callable[[np.ndarray], list[Rocker]],
+    models: Callable[[np.ndarray], list[Rocker | str]],
     source: Source,
     motions: int,
     settle: float,
@@ -54,7 +54,14 @@ def sensitivity(
     points = np.concatenate([a, b, mixed.reshape(-1, d)])
     # The points at which only the motion differs share their structures
     structures, body = np.unique(points[:, : len(names)], axis=0, return_inverse=True)
-    rockers = models(structures)
+    made = models(structures)
+    without = [m for m in made if isinstance(m, str)]
+    if without:
+        raise Refused(
+            f"{len(without)} of {len(made)} buildings of the sample do not rock ({without[0]}): the indices of the "
+            "sensitivity need all of them; smaller scatters may help"
+        )
+    rockers = [m for m in made if not isinstance(m, str)]
     chosen = np.minimum((points[:, -1] * len(usable)).astype(int), len(usable) - 1) if len(usable) > 1 else 0
     body = body.ravel()
     end = np.array([g.end for g in usable])[chosen] + settle
