@@ -35,7 +35,8 @@ contains
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
-   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, status)
+   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, &
+                     status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register

@@ -166,7 +166,8 @@ contains
          end if
          ! Where no multiplier brings a state back, limits run away
          if (model%peak > 0.0_wp .and. .not. equilibrium) then
-            if (.not. abs(model%lambda) <= farthest * merge(abs(model%lambda_held), model%peak, driven)) reason = stop_lost
+            reached = merge(abs(model%lambda_held), model%peak, driven)
+            if (.not. abs(model%lambda) <= farthest * reached) reason = stop_lost
          end if
          ! Friction makes the structure unsymmetric: beyond its limit it may answer the load the other way; but what
          ! slides back sticks at once
@@ -312,8 +313,8 @@ contains
       end associate
    end subroutine follow_supports
 
-   !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at the
-   !> same load, then close, many times over.
+   !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at
+   !> the same load, then close, many times over.
    pure function crossed(found) result(yes)
       type(scan_result), intent(in) :: found
       logical :: yes
@@ -664,12 +665,12 @@ contains
    !> The regions beside moved supports are brought up to date in each event
    subroutine watch_supports(model)
       type(element_model), intent(inout) :: model
-      integer :: i, j
+      integer :: i, j, q
       do i = 1, size(model%beside, 2)
          associate (e => model%beside(2, i), group => model%holders(model%beside(1, i))%group)
             do j = 1, group%freedoms
-               if (group%equation(j, e) > 0 .and. group%equation(j, e) <= model%equations) &
-                  model%watched(model%tree%of(group%equation(j, e))) = .true.
+               q = int(group%equation(j, e))
+               if (q > 0 .and. q <= model%equations) model%watched(model%tree%of(q)) = .true.
             end do
          end associate
       end do
@@ -727,8 +728,12 @@ contains
             return
          end if
          model%origin_energy = model%origin_energy + event%shift
-         f = count(event%index(1:n) <= model%equations)     ! the others are those of supports
-         unknown(1:f) = pack([(i, i = 1, n)], event%index(1:n) <= model%equations)
+         f = 0
+         do i = 1, n
+            if (event%index(i) > model%equations) cycle     ! of a support that moves
+            f = f + 1
+            unknown(f) = i
+         end do
          ! (K - W S W') du = W S (W' u - origin - hold). Stiffening first: no way-station is less definite than the
          ! ends.
          changes = 0
@@ -761,8 +766,8 @@ contains
                k = tree%part(k)%parent
             end do
             index0(1:f) = event%index(unknown(1:f)) - 1_c_int
-            status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(f, c_int), index0, w, 2_c_int, &
-               b, model%z, least)
+            status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(f, c_int), index0, w, &
+               2_c_int, b, model%z, least)
             if (status == status_not_positive_definite .or. (status == status_ok .and. least < least_pivot)) then
                status = status_ok
                reason = stop_mechanism
@@ -894,8 +899,8 @@ contains
             - t * (s + t) * before(1) - t * (s + t) * was * before(2) &
             - t * (s * lambda + t * was) * (before(4) + was * before(3)))
          ! The reactions of supports that move with lambda
-         model%external = model%external + 0.5_wp * (lambda - was) * (model%support(1, 2) + lambda * model%support(2, 2) &
-            + model%support_was(1, 2) + was * model%support_was(2, 2))
+         model%external = model%external + 0.5_wp * (lambda - was) * (model%support(1, 2) &
+            + lambda * model%support(2, 2) + model%support_was(1, 2) + was * model%support_was(2, 2))
       end if
       model%event%rank = 0
       model%held = held
@@ -959,8 +964,10 @@ contains
       do k = 1, size(log%monitors, 1)
          log%monitors(k, log%count) = 0.0_wp
          do i = int(first(k)), int(first(k + 1)) - 1
-            log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * ((1.0_wp - model%released) * &
-               model%from(equation(i)) + model%released * (model%ua(equation(i)) + model%lambda * model%ub(equation(i))))
+            associate (q => equation(i))
+               log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * (model%from(q) + &
+                  model%released * (model%ua(q) + model%lambda * model%ub(q) - model%from(q)))
+            end associate
          end do
       end do
    end subroutine record
