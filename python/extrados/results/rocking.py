@@ -177,7 +177,9 @@ class FailureCurves(KindResults):
     pulse: Pulse = fact("shape of the pulses")
     curves: list[FailureCurve] = fact("one for each variant and number of cycles")
     impulses: list[MotionImpulse] = fact("of the motions of the deck; none where it has no motion")
-    agreement: float | None = fact("share of verdicts by the curves that the whole motions confirm; null: none to compare")
+    agreement: float | None = fact(
+        "share of verdicts by the curves that the whole motions confirm; null: none to compare"
+    )
     scaling_misfit: float | None = fact(
         "greatest difference between curves over their natural times, as a share of the amplitude over uplift; null: their "
         "pulses or trains differ", source="thesis Eq. 5.7",
@@ -185,7 +187,9 @@ class FailureCurves(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The weakest of the structures; a motion that is a sine is no demand here, as it has a curve for each."""
-        lowest = [(min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])]
+        lowest = [
+            (min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])
+        ]
         if not lowest:
             return judge("None of the pulses tried brings any of them down.", None, None, "g")
         least, label = min(lowest)

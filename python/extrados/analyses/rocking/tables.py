@@ -58,7 +58,9 @@ class FailureCurves(RockingTable):
 
     kind: Literal["failure-curves"]
     variants: list[dict[str, float | str]] = key(
-        [], "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure as it is", max_length=24
+        [],
+        "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure as it is",
+        max_length=24,
     )
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
         "sine", "shape of the pulses", source="thesis Figs 5-4, 5-5, 5-15"
