@@ -147,3 +147,33 @@ def test_harmonic_tests_of_arch_1_by_each_rule() -> None:
         if rule != "thesis":
             assert found[rule][2] > 2.0 * single[2] and np.isnan(found[rule][3:]).all()
     assert found["thesis"][2] < 1.2 * 0.27 and np.isfinite(found["thesis"]).all() and found["thesis"].max() < 0.7
+
+
+#: Factors on Eq. 5.5 between which discrete elements begin to fall, by arch and period [s]
+ELEMENTS = {
+    "Arch1": {0.08: (1.2, 1.35), 0.10: (1.2, 1.35), 0.12: (1.2, 1.35), 0.15: (1.0, 1.1), 0.20: (1.0, 1.1), 0.30: (1.0, 1.1)},
+    "Arch2": {0.08: (1.5, 1.7), 0.10: (1.0, 1.1), 0.12: (1.1, 1.2), 0.15: (0.9, 1.0), 0.20: (0.9, 1.0), 0.30: (1.0, 1.1)},
+}  # fmt: skip
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("name", ARCHES)
+def test_single_sines_in_discrete_elements(name: str) -> None:
+    """They stand at the lower and fall at the upper factor: above the printed curve for short pulses, as the tests did."""
+    embrace, voussoirs, printed = ARCHES[name]
+    arch = {"radius": 0.2, "thickness": 0.03, "thickness_factor": 0.8, "embrace": embrace, "voussoirs": voussoirs}
+    for period, factors in ELEMENTS[name].items():
+        outcomes = []
+        for factor in factors:
+            amplitude = factor * float(criterion.Fit(*printed).amplitude(period))
+            run = extrados.run(
+                {
+                    "structure": {"kind": "arch", **arch},
+                    "joints": {"friction": 2.0, "normal_stiffness": 1e10},
+                    "motion": {"kind": "sine-pulse", "amplitude": f"{amplitude} g", "period": period},
+                    "analysis": [{"kind": "dem", "end_time": period + 1.5, "output_step": 0.02}],
+                },
+                threads=2,
+            )
+            outcomes.append(run["dem"].outcome == "collapse")
+        assert outcomes == [False, True], f"{name}, {period} s"
