@@ -126,7 +126,8 @@ contains
       type(dense_step), intent(inout) :: step
       type(power_series) :: series
       call expand(model, side_index(side), real(side, wp), h, q, v, value, slope, tolerance, series)
-      call take_over(series, h, series_end(series%x, series%last + 1), series_end(series%u, series%last) * (1.0_wp / h), step)
+      call take_over(series, h, series_end(series%x, series%last + 1), &
+         series_end(series%u, series%last) * (1.0_wp / h), step)
    end subroutine series_step
 
    !> A series as a step
@@ -191,7 +192,8 @@ contains
          q_end = series_end(series%x, series%last + 1)
          v_end = series_end(series%u, series%last) * (1.0_wp / h)
          ! A turning point, an impact, a fall, or a step that is too long: for whoever looks closer
-         stopped = series%error > series_short .or. q_end <= 0.0_wp .or. q_end >= model%limit(i) .or. v * v_end <= 0.0_wp
+         stopped = series%error > series_short .or. q_end <= 0.0_wp .or. q_end >= model%limit(i) &
+            .or. v * v_end <= 0.0_wp
          if (stopped) then
             step%t = begin
             call take_over(series, h, q_end, v_end, step)
@@ -278,7 +280,8 @@ contains
                exit
             end if
          end do
-         series%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
+         series%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, &
+            (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
       end associate
    end subroutine expand
 

@@ -144,6 +144,7 @@ contains
       !$omp end do
       !$omp end parallel
       status = merge(status_cancelled, status_ok, any(run_status == status_cancelled))
+      if (any(run_status == status_out_of_memory)) status = status_out_of_memory
    end subroutine run_ensemble
 
 end module rocking_ensemble

@@ -278,7 +278,8 @@ contains
       associate (problem => state%problem)
          answer = problem%series .and. associated(problem%ground%samples) .and. .not. associated(state%history)
          if (answer) answer = problem%segment >= 1 .and. problem%segment <= state%last_whole
-         if (answer) answer = state%t <= problem%ground%break_time(problem%segment) .and. state%h_next >= t_next - state%t
+         if (answer) answer = state%t <= problem%ground%break_time(problem%segment) &
+            .and. state%h_next >= t_next - state%t
       end associate
    end function may_glide
 
@@ -289,8 +290,8 @@ contains
 
       associate (problem => state%problem, ground => state%problem%ground)
          last = min(state%last_whole, problem%segment - 1 + state%options%max_steps - state%attempts)
-         call problem%body%glide(problem%side, ground%start, ground%step, ground%scale, ground%samples, problem%segment, &
-            last, [state%atol_q, state%atol_v, state%options%tolerance], state%q, state%v, passed, &
+         call problem%body%glide(problem%side, ground%start, ground%step, ground%scale, ground%samples, &
+            problem%segment, last, [state%atol_q, state%atol_v, state%options%tolerance], state%q, state%v, passed, &
             state%step, state%at_hand)
          if (passed == 0) return
          problem%segment = problem%segment + passed

@@ -72,14 +72,19 @@ contains
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
       type(bound) :: scaled
-      real(wp) :: ratio(size(first) - 1), reached, at
+      real(wp), allocatable :: ratio(:)
+      real(wp) :: reached, at
       logical :: equilibrium, driven, met
+      integer :: info
 
       driven = any(abs(model%moved(:, 2)) > 0.0_wp)
       at = 0.0_wp
       reason = stop_none
-      status = status_ok
+      status = status_out_of_memory
       log%count = 0
+      allocate (ratio(size(first) - 1), stat=info)
+      if (info /= 0) return
+      status = status_ok
       call watch(model, first, equation, share, ratio)
       do while (log%count < size(log%reals, 2))
          if (cancel_requested()) then
@@ -161,7 +166,8 @@ contains
          end if
          ! Where no multiplier brings a state back, limits run away
          if (model%peak > 0.0_wp .and. .not. equilibrium) then
-            if (.not. abs(model%lambda) <= farthest * merge(abs(model%lambda_held), model%peak, driven)) reason = stop_lost
+            reached = merge(abs(model%lambda_held), model%peak, driven)
+            if (.not. abs(model%lambda) <= farthest * reached) reason = stop_lost
          end if
          ! Friction makes the structure unsymmetric: beyond its limit it may answer the load the other way; but what
          ! slides back sticks at once
@@ -307,8 +313,8 @@ contains
       end associate
    end subroutine follow_supports
 
-   !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at the
-   !> same load, then close, many times over.
+   !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at
+   !> the same load, then close, many times over.
    pure function crossed(found) result(yes)
       type(scan_result), intent(in) :: found
       logical :: yes
@@ -473,8 +479,8 @@ contains
                call group%damage(worst%point, worst%code, lambda, model%ua, model%ub, event, tooth)
                count = count + 1
                do i = 1, event%rank
-                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * dot_product(event%w(1:event%entries, i), &
-                     model%ua(event%index(1:event%entries)) + lambda * model%ub(event%index(1:event%entries)))**2
+                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * &
+                     along(event, i, model%ua, model%ub, lambda)**2
                end do
             end do
          end select
@@ -659,12 +665,12 @@ contains
    !> The regions beside moved supports are brought up to date in each event
    subroutine watch_supports(model)
       type(element_model), intent(inout) :: model
-      integer :: i, j
+      integer :: i, j, q
       do i = 1, size(model%beside, 2)
          associate (e => model%beside(2, i), group => model%holders(model%beside(1, i))%group)
             do j = 1, group%freedoms
-               if (group%equation(j, e) > 0 .and. group%equation(j, e) <= model%equations) &
-                  model%watched(model%tree%of(group%equation(j, e))) = .true.
+               q = int(group%equation(j, e))
+               if (q > 0 .and. q <= model%equations) model%watched(model%tree%of(q)) = .true.
             end do
          end associate
       end do
@@ -704,11 +710,10 @@ contains
          if (event%rank == 0) return
          n = event%entries
          do i = 1, event%rank
-            before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
-               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            before(:, i) = [component(event, i, model%ua), component(event, i, model%ub)]
             model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i)) - event%origin(i)
             if (model%releasing) then
-               model%before(i) = dot_product(event%w(1:n, i), model%from(event%index(1:n)))
+               model%before(i) = component(event, i, model%from)
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i)**2
             end if
             model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
@@ -723,8 +728,12 @@ contains
             return
          end if
          model%origin_energy = model%origin_energy + event%shift
-         f = count(event%index(1:n) <= model%equations)     ! the others are those of supports
-         unknown(1:f) = pack([(i, i = 1, n)], event%index(1:n) <= model%equations)
+         f = 0
+         do i = 1, n
+            if (event%index(i) > model%equations) cycle     ! of a support that moves
+            f = f + 1
+            unknown(f) = i
+         end do
          ! (K - W S W') du = W S (W' u - origin - hold). Stiffening first: no way-station is less definite than the
          ! ends.
          changes = 0
@@ -739,12 +748,12 @@ contains
                   event%w(unknown(1:f), i)
                b(f + 1:2 * f) = b(f + 1:2 * f) + event%sign(i) * (before(2, i) - event%hold(2, i)) * &
                   event%w(unknown(1:f), i)
-               model%fo(event%index(1:n)) = model%fo(event%index(1:n)) - &
-                  event%sign(i) * event%origin(i) * event%w(1:n, i)
-               model%fh(event%index(1:n), 1) = model%fh(event%index(1:n), 1) - &
-                  event%sign(i) * event%hold(1, i) * event%w(1:n, i)
-               model%fh(event%index(1:n), 2) = model%fh(event%index(1:n), 2) - &
-                  event%sign(i) * event%hold(2, i) * event%w(1:n, i)
+               do k = 1, n
+                  associate (to => event%index(k), w_k => event%w(k, i))
+                     model%fo(to) = model%fo(to) - event%sign(i) * event%origin(i) * w_k
+                     model%fh(to, :) = model%fh(to, :) - event%sign(i) * event%hold(:, i) * w_k
+                  end associate
+               end do
             end do
          end do
          if (f > 0) then
@@ -757,8 +766,8 @@ contains
                k = tree%part(k)%parent
             end do
             index0(1:f) = event%index(unknown(1:f)) - 1_c_int
-            status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(f, c_int), index0, w, 2_c_int, &
-               b, model%z, least)
+            status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(f, c_int), index0, w, &
+               2_c_int, b, model%z, least)
             if (status == status_not_positive_definite .or. (status == status_ok .and. least < least_pivot)) then
                status = status_ok
                reason = stop_mechanism
@@ -771,8 +780,7 @@ contains
             end do
          end if
          do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
-            after = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
-               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            after = [component(event, i, model%ua), component(event, i, model%ub)]
             model%work_now = model%work_now + event%sign(i) * &
                [before(1, i) * after(1), before(1, i) * after(2), before(2, i) * after(2)]
          end do
@@ -891,8 +899,8 @@ contains
             - t * (s + t) * before(1) - t * (s + t) * was * before(2) &
             - t * (s * lambda + t * was) * (before(4) + was * before(3)))
          ! The reactions of supports that move with lambda
-         model%external = model%external + 0.5_wp * (lambda - was) * (model%support(1, 2) + lambda * model%support(2, 2) &
-            + model%support_was(1, 2) + was * model%support_was(2, 2))
+         model%external = model%external + 0.5_wp * (lambda - was) * (model%support(1, 2) &
+            + lambda * model%support(2, 2) + model%support_was(1, 2) + was * model%support_was(2, 2))
       end if
       model%event%rank = 0
       model%held = held
@@ -956,11 +964,26 @@ contains
       do k = 1, size(log%monitors, 1)
          log%monitors(k, log%count) = 0.0_wp
          do i = int(first(k)), int(first(k + 1)) - 1
-            log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * ((1.0_wp - model%released) * &
-               model%from(equation(i)) + model%released * (model%ua(equation(i)) + model%lambda * model%ub(equation(i))))
+            associate (q => equation(i))
+               log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * (model%from(q) + &
+                  model%released * (model%ua(q) + model%lambda * model%ub(q) - model%from(q)))
+            end associate
          end do
       end do
    end subroutine record
+
+   !> w_i . x over the entries of an event
+   pure function component(event, i, x) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * x(event%index(k))
+      end do
+   end function component
 
    !> w_i . (x + lambda y) over the entries of an event: dot_product would gather them in memory that it does not ask
    !> for

@@ -51,7 +51,7 @@ module sla_model
       real(wp), allocatable :: moved(:, :)               !! (moved, 2) supports, constant and per multiplier [m]
       real(wp), allocatable :: reaction(:, :)            !! (moved, 2) their forces under A and per multiplier [N]
       integer, allocatable :: beside(:, :)               !! (2, elements) group and element at a moved support
-      real(wp) :: support(2, 2) = 0.0_wp                 !! work of the reactions to A and B on moved(:, 1) and (:, 2) [J]
+      real(wp) :: support(2, 2) = 0.0_wp                 !! work of both reactions on both columns of `moved` [J]
       real(wp) :: support_was(2, 2) = 0.0_wp             !! of the last state
       !> (0:n + moved) displacements where the tree brought them up to date, see model_displacements [m]
       real(wp), allocatable :: ua(:), ub(:)
@@ -91,7 +91,7 @@ module sla_model
       real(wp) :: lambda_held = 0.0_wp                   !! of the last state in equilibrium
       logical :: releasing = .false.                     !! the forces of the last tooth are being set free
       real(wp) :: released = 0.0_wp                      !! part of the way from `from` in the state chosen
-      real(wp) :: free(2) = 0.0_wp                       !! on that way: stored energy [J], force that moves supports [N]
+      real(wp) :: free(2) = 0.0_wp                       !! there: stored energy [J], force that moves supports [N]
       real(wp), allocatable :: from(:)                   !! (0:n + moved) displacements before they are set free [m]
       integer :: hot(2, 2) = 0                           !! group and point of the last upper and lower limit
    end type element_model

@@ -13,7 +13,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.analyses.statistics.annual import rates
 from extrados.analyses.statistics.cloud import fit_cloud
-from extrados.analyses.statistics.uncertain import models_at
+from extrados.analyses.statistics.uncertain import Sample
 from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions.from_deck import generated_set
@@ -250,9 +250,8 @@ def models(uncertain: dict, draws: list[list[float]], structure: dict = ARCH, **
             "analysis": {"kind": "fragility", "uncertain": uncertain},
         }
     )
-    context = Context(deck)
-    context.building = deck.buildings[0]
-    return models_at(context, deck.analyses[0], context.building.rocker(), np.array(draws))
+    sample = Sample(deck.buildings[0], deck.analyses[0], np.array(draws))
+    return [sample.rocker(k) for k in range(len(draws))]
 
 
 def test_corners_change_the_thickness_that_is_left() -> None:

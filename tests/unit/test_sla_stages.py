@@ -26,7 +26,11 @@ def middle_force(size: float) -> list[dict]:
 
 def test_a_support_holds_where_it_is_and_lets_its_force_go() -> None:
     """A bar: pressed from its free top, then held there and loaded in the middle, then let go. By hand."""
-    press = {"name": "press", "reference": [{"kind": "pressure", "edge": "top", "value": 1e5}], "target_multiplier": 1.0}
+    press = {
+        "name": "press",
+        "reference": [{"kind": "pressure", "edge": "top", "value": 1e5}],
+        "target_multiplier": 1.0,
+    }
     load = {"name": "load", "hold": [{**TOP, "fix": "y"}], "reference": middle_force(-8e3), "target_multiplier": 1.0}
     go = {"name": "go", "free": [{**TOP, "fix": "y"}]}
     found = run_deck(column([press, load, go])).results["stages"]
@@ -37,8 +41,8 @@ def test_a_support_holds_where_it_is_and_lets_its_force_go() -> None:
     assert [stage["displacement_of_constant_loads_m"] for stage in found] == pytest.approx([0.0, *ends[:2]], abs=1e-15)
     # Half of the load went into the support, and is the load of the last stage
     assert found[2]["end_load_N"] - found[2]["start_load_N"] == pytest.approx(4e3, rel=1e-9)
-    work = 0.5 * 1e5 * AREA * down + 1e5 * AREA * 0.5 * pushed + 8e3 * (0.5 * down + 0.5 * pushed) - 0.5 * 8e3 * (
-        0.0
+    work = (
+        0.5 * 1e5 * AREA * down + 1e5 * AREA * 0.5 * pushed + 8e3 * (0.5 * down + 0.5 * pushed) - 0.5 * 8e3 * (0.0)
     )  # of both loads, had they come one after the other; the way there does not matter to what is stored
     stored = 0.5 * (1e5 * AREA) ** 2 / (AREA * YOUNG) * 0.5 + 0.5 * (1e5 * AREA + 8e3) ** 2 / (AREA * YOUNG) * 0.5
     assert found[2]["stored_energy_J"] == pytest.approx(stored, rel=1e-9) and work > 0.0
@@ -101,7 +105,12 @@ def test_a_support_that_moves_is_a_tie_that_is_pulled(algorithm) -> None:
 def test_cyclic_loads_keep_the_energy() -> None:
     """Pressed, held, pushed, pushed back and forth again, with cracks that close: the work of the loads and of the
     supports is what is stored and dissipated, through all stages; nothing is lost where one ends."""
-    stages = [PRESS, move(3e-4, name="push", hold=[{**TOP, "fix": "y"}]), move(-3e-4, name="back"), move(3e-4, name="again")]
+    stages = [
+        PRESS,
+        move(3e-4, name="push", hold=[{**TOP, "fix": "y"}]),
+        move(-3e-4, name="back"),
+        move(3e-4, name="again"),
+    ]
     result = run_deck(wall(stages, crack_closure=True, events=3000))
     found = result.results["stages"]
     assert [stage["stop"] for stage in found] == ["target load", *["target displacement"] * 3]

@@ -9,6 +9,7 @@ so that impacts are roots of known functions. Zhang and Makris, J. Eng. Mech. 12
 and DeJong, Proc. R. Soc. A 468 (2012) 2293-2318, write the same solution for single pulses.
 """
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,7 +53,7 @@ def rectangle(amplitude: float, length: float) -> list[Wave]:
 
 
 def outcome(waves: list[Wave], c_v: float, most_impacts: int = 60) -> tuple[str, int]:
-    """"rest" | "safe" | "down", and the impacts before.
+    """The word "rest", "safe" or "down", and the impacts before.
 
     From rest it lifts where |f| passes 1. Down: past x = 2 as the program has it; safe: after the pulse, with less
     energy than the barrier.
@@ -121,7 +122,7 @@ def edges(pulse, c_v: float, amplitudes: np.ndarray, mode: str = "either") -> li
         return word == "down" and (mode == "either" or not impacts)
 
     found, before = [], falls(amplitudes[0])
-    for low, high in zip(amplitudes[:-1], amplitudes[1:], strict=True):
+    for low, high in itertools.pairwise(amplitudes):
         after = falls(high)
         if after != before:
             a, b = low, high

@@ -9,7 +9,6 @@ from extrados.analyses.rocking.failure_domain import Mapper
 from extrados.building.rockers.block import BlockModel
 from extrados.building.templates.block import make_block
 from extrados.core import rocking
-from extrados.core.rocking import Ground
 from extrados.motions.pulses import sine_pulse
 from extrados.schema.constants import GRAVITY
 
@@ -92,7 +91,9 @@ def test_overturning_after_one_impact_past_the_pulse(ratio: float, edge: str) ->
     model = slender()
     p, alpha = float(model.frequency[0]), float(model.alpha[0])
     around = critical * np.array([1.0 - 1e-7, 1.0 + 1e-7]) * alpha * GRAVITY
-    assert codes(model, "sine", np.array([2.0 * np.pi / (ratio * p)]), around)[0].tolist() == ([1, 2] if rising else [2, 1])
+    assert codes(model, "sine", np.array([2.0 * np.pi / (ratio * p)]), around)[0].tolist() == (
+        [1, 2] if rising else [2, 1]
+    )
 
 
 @pytest.mark.parametrize("linear", [True, False])

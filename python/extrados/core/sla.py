@@ -268,7 +268,7 @@ class Model(Owner):
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(*tables, (1 + int(group.joint)) * given.astype(np.int32), *ladder),
+                properties, _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32)),
             )  # fmt: skip
             what = "element"
         if not isinstance(group, Bars):
@@ -331,7 +331,9 @@ class Model(Owner):
 
     def supports(self, constant: npt.ArrayLike, rate: npt.ArrayLike) -> None:
         """Displacements (moved) [m] of the supports that move, constant and per multiplier; before the loads."""
-        moved = np.asfortranarray(np.column_stack([real("constant", constant, (self.moved,)), real("rate", rate, (self.moved,))]))
+        moved = np.asfortranarray(
+            np.column_stack([real("constant", constant, (self.moved,)), real("rate", rate, (self.moved,))])
+        )
         check(_core.api_sla.supports(self.handle, moved), "supports that move")
 
     def reactions(self) -> np.ndarray:
@@ -357,7 +359,15 @@ class Model(Owner):
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
         direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
-        limits = [min(stop.load, huge), min(stop.displacement, huge), stop.fraction, stop.compliance, stop.target, stop.side, stop.already]
+        limits = [
+            min(stop.load, huge),
+            min(stop.displacement, huge),
+            stop.fraction,
+            stop.compliance,
+            stop.target,
+            stop.side,
+            stop.already,
+        ]
         counts, reals, ints, watched, cracked, status = long_call(
             _core.api_sla.run, self.handle, int(room), real("stop", limits, (7,)), int(stop.refuse_overload),
             VARIANTS.index(variant), first,

@@ -19,7 +19,9 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
     r = run[name]
     duration, amplitude = run.array(name, "duration"), run.array(name, "amplitude")
     natural, slender = run.array(name, "natural_time"), bool(run.array(name, "slender").all())
-    first = {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(r.pulse, "period T_p [s]")
+    first = {"step": "duration t_p of the first part [s]", "rectangular": "duration t_p [s]"}.get(
+        r.pulse, "period T_p [s]"
+    )
     shades = matplotlib.colormaps["cividis"](np.linspace(0.0, 0.85, len(r.curves)))
     top = 1.1 * max([np.nanmax(amplitude, initial=0.0), *(abs(i.amplitude_g) for i in r.impulses)])
     with style.figure(9.0, 4.6, columns=2, width_ratios=[1.25, 1]) as (fig, (plain, scaled)):
@@ -45,7 +47,9 @@ def draw_failure_curves(run: Stored, name: str, folder: Path) -> list[tuple[str,
         plain.set_xlim(0.0, None)
         plain.set_xlabel(first)
         plain.set_ylabel("amplitude [g]")
-        plain.set_title(f"Lowest failing {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}")
+        plain.set_title(
+            f"Lowest failing {'train of sines' if max(c.cycles for c in r.curves) > 1 else r.pulse + ' pulse'}"
+        )
         scaled.set_ylim(0.0, None)
         if slender:
             scaled.set_xlabel("frequency of the pulse over p")

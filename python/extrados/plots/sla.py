@@ -230,9 +230,7 @@ def _peak(run: Stored, name: str, prefix: str) -> int:
 
 
 def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
-    shown = [
-        (prefix, s, f"event {run.array(name, f'{prefix}state_event')[s]}") for s in _peak_state(run, name, prefix)
-    ]
+    shown = [(prefix, s, f"event {run.array(name, f'{prefix}state_event')[s]}") for s in _peak_state(run, name, prefix)]
     title = _draw_cracks(run, name, folder, shown, f"{name}{SENSES[prefix]}-cracks")
     return title, "Cracks on the deformed shape, at the peak and at the end; colour and thickness give the width."
 

@@ -121,7 +121,9 @@ class Sla(SlaCurve, KindResults):
     points: int = fact("integration points, those of bars too")
     makeup: Makeup = maybe("what resume_from compares")
     minus: SlaCurve = maybe("the curve of the second sense")
-    stages: list[SlaStage] = maybe("of a run in stages, each; without a name, the numbers are those of the last or main one")
+    stages: list[SlaStage] = maybe(
+        "of a run in stages, each; without a name, the numbers are those of the last or main one"
+    )
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
     hinges: list[str] = maybe("of stones: joints that are open but for an edge at the peak")

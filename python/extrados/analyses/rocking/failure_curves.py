@@ -134,7 +134,9 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
         table = data
         for name, value in change.items():
             if name == "kind":
-                raise Refused(f"variants[{number}]: a variant changes keys of a {building.structure.kind}, not its kind")
+                raise Refused(
+                    f"variants[{number}]: a variant changes keys of a {building.structure.kind}, not its kind"
+                )
             table = changed(table, name, value)
         try:
             structure = read_table(type(building.structure), table)
@@ -171,7 +173,9 @@ def _curve(context: Context, options: FailureCurves, variant: Variant) -> tuple[
         rocker.body, options.pulse, durations, amplitudes, variant.settle, options.accuracy * GRAVITY,
         rocker.start_rotation, variant.cycles,
     )  # fmt: skip
-    found = computed(context, "failure-curves", job, len(durations), f"failure curve of {variant.label}", context.threads)
+    found = computed(
+        context, "failure-curves", job, len(durations), f"failure curve of {variant.label}", context.threads
+    )
     return durations, found["amplitude"] / GRAVITY
 
 

@@ -11,7 +11,7 @@ from extrados.schema.quantities import Acceleration, Time
 from extrados.schema.table import key
 
 #: What a rocking structure may be held by
-HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] wall")
+HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
 
 
 class RockingTable(BuildingAnalysis):

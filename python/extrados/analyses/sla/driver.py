@@ -63,9 +63,7 @@ def _run(context: Context, options: Sla) -> Result:
     return result
 
 
-def _stages(
-    result: Result, model: SlaModel, options: Sla, curves: list[Curve], main: Curve
-) -> list[dict[str, Any]]:
+def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], main: Curve) -> list[dict[str, Any]]:
     """Numbers of all stages; arrays, tables, files and warnings of those that do not stand for the analysis."""
     found = []
     for k, curve in enumerate(curves, 1):
@@ -90,7 +88,8 @@ def _stages(
         for stage in found
         if stage["end_load_N"] is not None
     )
-    result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"
+    if ends:
+        result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"
     return found
 
 

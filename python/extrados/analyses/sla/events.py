@@ -297,7 +297,9 @@ def run_reference_loads(
         way.parts.append(part)
         if len(part):
             most = np.inf if model.driven else floor * way.parts[0].compliance[0]
-            load = np.where(part.equilibrium & (part.compliance <= most), part.pull if model.driven else part.load, -np.inf)
+            load = np.where(
+                part.equilibrium & (part.compliance <= most), part.pull if model.driven else part.load, -np.inf
+            )
             if part.reason == "mechanism" and model.mesh.has_joints:
                 load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:

@@ -191,7 +191,9 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         )
     # Of stages, of which each has its own, that while the constant loads come on
     growing = reference if not options.stages else constant
-    control = control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
+    control = (
+        control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
+    )
     return SlaModel(
         mesh, freedoms, groups,
         core.Behaviour(

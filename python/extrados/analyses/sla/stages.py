@@ -113,7 +113,9 @@ def run_stages(
         warnings: list[str] = []
         stage_a, _ = bring_on_constant_loads(core_model, model, options, progress, warnings, chain and chain(["A"]))
         if stage_a is not None and stage_a.interrupted:
-            return [Curve.stopped(core_model, stage_a)]
+            curve = Curve.stopped(core_model, stage_a)
+            curve.name = options.stage_names[0]
+            return [curve]
         core_model.loads(model.constant, np.zeros_like(model.constant), carried=True)
         wall = Wall(
             core_model.displacement(0.0), model.constant, core_model.damage(), (0.0, 0.0, 0.0), 0,
@@ -136,9 +138,7 @@ def run_stages(
             core_model.set_damage(wall.damage)
             if len(staged.moved):
                 core_model.supports(*staged.moved.T)
-            core_model.loads(
-                staged.constant, staged.reference, carried=True, events=wall.events, ledger=wall.ledger
-            )
+            core_model.loads(staged.constant, staged.reference, carried=True, events=wall.events, ledger=wall.ledger)
             if staged.driven:
                 staged = replace(staged, already=float(core_model.reactions()[:, 0] @ staged.moved[:, 1]))
             start = core_model.displacement(0.0)

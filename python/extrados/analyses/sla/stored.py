@@ -82,9 +82,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         },
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},
     )  # fmt: skip
-    result.tables["envelope" + of] = TableData(
-        {"displacement": d, "load": p}, {"displacement": "m", "load": "N"}
-    )
+    result.tables["envelope" + of] = TableData({"displacement": d, "load": p}, {"displacement": "m", "load": "N"})
     if curve.states:
         states = curve.states
         dims = (f"{prefix}states",)

@@ -87,7 +87,9 @@ class Stage(Table):
     """One stage of several: what changes of the supports, and the loads that grow. It starts in the state in which the one
     before it ended: its displacements, its loads and its damage."""
 
-    name: str | None = key(None, "of the stage, in figures and results; default its number", min_length=1, max_length=40)
+    name: str | None = key(
+        None, "of the stage, in figures and results; default its number", min_length=1, max_length=40
+    )
     hold: list[Hold] = key([], "places held from this stage on, where they are at its start", max_length=100)
     free: list[Hold] = key(
         [],
@@ -101,7 +103,9 @@ class Stage(Table):
         max_length=100,
     )
     control: list[Watch] = key(
-        [], "displacement of the curve, a sum of terms; default the analysis', or the mean displacement under B", max_length=50
+        [],
+        "displacement of the curve, a sum of terms; default the analysis', or the mean displacement under B",
+        max_length=50,
     )
     target_multiplier: Annotated[float, Field(gt=0)] | None = key(
         None, "the stage ends where lambda reaches it, and these loads stay on; 1 where supports are let go"
@@ -115,7 +119,9 @@ class Stage(Table):
     @model_validator(mode="after")
     def _one_cause(self) -> "Stage":
         if self.free and self.reference:
-            raise ValueError("free and reference: supports that are let go are the load of their stage; take two stages")
+            raise ValueError(
+                "free and reference: supports that are let go are the load of their stage; take two stages"
+            )
         if not (self.free or self.reference):
             raise ValueError("a stage needs what grows: expected reference, or free")
         if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:

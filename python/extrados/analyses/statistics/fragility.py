@@ -15,7 +15,7 @@ from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe
 from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import shares
 from extrados.analyses.statistics.tables import Fragility
-from extrados.analyses.statistics.uncertain import models_at, sampled_models
+from extrados.analyses.statistics.uncertain import Bodies, bodies_at, sampled
 from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
@@ -139,7 +139,11 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
         raise Refused(
             f"count is {motions}, but the deck has {available} motion{'s' if available > 1 else ''}: expected at most {available}"
         )
-    models = sampled_models(context, options, base, motions) if options.uncertain else [base]
+    made = (
+        sampled(context, options, base, motions)
+        if options.uncertain
+        else Bodies([base.body], np.array([base.start_rotation]))
+    )
     levels = np.array(options.levels) if options.levels else None
     measure, unit = options.intensity, INTENSITIES[options.intensity][1]
     if measure == "pga-ratio":
@@ -148,9 +152,7 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
         measure, unit = "pgv", base.uplift * GRAVITY * base.time_unit
     sa = (options.sa_period, options.sa_damping) if options.sa_period and (options.levels or options.cloud) else None
     settle = 40.0 * base.time_unit if options.settle is None else options.settle
-    bodies = [m if isinstance(m, str) else m.body for m in models]
-    start = np.array([0.0 if isinstance(m, str) else m.start_rotation for m in models])
-    job = EnsembleJob(source, bodies, start, measure, unit, levels, sa, settle, options.tolerance)
+    job = EnsembleJob(source, made.bodies, made.starts, measure, unit, levels, sa, settle, options.tolerance)
     return job, motions * (1 if levels is None else len(levels)), motions
 
 
@@ -238,7 +240,7 @@ def _describe(
     if options.sensitivity is not None and swept.complete:
         try:
             r |= sensitivity(
-                context, sorted(options.uncertain), lambda draws: models_at(context, options, base, draws), job.source,
+                context, sorted(options.uncertain), lambda draws: bodies_at(context, options, base, draws), job.source,
                 motions if context.deck.motion is None or is_set(context.deck.motion) else 1, job.settle,
                 options.sensitivity, options.seed or 0, options.bootstrap, options.confidence, options.tolerance, result,
             )  # fmt: skip

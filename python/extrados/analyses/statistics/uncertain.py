@@ -1,11 +1,12 @@
 """Buildings whose sizes, corners, stones and impacts are not known exactly: rockers at points of the unit cube."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from scipy.stats import norm, qmc
 
+from extrados.analyses.batches import computed, stacked
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.statistics.tables import STONES, UNCERTAIN, Fragility
 from extrados.building.building import Building
@@ -13,40 +14,85 @@ from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.deviation import resurveyed
 from extrados.building.rockers.rocker import Rocker, make_rocker
+from extrados.core.rocking import Body
 
 #: What is drawn stone by stone, by a generator that the point of the cube seeds
 BY_STONE = ("density", "imperfection")
 
 
-def sampled_models(context: Context, options: Fragility, base: Rocker, count: int) -> list[Rocker | str]:
-    """One model for each motion with uncertain values drawn by a scrambled Sobol sequence; see `models_at`."""
-    draws = qmc.Sobol(len(options.uncertain), scramble=True, seed=options.seed or 0).random_base2(
-        max(1, int(np.ceil(np.log2(count))))
-    )[:count]
-    return models_at(context, options, base, draws)
-
-
-def models_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> list[Rocker | str]:
-    """One rocker for each row of draws from the unit cube, by the names of `uncertain` in order; a text tells why a
-    building of the sample does not rock, as one that cannot stand.
+@dataclass(frozen=True)
+class Sample:
+    """Member k is the rocker of a building at the point draws[k] of the unit cube, by the names of `uncertain` in order.
 
     Sizes, restitution and the thickness lost at corners have lognormal factors of mean 1. `density` gives each stone
     such a factor on its mass; `imperfection` moves each corner and each end of a joint evenly within a circle, whose
-    radius is that share of the shortest joint: the draw of a row seeds the generator of its stones.
+    radius is that share of the shortest joint: the draw seeds the generator of its stones. width: numbers by which the
+    core knows each.
     """
-    names = sorted(options.uncertain)
-    _refuse_unknown(context.building, names, base)
-    spread = np.sqrt(np.log1p(np.array([options.uncertain[n] for n in names]) ** 2))
-    factors = np.exp(spread * norm.ppf(np.clip(draws, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
-    made: list[Rocker | str] = []
-    for draw, row in zip(draws, factors, strict=True):
+
+    building: Building
+    options: Fragility
+    draws: np.ndarray
+    width: int = 0
+
+    def rocker(self, k: int) -> Rocker:
+        """NoView where that building does not rock, as one that cannot stand."""
+        names = sorted(self.options.uncertain)
+        spread = np.sqrt(np.log1p(np.array([self.options.uncertain[n] for n in names]) ** 2))
+        draw = self.draws[k]
+        row = np.exp(spread * norm.ppf(np.clip(draw, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
         factor = dict(zip(names, row.tolist(), strict=True))
-        seeds = {name: int(draw[k] * 2.0**53) for k, name in enumerate(names) if name in BY_STONE}
+        seeds = {name: int(draw[i] * 2.0**53) for i, name in enumerate(names) if name in BY_STONE}
+        return _model(self.building, self.options, factor, seeds)
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        """Parameters of the structures for the core, NaN with a reason where there is none."""
+        return stacked(self._member, first, count)
+
+    def _member(self, k: int) -> dict[str, np.ndarray]:
+        kind, values, start, reason = -1, np.full(self.width, np.nan), 0.0, ""
         try:
-            made.append(_model(context.building, options, factor, seeds))
+            rocker = self.rocker(k)
+            kind, values, start = rocker.body.kind, rocker.body.parameters, rocker.start_rotation
         except NoView as error:
-            made.append(str(error))
-    return made
+            reason = str(error)
+        return {"kind": np.array(kind), "body": values, "start": np.array(start), "reason": np.array(reason)}
+
+    def wide(self, base: Rocker) -> "Sample":
+        """The same with the width of the first that rocks; stones of their own make another structure than the base."""
+        for k in range(len(self.draws)):
+            try:
+                return replace(self, width=len(self.rocker(k).body.parameters))
+            except NoView:
+                continue
+        return replace(self, width=len(base.body.parameters))
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Structures of a sample, or the texts why one is none; rotations from which they start [rad]."""
+
+    bodies: list[Body | str]
+    starts: np.ndarray
+
+
+def sampled(context: Context, options: Fragility, base: Rocker, count: int) -> Bodies:
+    """One structure for each motion with uncertain values drawn by a scrambled Sobol sequence."""
+    power = max(1, int(np.ceil(np.log2(count))))
+    draws = qmc.Sobol(len(options.uncertain), scramble=True, seed=options.seed or 0).random_base2(power)[:count]
+    return bodies_at(context, options, base, draws)
+
+
+def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> Bodies:
+    """One structure for each row of draws from the unit cube, see `Sample`; Unfinished where some are missing."""
+    _refuse_unknown(context.building, sorted(options.uncertain), base)
+    job = Sample(context.building, options, draws).wide(base)
+    rows = computed(context, "sample", job, len(draws), "buildings of the sample")
+    bodies: list[Body | str] = [
+        str(reason) if kind < 0 else Body(int(kind), values)
+        for kind, values, reason in zip(rows["kind"], rows["body"], rows["reason"], strict=True)
+    ]
+    return Bodies(bodies, rows["start"])
 
 
 def _refuse_unknown(building: Building, names: list[str], base: Rocker) -> None:
