@@ -473,6 +473,27 @@ def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> No
 
 
 @app.command()
+def explore(
+    deck: Annotated[Path | None, typer.Argument(help="the deck to open; default a new arch")] = None,
+    port: Annotated[int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")] = None,
+    browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
+) -> None:
+    """Open the interactive page: drag the stones, see the thrust. It is served to this machine alone."""
+    from extrados.decks.reader import read_deck
+
+    folder, first = Path.cwd().resolve(), None
+    if deck is not None:
+        with _errors():
+            read_deck(deck)
+        place = deck.resolve()
+        folder = folder if place.is_relative_to(folder) else place.parent
+        first = place.relative_to(folder).as_posix()
+    from extrados.explore.supervisor import explore as serve_pages
+
+    raise typer.Exit(serve_pages(folder, first, port, browser, lambda text: out_console.say(text)))
+
+
+@app.command()
 def version() -> None:
     """Version, commit and compilers."""
     from extrados.running.provenance import provenance

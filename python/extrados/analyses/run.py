@@ -45,6 +45,10 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     begin = time.perf_counter()
     try:
         context.warnings, context.building = [], building
+        if building.ties and options.view and not options.bears_ties:
+            raise Refused(
+                f"{options.kind} does not reckon with [[ties]]: leave them out of its deck, or ask limit analysis"
+            )
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

@@ -24,7 +24,7 @@ def against_limit_analysis(building: Building, stands: bool) -> str:
     try:
         if len(building.blocks().a) > MOST_JOINTS:
             return ""
-        limit = LimitAnalysis(building.blocks(), building.friction(), loads=loads_of(building.blocks(), None))
+        limit = LimitAnalysis(building.blocks(), building.friction(), loads=loads_of(building.blocks(), None, building))
         admissible = limit.stands()
         reason = "" if admissible else why_not(limit)
     except (NoAnswer, Disconnected, Refused):

@@ -5,7 +5,7 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking.doubts import doubts
-from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.block import BlockModel
 from extrados.building.rockers.rocker import Rocker
@@ -23,7 +23,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
         context.warnings.append(
             "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
         )
-    end_time = options.end_time or context.motion.end + 30.0 / float(model.frequency.min())
+    end_time = options.end_time or context.motion.end + rest_time(rocker)
     response = run_history(context, options, model.body, end_time, 12, rocker.start_rotation)
 
     tangential, normal = toe_forces(model, response)

@@ -7,7 +7,7 @@ from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
 from extrados.analyses.rocking.doubts import doubts
-from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel
@@ -41,9 +41,7 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
     model = rocker.model
     context.warnings += model.warnings + context.motion.notes
     gamma = model.collapse[0].gamma
-    # After the motion the arch rocks itself to rest; ten of its own long periods suffice.
-    period = 2.0 * np.pi * np.sqrt(model.limits.mass * model.limits.critical / model.limits.gravity_moment)
-    end_time = options.end_time or context.motion.end + 10.0 * period
+    end_time = options.end_time or context.motion.end + rest_time(rocker)
     joints = model.arch.voussoirs + 1
     response = run_history(context, options, model.body, end_time, 8 + 6 * joints, rocker.start_rotation)
 

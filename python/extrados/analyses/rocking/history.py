@@ -7,6 +7,9 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.doubts import Doubts
 from extrados.analyses.rocking.tables import Rocking
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
@@ -16,6 +19,16 @@ from extrados.schema.constants import GRAVITY
 LARGEST = 20_000_000
 ROOM = 20_000
 ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
+
+
+def rest_time(rocker: Rocker) -> float:
+    """How long after a motion [s] the structure has rocked itself to rest."""
+    if isinstance(rocker.model, ArchModel):  # ten of its own long periods suffice
+        limits = rocker.model.limits
+        return float(20.0 * np.pi * np.sqrt(limits.mass * limits.critical / limits.gravity_moment))
+    if isinstance(rocker.model, BlockModel):
+        return 30.0 / float(rocker.model.frequency.min())
+    return 40.0 * rocker.time_unit
 
 
 def run_history(

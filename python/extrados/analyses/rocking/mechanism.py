@@ -5,15 +5,12 @@ import numpy as np
 from extrados.analyses.context import Context
 from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.rocking.doubts import doubts
-from extrados.analyses.rocking.history import answer, rocking_result, run_history, snapshot_index
+from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.results.model import Array, Result
 from extrados.results.rocking import RockingHinge
-
-#: After the motion it rocks itself to rest within this many of its own time units
-SETTLE = 40.0
 
 
 def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
@@ -21,7 +18,7 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     model = rocker.model
     assert isinstance(model, MechanismModel)
     context.warnings += [*rocker.warnings, *context.motion.notes]
-    end_time = options.end_time or context.motion.end + SETTLE * rocker.time_unit
+    end_time = options.end_time or context.motion.end + rest_time(rocker)
     joints = len(model.assembly.a)
     response = run_history(context, options, rocker.body, end_time, 8 + joints, rocker.start_rotation)
 
