@@ -255,10 +255,10 @@ def test_results_are_looked_at_side_by_side(page: Any, served: Served) -> None:
         )  # fmt: skip
     page.click("[data-tab=results]")
     until(page, "window.extrados.welcome.runs.length === 2")
-    page.select_option("[aria-label='Run A']", "results/one")
+    page.select_option("select[aria-label='Run A']", "results/one")
     page.wait_for_selector(".column >> nth=0 >> .chart .line")
     page.click("text=Compare two runs")
-    page.select_option("[aria-label='Run B']", "results/two")
+    page.select_option("select[aria-label='Run B']", "results/two")
     page.wait_for_selector(".column >> nth=1 >> .chart .line")
     page.screenshot(path=SHOTS / "results-side-by-side.png")
     page.click("text=Run the deck…")

@@ -14,6 +14,7 @@ from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
+from extrados.schema.programs import ffmpeg
 
 
 def _check(result: Result) -> None:
@@ -45,6 +46,10 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     begin = time.perf_counter()
     try:
         context.warnings, context.building = [], building
+        if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
+            raise Refused(
+                'animation = "mp4" needs the program ffmpeg or the package imageio-ffmpeg, and neither is here; "gif" needs nothing'
+            )
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

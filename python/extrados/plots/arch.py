@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from extrados.plots import style
+from extrados.plots import animation, style
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -67,6 +67,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 f"Ground motion, rotation of {r.rotation_of} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
             )
         )
+    animation.draw_rocking(run, name, folder)
     moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
     if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))

@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
-from extrados.analyses.table import BuildingAnalysis
+from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.schema.quantities import Force, Gravities, Length, LineForce
 from extrados.schema.table import Table, key
 
@@ -46,7 +46,7 @@ class LimitAnalysisTable(BuildingAnalysis):
     load: list[AppliedLoad] = key([], "loads at rest beside weight and fill, of which some may sway", max_length=1000)
 
 
-class Tilt(LimitAnalysisTable):
+class Tilt(LimitAnalysisTable, Animated):
     """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
 
     kind: Literal["tilt"]
@@ -111,7 +111,7 @@ class Imperfections(LimitAnalysisTable):
     seed: int = key(1, "seed of the random numbers", ge=0)
 
 
-class Supports(BuildingAnalysis):
+class Supports(BuildingAnalysis, Animated):
     """Supports that give way: any structure under [[initial.movements]]; an arch through its three-hinge states to its fall."""
 
     kind: Literal["supports"]

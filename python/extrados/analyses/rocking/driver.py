@@ -28,6 +28,10 @@ def run(context: Context, options: Rocking) -> Result:
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
     result = kinds[type(rocker.model)](context, options, rocker)
+    if options.animation != "none":
+        from extrados.analyses.rocking.shapes import film_arrays
+
+        result.arrays |= film_arrays(rocker, result)
     needed, given = result.results.required_friction, context.building.joints.coefficient
     if given is not None and needed is not None and needed > given:
         result.warnings.append(
