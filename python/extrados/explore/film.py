@@ -76,7 +76,9 @@ def _gif(pictures: list[bytes], rate: int) -> bytes:
 def _mp4(pictures: list[bytes], rate: int) -> bytes:
     program = ffmpeg()
     if program is None:
-        raise BadFilm("mp4 needs the program ffmpeg, which is not here (pip install imageio-ffmpeg brings one); gif needs nothing")
+        raise BadFilm(
+            "mp4 needs the program ffmpeg, which is not here (pip install imageio-ffmpeg brings one); gif needs nothing"
+        )
     for size in {_size(p) for p in pictures}:
         if min(size) < 2:
             raise BadFilm("pictures are too small")

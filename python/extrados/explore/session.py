@@ -319,7 +319,9 @@ class Session:
             value = handle.value_at(x, y)
             size = self.picture.assembly.size if self.picture else 1.0
             if handle.unit == "m":
-                value = [hands.rounded(v, size) for v in value] if isinstance(value, list) else hands.rounded(value, size)
+                value = (
+                    [hands.rounded(v, size) for v in value] if isinstance(value, list) else hands.rounded(value, size)
+                )
             else:
                 value = hands.rounded(value, max(abs(value), 1e-6))
         elif "by" in message:
@@ -436,7 +438,12 @@ class Session:
         live = self._there()
         structure = live.deck.structure
         if structure is None:
-            return Reply({"scene": {"empty": "The deck has no [structure]: there is nothing to draw."}, "deck": self._deck_words()})
+            return Reply(
+                {
+                    "scene": {"empty": "The deck has no [structure]: there is nothing to draw."},
+                    "deck": self._deck_words(),
+                }
+            )
         options, building, name = self._options(LimitAnalysisTable, lambda: Tilt(kind="tilt"))
         try:
             assembly = building.blocks()
@@ -464,7 +471,10 @@ class Session:
              "value": h.value, "along": h.along}
             for h in found
         ]  # fmt: skip
-        return Reply({"scene": made.words, "handles": words, "anchor": self.anchor.tolist(), "deck": self._deck_words()}, made.arrays)
+        return Reply(
+            {"scene": made.words, "handles": words, "anchor": self.anchor.tolist(), "deck": self._deck_words()},
+            made.arrays,
+        )
 
     def _deck_words(self) -> dict[str, Any]:
         live = self._there()
@@ -576,7 +586,9 @@ def _quantity(text: str, unit: str, label: str) -> float:
         pass
     found = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z%/^0-9*]+)", text[:60])
     if not found:
-        raise DeckError([f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"])
+        raise DeckError(
+            [f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"]
+        )
     try:
         return float(found[1]) * quantities.factor(found[2], unit)
     except ValueError as error:
@@ -588,7 +600,11 @@ def _files_of(data: Any) -> list[str]:
     found: list[str] = []
     if isinstance(data, dict):
         for key, value in data.items():
-            if key in ("file", "outline", "vertical", "other") and isinstance(value, str) and not value.startswith("extrados:"):
+            if (
+                key in ("file", "outline", "vertical", "other")
+                and isinstance(value, str)
+                and not value.startswith("extrados:")
+            ):
                 found.append(value)
             elif key == "files" and isinstance(value, list):
                 found += [v for v in value if isinstance(v, str)]

@@ -45,7 +45,13 @@ def pictures(times: np.ndarray, kind: str, speed: float) -> tuple[np.ndarray, in
 
 
 def write(
-    fig: Figure, path: Path, kind: str, rate: int, frames: np.ndarray, draw: Callable[[int], Any], moving: Sequence[Artist]
+    fig: Figure,
+    path: Path,
+    kind: str,
+    rate: int,
+    frames: np.ndarray,
+    draw: Callable[[int], Any],
+    moving: Sequence[Artist],
 ) -> None:
     """Draw pictures in turn and write them as a film: what moves anew in each, all else once."""
     fig.set_dpi(DPI)
@@ -82,7 +88,9 @@ def gif(images: list[Image.Image], rate: int) -> bytes:
     palette = strip.quantize(128)
     first, *rest = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     out = io.BytesIO()
-    first.save(out, "GIF", save_all=True, append_images=rest, duration=max(20, round(1000 / rate)), loop=0, optimize=False)
+    first.save(
+        out, "GIF", save_all=True, append_images=rest, duration=max(20, round(1000 / rate)), loop=0, optimize=False
+    )
     return out.getvalue()
 
 
@@ -121,8 +129,12 @@ class Stones:
         from extrados.plots.arch import outlines
 
         self.outlines, self.centroid = outlines(run, name), run.array(name, "centroid")
-        self.drawn = PolyCollection(self.outlines, facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7, zorder=2)
-        ax.add_collection(PolyCollection(self.outlines, facecolors="none", edgecolors="#cccccc", linewidths=0.5, zorder=1))
+        self.drawn = PolyCollection(
+            self.outlines, facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7, zorder=2
+        )
+        ax.add_collection(
+            PolyCollection(self.outlines, facecolors="none", edgecolors="#cccccc", linewidths=0.5, zorder=1)
+        )
         ax.add_collection(self.drawn)
 
     def place(self, pose: np.ndarray, turn: float = 0.0) -> None:
@@ -199,7 +211,15 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> None:
                 cursor.set_xdata([time[k], time[k]])
             title.set_text(f"{time[k]:.2f} s" + ("" if speed == 1.0 else f", at {speed:g} of real time"))
 
-        write(fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [stones.drawn, thrust, *cursors, title])
+        write(
+            fig,
+            folder / "figures" / f"{name}.{kind}",
+            kind,
+            rate,
+            frames,
+            draw,
+            [stones.drawn, thrust, *cursors, title],
+        )
 
 
 def draw_tilt(run: Stored, name: str, folder: Path) -> None:
@@ -230,8 +250,13 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> None:
         chart = charts[0]
         if lines:
             ax.legend(loc="upper right")
-            for word, key_of, style_of, colour in (("least", "film_thrust_min", "--", style.HINGE), ("greatest", "film_thrust_max", ":", style.GROUND)):
-                chart.plot(np.degrees(tilt), run.array(name, key_of) / 1e3, style_of, color=colour, label=f"{word} thrust")
+            for word, key_of, style_of, colour in (
+                ("least", "film_thrust_min", "--", style.HINGE),
+                ("greatest", "film_thrust_max", ":", style.GROUND),
+            ):
+                chart.plot(
+                    np.degrees(tilt), run.array(name, key_of) / 1e3, style_of, color=colour, label=f"{word} thrust"
+                )
             chart.set_ylabel("horizontal thrust [kN]")
             chart.legend()
         else:
@@ -250,12 +275,23 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> None:
                 points = run.array(name, key_of)[min(k, len(tilt) - 1)]
                 drawn[word].set_data(*(turned(points, -angle).T if share == 0.0 else np.empty((2, 0))))
             cursor.set_xdata([np.degrees(angle)] * 2)
-            title.set_text(f"ground tilted by {np.degrees(angle):.2f} degrees, as {np.tan(angle):.4f} g to the side" + (": it comes down" if share else ""))
+            title.set_text(
+                f"ground tilted by {np.degrees(angle):.2f} degrees, as {np.tan(angle):.4f} g to the side"
+                + (": it comes down" if share else "")
+            )
 
         count = len(tilt) + moves
         time = np.linspace(0.0, LASTS, count)
         frames, rate = pictures(time, kind, speed)
-        write(fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [ground, stones.drawn, *drawn.values(), cursor, title])
+        write(
+            fig,
+            folder / "figures" / f"{name}.{kind}",
+            kind,
+            rate,
+            frames,
+            draw,
+            [ground, stones.drawn, *drawn.values(), cursor, title],
+        )
 
 
 def draw_supports(run: Stored, name: str, folder: Path) -> None:
@@ -295,10 +331,14 @@ def draw_supports(run: Stored, name: str, folder: Path) -> None:
             if follows:
                 thrust.set_data(*run.array(name, "film_line")[k].T)
             cursor.set_xdata([movement[k], movement[k]])
-            title.set_text(f"support moved by {movement[k]:.1f} mm" if follows else f"{movement[k]:.0f} % of the movement")
+            title.set_text(
+                f"support moved by {movement[k]:.1f} mm" if follows else f"{movement[k]:.0f} % of the movement"
+            )
 
         frames, rate = pictures(np.linspace(0.0, LASTS, len(movement)), kind, speed)
-        write(fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [stones.drawn, thrust, cursor, title])
+        write(
+            fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [stones.drawn, thrust, cursor, title]
+        )
 
 
 def draw_sla(run: Stored, name: str, folder: Path) -> None:
@@ -319,9 +359,14 @@ def draw_sla(run: Stored, name: str, folder: Path) -> None:
     most = max(float(np.nanmax(w)) for w in widths) or 1e-9
     with style.canvas(PIXELS[0] / DPI, PIXELS[1] / DPI) as fig:
         ax, (curve,) = _axes(fig, 1)
-        wall = PolyCollection(sla._polygons(run, name, xy), facecolors=style.STONE, edgecolors="#cfc6b4", linewidths=0.25)
+        wall = PolyCollection(
+            sla._polygons(run, name, xy), facecolors=style.STONE, edgecolors="#cfc6b4", linewidths=0.25
+        )
         ax.add_collection(wall)
-        cracks = [LineCollection([], cmap=sla.CRACKS, norm=matplotlib.colors.Normalize(0.0, 1e3 * most), zorder=4) for _ in widths]
+        cracks = [
+            LineCollection([], cmap=sla.CRACKS, norm=matplotlib.colors.Normalize(0.0, 1e3 * most), zorder=4)
+            for _ in widths
+        ]
         for lines in cracks:
             ax.add_collection(lines)
         shown = moved[held] if held.any() else moved
@@ -396,4 +441,12 @@ def draw_dem(run: Stored, name: str, folder: Path) -> None:
                 cursor.set_xdata([time[k], time[k]])
             title.set_text(f"{time[k]:.2f} s" + ("" if speed == 1.0 else f", at {speed:g} of real time"))
 
-        write(fig, folder / "figures" / f"{name}.{kind}", kind, rate, frames, draw, [stones.drawn, hinges, *cursors, title])
+        write(
+            fig,
+            folder / "figures" / f"{name}.{kind}",
+            kind,
+            rate,
+            frames,
+            draw,
+            [stones.drawn, hinges, *cursors, title],
+        )
