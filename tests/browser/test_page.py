@@ -9,9 +9,9 @@ import time
 from typing import Any
 
 import pytest
+from served import SHOTS, Served
 
 import extrados
-from conftest import SHOTS, Served
 
 DXF_UNIT = 6  # metres
 

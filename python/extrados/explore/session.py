@@ -6,6 +6,7 @@ import copy
 import re
 import shutil
 import tempfile
+import time
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -60,7 +61,7 @@ class BadMessage(ValueError):
 class Session:
     """The deck of one page; `answer` a message at a time, from one thread at a time.
 
-    A reply holds `of`, the number of the message it answers. What is wrong with a deck or has no answer comes as
+    A reply holds `of`, the number of the message it answers, and `ms`, the processor time of this thread that it took. What is wrong with a deck or has no answer comes as
     `complaints`, and then nothing has changed.
     """
 
@@ -91,9 +92,16 @@ class Session:
         try:
             if do is None:
                 raise BadMessage(f"nothing is known of '{str(message.get('do'))[:40]}'")
+            begin = time.thread_time()
             for reply in do(self, message):
-                reply.words = {"of": number, "to": message["do"], **reply.words}
+                reply.words = {
+                    "of": number,
+                    "to": message["do"],
+                    "ms": 1e3 * (time.thread_time() - begin),
+                    **reply.words,
+                }
                 yield reply
+                begin = time.thread_time()
         except TOLD as error:
             complaints = error.complaints if isinstance(error, DeckError) else [str(error)]
             yield Reply({"of": number, "to": message["do"], "complaints": [c[:2000] for c in complaints]})
