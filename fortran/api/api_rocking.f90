@@ -116,6 +116,7 @@ contains
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take
       use common_status, only : status_ok, status_out_of_memory
+      use common_threads, only : threads_available
       use rocking_ensemble, only : body_list, run_ensemble
       use rocking_handle, only : body_list_take
       use rocking_response, only : response, response_options
@@ -159,7 +160,8 @@ contains
             options(k)%tolerance = tolerance
             options(k)%stop_when_safe = stop_when_safe /= 0
          end do
-         call run_ensemble(list, set, run_body, run_motion, run_scale, options, threads, answers, run_status, status)
+         call run_ensemble(list, set, run_body, run_motion, run_scale, options, threads_available(threads), answers, &
+            run_status, status)
          do k = 1, nrun
             outcome(:, k) = [answers(k)%outcome, answers(k)%half_cycles, answers(k)%impacts, answers(k)%steps, &
                merge(1_c_int, 0_c_int, answers(k)%settled)]

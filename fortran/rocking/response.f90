@@ -18,7 +18,7 @@ module rocking_response
    use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
    use rocking_record, only : barrier_of, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
-   use rocking_uplift, only : find_uplift
+   use rocking_uplift, only : find_uplift, last_calm
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -31,8 +31,8 @@ module rocking_response
       real(wp) :: start_v = 0.0_wp       !! initial rate [rad/s]
       integer :: start_side = 1          !! side of the initial rotation
       integer :: max_steps = 50000000    !! attempts
-      !> Stop once the motion is over and the energy left cannot reach the barrier: the outcome and
-      !> the peak are then known. For maps and ensembles.
+      !> Stop once the motion is over and the energy left reaches neither the barrier nor past the greatest rotation
+      !> so far: the outcome and the peak are then known. For maps and ensembles.
       logical :: stop_when_safe = .false.
    end type response_options
 
@@ -65,20 +65,26 @@ module rocking_response
       real(wp) :: atol_q = 0.0_wp
       real(wp) :: atol_v = 0.0_wp
       integer :: attempts = 0
+      integer :: last_whole = 0            !! last segment of the ground motion that ends within the run
       integer(c_int) :: status = status_ok
       logical :: resting = .false.
       logical :: from_rest = .false.       !! no step was accepted since the uplift
       logical :: renew = .true.            !! the acceleration is not that of this state
+      logical :: at_hand = .false.         !! the next step was tried already
       logical :: over = .false.            !! nothing more is to be done
    contains
       procedure :: start
       procedure :: segment_end
       procedure :: wait
+      procedure :: skip_calm
+      procedure :: may_glide
+      procedure :: glide
       procedure :: take_step
       procedure :: touch
       procedure :: impact
       procedure :: fall
       procedure :: move_on
+      procedure :: past_its_peak
       procedure :: conclude
       procedure :: count_attempt
       procedure :: quiet
@@ -111,6 +117,11 @@ contains
             call run%wait(t_next)
             if (run%resting .or. run%over) cycle
          end if
+         if (run%may_glide(t_next)) then
+            call run%glide()
+            if (run%t >= options%end_time .or. run%over) cycle
+            t_next = run%segment_end()
+         end if
          call run%take_step(t_next, accepted)
          if (.not. accepted) cycle
          s = impact_fraction(run%step, run%q, run%v)
@@ -121,8 +132,11 @@ contains
             else
                call run%impact(s)
             end if
-         else if (run%step%q >= body%limit(side_index(run%problem%side))) then
-            call run%fall()
+            cycle
+         end if
+         s = crossing_fraction(run%step, run%q, run%v, body%limit(side_index(run%problem%side)))
+         if (s > 0.0_wp) then
+            call run%fall(s)
          else
             call run%move_on(t_next)
          end if
@@ -164,6 +178,11 @@ contains
          if (ground%break_time(state%problem%segment + 1) > state%t) exit
          state%problem%segment = state%problem%segment + 1
       end do
+      state%last_whole = ground%segments
+      do while (state%last_whole > 0)
+         if (ground%break_time(state%last_whole + 1) <= options%end_time) exit
+         state%last_whole = state%last_whole - 1
+      end do
       call state%note_peak(state%q)
    end subroutine start
 
@@ -204,6 +223,7 @@ contains
          state%t = window
          if (associated(state%history)) call state%history%rest(state%problem, state%t)
          if (state%t >= t_next .and. state%t < state%options%end_time) state%problem%segment = state%problem%segment + 1
+         if (.not. associated(state%history)) call state%skip_calm()
          return
       end if
       if (associated(state%history)) call state%history%rest(state%problem, lifts)
@@ -217,6 +237,60 @@ contains
       state%answer%half_cycles = state%answer%half_cycles + 1
       if (associated(state%history)) call state%history%note(event_uplift, state%t, real(found_side, wp))
    end subroutine wait
+
+   !> Over the segments of a sampled motion that leave the structure at rest, where nothing is recorded of them
+   subroutine skip_calm(state)
+      class(run_state), intent(inout) :: state
+      integer :: calm
+      associate (problem => state%problem)
+         if (.not. associated(problem%ground%samples) .or. problem%segment < 1) return
+         calm = last_calm(problem, problem%segment, state%options%end_time)
+         if (calm < problem%segment) return
+         state%t = problem%ground%break_time(calm + 1)
+         problem%segment = calm + 1
+      end associate
+   end subroutine skip_calm
+
+   !> Does a whole segment of straight lines lie ahead, with nobody asking for what happens within?
+   pure function may_glide(state, t_next) result(answer)
+      class(run_state), intent(in) :: state
+      real(wp), intent(in) :: t_next
+      logical :: answer
+      associate (problem => state%problem)
+         answer = problem%series .and. associated(problem%ground%samples) .and. .not. associated(state%history)
+         if (answer) answer = problem%segment >= 1 .and. problem%segment <= state%last_whole
+         if (answer) answer = state%t <= problem%ground%break_time(problem%segment) .and. state%h_next >= t_next - state%t
+      end associate
+   end function may_glide
+
+   !> Over the segments in which nothing happens: what take_step and move_on do, without looking into them
+   subroutine glide(state)
+      class(run_state), intent(inout) :: state
+      integer :: last, passed, polls
+
+      associate (problem => state%problem, ground => state%problem%ground)
+         last = min(state%last_whole, problem%segment - 1 + state%options%max_steps - state%attempts)
+         call problem%body%glide(problem%side, ground%start, ground%step, ground%scale, ground%samples, problem%segment, &
+            last, [state%atol_q, state%atol_v, state%options%tolerance], state%q, state%v, passed, &
+            state%step, state%at_hand)
+         if (passed == 0) return
+         problem%segment = problem%segment + passed
+         state%t = ground%break_time(problem%segment)
+         state%h_next = max(state%h_next, 2.0_wp * (state%t - ground%break_time(problem%segment - 1)))
+      end associate
+      state%renew = .false.
+      state%from_rest = .false.
+      state%answer%steps = state%answer%steps + passed
+      polls = state%attempts / poll_every
+      state%attempts = state%attempts + passed
+      if (state%attempts / poll_every > polls) then
+         if (cancel_requested()) then
+            state%status = status_cancelled
+            state%over = .true.
+         end if
+      end if
+      call state%note_peak(state%q)
+   end subroutine glide
 
    !> Try one step of at most the way to t_next; where it is refused the next try is shorter
    subroutine take_step(state, t_next, accepted)
@@ -238,8 +312,9 @@ contains
       end if
       call state%count_attempt()
       if (state%over) return
-      call attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, state%atol_v, &
-         state%options%tolerance, state%step)
+      if (.not. state%at_hand) call attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, &
+         state%atol_v, state%options%tolerance, state%step)
+      state%at_hand = .false.
       if (state%problem%series) then
          factor = series_factor(state%step)
       else
@@ -312,13 +387,13 @@ contains
    end subroutine impact
 
    !> The rotation passes the limit within the step
-   subroutine fall(state)
+   subroutine fall(state, fraction)
       class(run_state), intent(inout) :: state
-      real(wp) :: s, limit
+      real(wp), intent(in) :: fraction  !! of the step
+      real(wp) :: limit
       limit = state%problem%body%limit(side_index(state%problem%side))
-      s = crossing_fraction(state%step, limit)
-      if (associated(state%history)) call state%history%cover(state%problem, state%step, s)
-      state%t = state%step%t + s * state%step%h
+      if (associated(state%history)) call state%history%cover(state%problem, state%step, fraction)
+      state%t = state%step%t + fraction * state%step%h
       state%answer%outcome = outcome_collapse
       state%answer%stop_time = state%t
       call state%note_peak(limit)
@@ -332,6 +407,7 @@ contains
    subroutine move_on(state, t_next)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: t_next
+      real(wp) :: energy
       logical :: was_quiet, whole
       call state%note_turning()
       if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
@@ -347,8 +423,28 @@ contains
       call state%advance_segment()
       if (.not. (state%options%stop_when_safe .and. was_quiet .and. state%v <= 0.0_wp)) return
       if (state%q >= state%problem%body%critical(side_index(state%problem%side))) return
-      state%over = energy_of(state%problem, state%q, state%v) < barrier_of(state%problem)
+      energy = energy_of(state%problem, state%q, state%v)
+      state%over = energy < barrier_of(state%problem)
+      if (state%over) state%over = state%past_its_peak(energy)
    end subroutine move_on
+
+   !> Is the greatest rotation known, as the energy left after the next impact reaches no further on either side?
+   function past_its_peak(state, energy) result(answer)
+      class(run_state), intent(in) :: state
+      real(wp), intent(in) :: energy  !! of now, on the way back to rest [J]
+      logical :: answer
+      real(wp) :: m, m_next, half_dm, dv, dh, reach(2)
+      integer :: i
+      logical :: closed
+      associate (body => state%problem%body, side => state%problem%side)
+         call body%coefficients(side, 0.0_wp, m, half_dm, dv, dh, closed)
+         call body%coefficients(-side, 0.0_wp, m_next, half_dm, dv, dh, closed)
+         do i = 1, 2
+            reach(i) = body%potential(3 - 2 * i, min(1.0_wp, state%answer%peak_ratio) * body%critical(i))
+         end do
+         answer = energy * body%restitution(side_index(-side))**2 * m_next / m <= minval(reach)
+      end associate
+   end function past_its_peak
 
    !> Outcome and whether it is final
    subroutine conclude(state)

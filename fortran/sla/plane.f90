@@ -15,6 +15,15 @@
 !> diagonals onto the crack (Oliver 1989); they cross triangles wherever they meet them, and a straight line through a
 !> mesh meets each as often as its extent across the line is wide: the extent then makes the energy right on average.
 !>
+!> Masonry laid in courses (bedded) is weaker across its bed joints than along them. Its uncracked points follow
+!> Rankine's criterion with two strengths (Lourenco, de Borst and Rots 1997): in the axes of the joints, x along the
+!> beds, (fx - sx)(fy - sy) >= a t^2 with a = fx fy / shear strength^2. That is the isotropic one of the image
+!> (sx - fx + f, sy - fy + f, sqrt(a) t) with the strength f, so lambda has the same closed form; the crack's normal is
+!> the principal direction of the image, which is turned towards that of the weaker joints. Strength and energy of
+!> a crack are interpolated, f(n) = nx^2 fx + ny^2 fy: the very stress across it as it opens, where a = 1. Where a > 1
+!> this stress is less, and strength and energy of that crack are less by the same share. The teeth need no tables of
+!> their own: moduli depend on E Gf / (f^2 h) alone, so those of another band serve, with all stresses in proportion.
+!>
 !> Crushing of confined masonry: -s2 <= fc - k s1, so that pressure across the greatest one helps and tension hurts
 !> (Richart and others 1928 found k = 4.1 for concrete).
 !>
@@ -47,6 +56,20 @@ module sla_plane
    !> Stiffness along a rotating crack over that across it, at most; not where it is pressed by more than its strength
    real(wp), parameter :: most_contrast = 10.0_wp
 
+   !> Least part of its strength that shear leaves a crack of bedded masonry
+   real(wp), parameter :: least_share = 0.2_wp
+   !> Into how many steps that part is rounded
+   real(wp), parameter :: share_steps = 1.0e6_wp
+
+   !> Strengths along the bed joints over those across them, see the head of this module
+   type :: bedding
+      real(wp) :: angle = 0.0_wp       !! of the bed joints to x [rad]
+      real(wp) :: strength = 0.0_wp    !! tensile strength, 0: masonry without joints, isotropic
+      real(wp) :: energy = 0.0_wp      !! fracture energy
+      real(wp) :: shear = 1.0_wp       !! sqrt(a), at least 1
+      real(wp) :: width = 0.0_wp       !! crack band, 0 the element's across the crack [m]
+   end type bedding
+
    type, extends(point_group) :: plane_group
       type(element_rule) :: rule
       logical :: selective = .false.                     !! shear strain from the element's middle
@@ -62,10 +85,13 @@ module sla_plane
       real(wp), allocatable :: lateral(:)                !! compressive strength that reduces ft, 0 none [Pa]
       real(wp), allocatable :: confinement(:)            !! growth of the compressive strength per lateral pressure
       type(tooth_tables) :: teeth
+      type(bedding), allocatable :: bed(:)               !! (elements)
+      integer(c_int), allocatable :: pair(:, :)          !! (2, points) tables of both cracks of bedded masonry
       integer(c_int), allocatable :: axis(:)             !! axis_free, 1 one crack direction given, axis_joint
       ! The damage: everything else below follows from it.
       real(wp), allocatable :: turn(:, :)                !! (2, points) cosine and sine of the crack normal
-      integer(c_int), allocatable :: cracked(:)          !! 0 without crack axes, else 1 + step on the ladder
+      !> 0 without crack axes, else 1 + step on the ladder; of bedded masonry 1 + steps of the share that is lost
+      integer(c_int), allocatable :: cracked(:)
       integer(c_int), allocatable :: tooth(:, :)         !! (2, points), 1 virgin
       integer(c_int), allocatable :: crush(:, :)         !! (2, points), 1 virgin
       integer(c_int), allocatable :: shut(:, :)          !! (2, points), 1 closed
@@ -88,7 +114,7 @@ contains
 
    !> A group of one element kind; the damage is set to none
    subroutine plane_group_new(kind, nx, ny, selective, xy, connect, thickness, young, nu, tables, crush_table, &
-                              lateral, confinement, axis, axis_angle, teeth, options, group, bad, status)
+                              lateral, confinement, axis, axis_angle, bed, teeth, options, group, bad, status)
       integer(c_int), intent(in) :: kind            !! of the list sla_element
       integer(c_int), intent(in) :: nx              !! Gauss points of quadrilaterals
       integer(c_int), intent(in) :: ny
@@ -104,6 +130,7 @@ contains
       real(wp), intent(in) :: confinement(:)
       integer(c_int), intent(in) :: axis(:)         !! 0 cracks choose, 1 one normal given, 2 also the shear is kept
       real(wp), intent(in) :: axis_angle(:)         !! of the crack normal [rad]
+      real(wp), intent(in) :: bed(:, :)             !! (5, elements) the components of `bedding` in their order
       type(tooth_tables), intent(in) :: teeth
       type(material_options), intent(in) :: options
       type(plane_group), intent(out) :: group
@@ -131,7 +158,8 @@ contains
       allocate (group%gradient(2, group%rule%nodes, group%points), group%weight(group%points), &
          group%shear_gradient(2, group%rule%nodes, merge(ne, 0, selective)), &
          group%young(ne), group%nu(ne), group%table(ne), group%crush_table(ne), group%lateral(ne), group%axis(ne), &
-         group%ladder(2, ne), group%diagonal(2, 2, ne), group%confinement(ne), &
+         group%ladder(2, ne), group%diagonal(2, 2, ne), group%confinement(ne), group%bed(ne), &
+         group%pair(2, merge(group%points, 0, any(bed(2, :) > 0.0_wp))), &
          group%turn(2, group%points), group%cracked(group%points), group%tooth(2, group%points), &
          group%crush(2, group%points), group%shut(2, group%points), group%changes(2, group%points), &
          group%stiff(4, group%points), group%limit(4, group%points), stat=info)
@@ -147,7 +175,9 @@ contains
       group%lateral(:) = lateral
       group%confinement(:) = confinement
       group%axis(:) = axis
+      group%pair = 0
       do e = 1, ne
+         group%bed(e) = bedding(bed(1, e), bed(2, e), bed(3, e), bed(4, e), bed(5, e))
          p = per * (e - 1)
          call element_gradients(group%rule, xy(:, connect(:, e)), group%gradient(:, :, p + 1:p + per), area, &
             middle(:, 1:group%rule%nodes), status)
@@ -164,6 +194,7 @@ contains
             group%turn(:, k) = [1.0_wp, 0.0_wp]
             if (axis(e) /= axis_free) group%turn(:, k) = [cos(axis_angle(e)), sin(axis_angle(e))]
             group%cracked(k) = merge(1_c_int, 0_c_int, axis(e) /= axis_free)
+            if (group%cracked(k) /= 0 .and. is_bedded(group, e)) call set_pair(group, e, k)
          end do
       end do
       group%tooth = 1
@@ -187,13 +218,14 @@ contains
       nu = group%nu(e)
       group%limit(:, p) = unbounded
       do k = 1, 2
-         tension = group%teeth%modulus_of(group%table_of(e, p), group%tooth(k, p), e0, group%options%floor)
+         tension = group%teeth%modulus_of(group%table_of(e, p, k), group%tooth(k, p), e0, group%options%floor)
          compression = group%teeth%modulus_of(group%crush_table(e), group%crush(k, p), e0, group%options%floor)
          modulus(k) = min(tension, compression)
          if (group%shut(k, p) /= 0) modulus(k) = compression
          ! A tooth ends at its strain: where the other sign's damage governs, the stress is less.
          if (group%shut(k, p) == 0) group%limit(k, p) = &
-            group%teeth%strength_of(group%table_of(e, p), group%tooth(k, p), modulus(k) / tension)
+            group%teeth%strength_of(group%table_of(e, p, k), group%tooth(k, p), &
+            share_of(group, e, p, k) * modulus(k) / tension)
          group%limit(k + 2, p) = group%teeth%strength_of(group%crush_table(e), group%crush(k, p), &
             modulus(k) / compression)
       end do
@@ -353,7 +385,8 @@ contains
             la(1:group%freedoms) = la(1:group%freedoms) * group%factor(:, e)
             lb(1:group%freedoms) = lb(1:group%freedoms) * group%factor(:, e)
          end if
-         simple = group%table(e) /= 0 .and. group%crush_table(e) == 0 .and. group%lateral(e) <= 0.0_wp
+         simple = group%table(e) /= 0 .and. group%crush_table(e) == 0 .and. group%lateral(e) <= 0.0_wp .and. &
+            .not. is_bedded(group, e)
          do p = (e - 1) * group%rule%points + 1, e * group%rule%points
             sa = stress_at(group, p, strain_at(group, e, p, la))
             sb = stress_at(group, p, strain_at(group, e, p, lb))
@@ -384,7 +417,10 @@ contains
 
       if (group%cracked(p) == 0 .or. (group%options%cracking == isotropic .and. group%axis(e) == axis_free)) then
          f = group%limit(1, p)
-         if (f < unbounded) then
+         if (f < unbounded .and. is_bedded(group, e)) then
+            call cone(f, 1.0_wp, in_joint_axes(group%bed(e), sa, f), in_joint_axes(group%bed(e), sb, 0.0_wp), lambda, &
+               noise, p, code_tension, found)
+         else if (f < unbounded) then
             call cone(f, 1.0_wp, sa, sb, lambda, noise, p, code_tension, found)
             fc = group%lateral(e)
             if (fc > 0.0_wp) call cone(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda, noise, p, &
@@ -406,7 +442,7 @@ contains
                code_compression + k - 1, found)
          end if
          if (.not. group%options%closure .or. group%tooth(k, p) == 1) cycle
-         f = group%teeth%strength_of(group%table_of(e, p), 1_c_int, 1.0_wp)
+         f = group%teeth%strength_of(group%table_of(e, p, k), 1_c_int, 1.0_wp)
          if (group%shut(k, p) /= 0) then
             call linear_bound(sa(k), sb(k), 0.0_wp, f, lambda, noise, p, code_open + k - 1, found)
          else if (group%changes(k, p) < group%options%most_changes) then
@@ -432,7 +468,8 @@ contains
 
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
-         if (group%confinement(e) > 0.0_wp) then   ! crushing depends on both principal stresses
+         ! Both have no bound yet: crushing that depends on both principal stresses, and the criterion of another stress
+         if (group%confinement(e) > 0.0_wp .or. is_bedded(group, e)) then
             least = -1.0_wp
             return
          end if
@@ -482,6 +519,28 @@ contains
       left = alpha - beta * 0.5_wp * (sa(1) + sa(2) + lambda * (sb(1) + sb(2))) &
          - sqrt(0.25_wp * (sa(1) - sa(2) + lambda * (sb(1) - sb(2)))**2 + (sa(3) + lambda * sb(3))**2)
    end function slack
+
+   !> Does the strength of an element depend on the direction to its bed joints?
+   pure function is_bedded(group, e) result(yes)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: e
+      logical :: yes
+      yes = group%bed(e)%strength > 0.0_wp
+   end function is_bedded
+
+   !> The stress in the axes of the joints whose isotropic criterion with the strength f is that of bedded masonry; of
+   !> the change of a stress where f is 0
+   pure function in_joint_axes(bed, s, f) result(image)
+      type(bedding), intent(in) :: bed
+      real(wp), intent(in) :: s(3)     !! sx, sy, txy [Pa]
+      real(wp), intent(in) :: f        !! strength across the bed joints [Pa]
+      real(wp) :: image(3), m, c, s2, d
+      m = 0.5_wp * (s(1) + s(2))
+      c = cos(2.0_wp * bed%angle)
+      s2 = sin(2.0_wp * bed%angle)
+      d = 0.5_wp * (s(1) - s(2)) * c + s(3) * s2
+      image = [m + d + f * (1.0_wp - bed%strength), m - d, bed%shear * (s(3) * c - 0.5_wp * (s(1) - s(2)) * s2)]
+   end function in_joint_axes
 
    !> Limits of an uncracked point under one criterion
    pure subroutine cone(alpha, beta, sa, sb, lambda, noise, p, code, found)
@@ -549,9 +608,13 @@ contains
       delta = 0.0_wp
       if (group%cracked(p) == 0) then
          s = stress_at(group, p, strain_at(group, e, p, la))
-         phi = 0.5_wp * atan2(2.0_wp * s(3), s(1) - s(2))     ! thesis Eq. 4.7
-         group%turn(:, p) = [cos(phi), sin(phi)]
-         group%cracked(p) = 1
+         if (is_bedded(group, e)) then
+            call open_bedded(group, e, p, s, sense == code_tension)
+         else
+            phi = 0.5_wp * atan2(2.0_wp * s(3), s(1) - s(2))     ! thesis Eq. 4.7
+            group%turn(:, p) = [cos(phi), sin(phi)]
+            group%cracked(p) = 1
+         end if
          call set_band(group, e, p)
       else if (turns) then
          s = strain_at(group, e, p, la)
@@ -589,7 +652,8 @@ contains
          call group%refresh(p)
          s = stress_at(group, p, strain_at(group, e, p, la))
          pressed = 0.0_wp
-         if (.not. group%options%closure) pressed = group%teeth%strength_of(group%table_of(e, p), 1_c_int, 1.0_wp)
+         if (.not. group%options%closure) pressed = &
+            group%teeth%strength_of(group%table_of(e, p, 3 - k), 1_c_int, share_of(group, e, p, 3 - k))
          if (s(3 - k) > -pressed) call follow(group, e, p, k, follows)
       end if
       after = direction_modulus(group, e, p, k)
@@ -618,22 +682,97 @@ contains
 
    end subroutine damage
 
+   !> The first crack of bedded masonry: its direction, and the share of the interpolated strength it opens at
+   pure subroutine open_bedded(group, e, p, s, cracks)
+      class(plane_group), intent(inout) :: group
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp), intent(in) :: s(3)     !! sx, sy, txy [Pa]
+      logical, intent(in) :: cracks    !! else it crushes
+      real(wp) :: f, phi, image(3), c, sn, across
+      f = group%limit(1, p)
+      image = s
+      phi = 0.0_wp
+      if (cracks) then
+         image = in_joint_axes(group%bed(e), s, f)
+         phi = group%bed(e)%angle
+      end if
+      phi = phi + 0.5_wp * atan2(2.0_wp * image(3), image(1) - image(2))
+      c = cos(phi)
+      sn = sin(phi)
+      group%turn(:, p) = [c, sn]
+      group%cracked(p) = 1
+      if (.not. cracks .or. group%bed(e)%shear <= 1.0_wp) return
+      across = (c**2 * s(1) + sn**2 * s(2) + 2.0_wp * c * sn * s(3)) / (share_of(group, e, p, 1) * f)
+      group%cracked(p) = 1_c_int + nint(share_steps * (1.0_wp - min(max(across, least_share), 1.0_wp)), c_int)
+   end subroutine open_bedded
+
+   !> Strength of one crack direction of a cracked point over that of its tables: 1 but for bedded masonry
+   pure function share_of(group, e, p, k) result(share)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: e, p, k
+      real(wp) :: share
+      share = 1.0_wp
+      if (group%cracked(p) == 0 .or. .not. is_bedded(group, e)) return
+      share = between(group, e, p, k, group%bed(e)%strength) * kept(group, p, k)
+   end function share_of
+
+   !> A property across one crack direction, over that across the bed joints
+   pure function between(group, e, p, k, along) result(ratio)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: e, p, k
+      real(wp), intent(in) :: along    !! the same along the bed joints
+      real(wp) :: ratio, n(2)
+      n = group%turn(:, p)
+      if (k == 2) n = [-n(2), n(1)]
+      ratio = 1.0_wp + (along - 1.0_wp) * (n(1) * cos(group%bed(e)%angle) + n(2) * sin(group%bed(e)%angle))**2
+   end function between
+
+   !> What shear has left of the strength of a crack
+   pure function kept(group, p, k) result(part)
+      class(plane_group), intent(in) :: group
+      integer, intent(in) :: p, k
+      real(wp) :: part
+      part = 1.0_wp
+      if (k == 1) part = 1.0_wp - real(group%cracked(p) - 1, wp) / share_steps
+   end function kept
+
+   !> The tables of both cracks of bedded masonry
+   pure subroutine set_pair(group, e, p)
+      class(plane_group), intent(inout) :: group
+      integer, intent(in) :: e
+      integer, intent(in) :: p
+      real(wp) :: stretch
+      integer :: k
+      do k = 1, 2
+         stretch = kept(group, p, k) * between(group, e, p, k, group%bed(e)%strength)**2 &
+            / between(group, e, p, k, group%bed(e)%energy)
+         group%pair(k, p) = group%teeth%nearest_band(group%ladder(1, e), group%ladder(2, e), &
+            stretch * width_across(group, e, group%turn(:, p)))
+      end do
+   end subroutine set_pair
+
    !> The crack band across the crack axes; teeth that were passed become those of as much stiffness
    pure subroutine set_band(group, e, p)
       class(plane_group), intent(inout) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
       real(wp) :: modulus
-      integer(c_int) :: old, new
+      integer(c_int) :: old(2), new
       integer :: k
       if (group%ladder(1, e) == 0) return
-      old = group%table_of(e, p)
-      new = group%teeth%nearest_band(group%ladder(1, e), group%ladder(2, e), width_across(group, e, group%turn(:, p)))
-      group%cracked(p) = 1_c_int + new - group%ladder(1, e)
-      if (new == old) return
+      old = [group%table_of(e, p, 1), group%table_of(e, p, 2)]
+      if (is_bedded(group, e)) then
+         call set_pair(group, e, p)
+      else
+         new = group%teeth%nearest_band(group%ladder(1, e), group%ladder(2, e), &
+            width_across(group, e, group%turn(:, p)))
+         group%cracked(p) = 1_c_int + new - group%ladder(1, e)
+      end if
       do k = 1, 2
-         if (group%tooth(k, p) == 1) cycle
-         modulus = group%teeth%modulus_of(old, group%tooth(k, p), group%young(e), group%options%floor)
+         new = group%table_of(e, p, k)
+         if (new == old(k) .or. group%tooth(k, p) == 1) cycle
+         modulus = group%teeth%modulus_of(old(k), group%tooth(k, p), group%young(e), group%options%floor)
          group%tooth(k, p) = group%teeth%tooth_of(new, modulus)
       end do
    end subroutine set_band
@@ -729,22 +868,29 @@ contains
    end subroutine principal
 
    !> Table of a point's tension teeth: of its element's until it cracks, then of its crack band
-   pure function table_of(group, e, p) result(table)
+   pure function table_of(group, e, p, k) result(table)
       class(plane_group), intent(in) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
+      integer, intent(in) :: k         !! crack direction: bedded masonry has a table for each
       integer(c_int) :: table
       table = group%table(e)
-      if (group%ladder(1, e) /= 0 .and. group%cracked(p) > 0) table = &
-         min(group%ladder(1, e) + group%cracked(p) - 1_c_int, group%ladder(2, e))
+      if (group%ladder(1, e) == 0 .or. group%cracked(p) == 0) return
+      if (is_bedded(group, e)) then
+         table = group%pair(k, p)
+      else
+         table = min(group%ladder(1, e) + group%cracked(p) - 1_c_int, group%ladder(2, e))
+      end if
    end function table_of
 
-   !> Width of an element across a crack of the normal n, see the head of this module [m]
+   !> Crack band of a crack of the normal n: the element's width across it, see the head of this module [m]
    pure function width_across(group, e, n) result(width)
       class(plane_group), intent(in) :: group
       integer, intent(in) :: e
       real(wp), intent(in) :: n(2)
       real(wp) :: width, a(2), b(2), along(2), across(2)
+      width = group%bed(e)%width
+      if (width > 0.0_wp) return
       a = group%diagonal(:, 1, e)
       b = group%diagonal(:, 2, e)
       along = [a(2) * n(1) - a(1) * n(2), b(2) * n(1) - b(1) * n(2)]
@@ -781,7 +927,7 @@ contains
       class(plane_group), intent(inout) :: group
       logical, intent(in) :: store
       real(wp), intent(inout) :: values(:, :)
-      integer :: p
+      integer :: e, p
       if (store) then
          values(1:2, :) = group%turn
          values(3, :) = real(group%cracked, wp)
@@ -797,6 +943,8 @@ contains
          group%shut(:, :) = nint(values(8:9, :), c_int)
          group%changes(:, :) = nint(values(10:11, :), c_int)
          do p = 1, group%points
+            e = (p - 1) / group%rule%points + 1
+            if (is_bedded(group, e) .and. group%cracked(p) > 0) call set_pair(group, e, p)
             call group%refresh(p)
          end do
       end if
@@ -809,7 +957,7 @@ contains
       real(wp) :: modulus
       modulus = group%teeth%modulus_of(group%crush_table(e), group%crush(k, p), group%young(e), group%options%floor)
       if (group%shut(k, p) == 0) modulus = min(modulus, &
-         group%teeth%modulus_of(group%table_of(e, p), group%tooth(k, p), group%young(e), group%options%floor))
+         group%teeth%modulus_of(group%table_of(e, p, k), group%tooth(k, p), group%young(e), group%options%floor))
    end function direction_modulus
 
    !> Rows: 1-3 strain and 4-6 stress in the crack axes, 7-8 cosine and sine of the first crack's normal,
@@ -848,7 +996,9 @@ contains
             values(16:17, p) = real(group%crush(:, p), wp)
             values(18, p) = real(group%shut(1, p) + 2 * group%shut(2, p), wp)
             values(19, p) = 0.0_wp
-            if (group%table(e) /= 0) values(19, p) = group%teeth%band(group%table_of(e, p))
+            if (group%table(e) /= 0) values(19, p) = group%teeth%band(group%table_of(e, p, 1))
+            if (is_bedded(group, e) .and. group%cracked(p) > 0) values(19, p) = &
+               width_across(group, e, group%turn(:, p))
          end do
       end do
    end subroutine report

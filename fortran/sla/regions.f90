@@ -207,7 +207,7 @@ contains
    !> The region where the first of some equations is eliminated, that of the last equation for held ones
    pure function regions_home(tree, equation) result(k)
       type(region_tree), intent(in) :: tree
-      integer(c_int), intent(in) :: equation(:)      !! 0 held
+      integer(c_int), intent(in) :: equation(:)      !! 0 held, beyond the unknowns moved
       integer :: k, first
       first = int(minval(equation, mask=equation > 0))
       k = size(tree%part)
@@ -241,7 +241,7 @@ contains
       do i = 1, size(xy, 2)
          do d = 1, 2
             q = int(equation(d, i))
-            if (q == 0 .or. abs(factor(d, i)) < 1.0e-6_wp) cycle
+            if (q == 0 .or. q > n .or. abs(factor(d, i)) < 1.0e-6_wp) cycle
             if (abs(tree%share(q)) > 0.0_wp) cycle    ! tied freedoms go by the first of them
             tree%share(q) = 1.0_wp / factor(d, i)
             tree%direction(q) = d
@@ -258,11 +258,11 @@ contains
                side = 0
                do i = 1, group%freedoms
                   q = int(group%equation(i, e))
-                  if (q == 0) cycle
+                  if (q == 0 .or. q > n) cycle
                   side(i) = terms * (tree%direction(q) - 1)
                   phi(:, i) = group%factor(i, e) * tree%share(q) * monomials(tree%place(:, q))
                   do j = 1, group%freedoms
-                     if (group%equation(j, e) > 0) tree%weight(q) = tree%weight(q) + &
+                     if (group%equation(j, e) > 0 .and. group%equation(j, e) <= n) tree%weight(q) = tree%weight(q) + &
                         abs(k(i, j) * group%factor(i, e) * group%factor(j, e))
                   end do
                end do

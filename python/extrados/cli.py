@@ -155,7 +155,7 @@ def run(
     """Run decks: print the answer, write results, figures and report."""
     from extrados.analyses.context import Context
     from extrados.decks.reader import DeckError, read_deck
-    from extrados.running.run import default_out, run_to
+    from extrados.running.run import run_to
 
     if out is not None and len(decks) > 1:
         err_console.say("--out takes one deck at a time")
@@ -163,7 +163,7 @@ def run(
     worst = 0
     with _errors(as_json):
         checked = [read_deck(path) for path in decks]
-        folders = [default_out(deck) for deck in checked]
+        folders = [deck.default_out for deck in checked]
         twice = next((f for f in folders if folders.count(f) > 1), None)
         if twice is not None:
             raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
@@ -171,7 +171,7 @@ def run(
             progress = _Progress(quiet or as_json)
             context = Context(deck, _threads(threads), progress, resume=resume, scheduler=scheduler)
             try:
-                found = run_to(context, out or default_out(deck), figures=False)
+                found = run_to(context, out or deck.default_out, figures=False)
             finally:
                 progress.stop()
             if as_json:
@@ -306,7 +306,6 @@ def check(
     """Check decks without running them: every complaint at once, and how the stones of a survey fit."""
     from extrados.decks.reader import DeckError, read_deck
     from extrados.running.check import check_building
-    from extrados.running.run import default_out
 
     if out is not None and len(decks) > 1:
         err_console.say("--out takes one deck at a time")
@@ -321,7 +320,7 @@ def check(
         checked = check_building(deck)
         complaints += checked.complaints
         if checked.inspection is not None:
-            folder = out or default_out(deck).with_name(f"{default_out(deck).name}-check")
+            folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
             _tell_survey(checked, folder, asked=out is not None)
     for line in complaints:
         err_console.say(line)

@@ -74,6 +74,9 @@ ANALYSES: dict[str, AnalysisKind] = {
     "failure-domain": _analysis(
         "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"
     ),
+    "failure-curves": _analysis(
+        "rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "arch/figure-5-4"
+    ),
     "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "arch/readme"),
     "fragility": _analysis(
         "statistics", "Fragility", "fragility", "statistics:draw_fragility", "fragility/pga-curve"

@@ -59,7 +59,7 @@ contains
          end do
       end do
       factor = 1.0_wp
-      call model_new(xy, equation, factor, options, model, status)
+      call model_new(xy, equation, 0_c_int, factor, options, model, status)
       if (status /= status_ok) error stop 'no element_model'
       call tooth_tables_new(reshape([1.0_wp, 7.0e9_wp, 0.3e6_wp, 47.0_wp, 0.17_wp, 0.2_wp, 1.0_wp, 1.0_wp], [8, 1]), &
          teeth, row, status)
@@ -68,7 +68,8 @@ contains
       allocate (plane)
       call plane_group_new(element_q4, 2_c_int, 2_c_int, .false., xy, connect, 0.21_wp * each, 7.0e9_wp * each, &
          0.19_wp * each, spread(one_table, 2, size(each)), 0 * nint(each, c_int), 0.0_wp * each, &
-         0.0_wp * each, 0 * nint(each, c_int), 0.0_wp * each, teeth, options, plane, bad, status)
+         0.0_wp * each, 0 * nint(each, c_int), 0.0_wp * each, spread(0.0_wp * each, 1, 5), &
+         teeth, options, plane, bad, status)
       if (status /= status_ok) error stop 'no elements'
       call move_alloc(plane, group)
       call both_directions(connect, nodes, directions, status)

@@ -47,6 +47,7 @@ STRATEGIES = {
     "moving-load": "count = 9",
     "rocking": "",
     "failure-domain": "durations = [0.4, 0.8]\namplitudes = 6\naccuracy = 1e-2",
+    "failure-curves": "durations = [0.4, 0.8]\namplitudes = 6\naccuracy = 1e-2\nmotions = 2",
     "assessment": "impulses = 1",
     "dem": "end_time = 0.3\njoints.normal_stiffness = 1e8",
     "sla": "events = 30\nmesh.size = 0.6",

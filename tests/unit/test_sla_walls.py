@@ -171,10 +171,12 @@ def test_another_wall_cannot_be_gone_on_with(tmp_path) -> None:
     moved = wall(events=5, resume_from=str(out))
     moved["structure"]["width"] = 3.01
     assert "lie up to" in run_deck(moved).reason
-    for words, change in {
-        "other stiffness": {"young": 7e9}, "other tensile laws": {"tensile_strength": 0.25e6},
-        "other crushing laws": {"compressive_strength": 3e6, "crushing_energy": 5e3},
-    }.items():  # fmt: skip
+    for words, change in (
+        ("other stiffness", {"young": 7e9}),
+        ("other tensile laws", {"tensile_strength": 0.25e6}),
+        ("other tensile laws", {"tensile_strength_parallel": 0.4e6}),
+        ("other crushing laws", {"compressive_strength": 3e6, "crushing_energy": 5e3}),
+    ):
         other = wall(events=5, resume_from=str(out))
         other["material"] |= change
         found = run_deck(other)

@@ -50,6 +50,10 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
             raise Refused(
                 'animation = "mp4" needs the program ffmpeg or the package imageio-ffmpeg, and neither is here; "gif" needs nothing'
             )
+        if building.ties and options.view and not options.bears_ties:
+            raise Refused(
+                f"{options.kind} does not reckon with [[ties]]: leave them out of its deck, or ask limit analysis"
+            )
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

@@ -25,6 +25,18 @@ class Material(Table):
     poisson: float = key(0.2, "Poisson's ratio", ge=0, lt=0.5)
     tensile_strength: Stress | None = key(None, "tensile strength, ft; without it nothing cracks", gt=0)
     fracture_energy: Energy | None = key(None, "energy of a crack per area, Gf", gt=0)
+    tensile_strength_parallel: Stress | None = key(
+        None, "tensile strength along the bed joints; tensile_strength is then that across them",
+        source="Lourenco, de Borst and Rots (1997)", gt=0,
+    )  # fmt: skip
+    fracture_energy_parallel: Energy | None = key(
+        None, "energy of a crack that runs across the bed joints, per area; default fracture_energy", gt=0
+    )
+    shear_strength: Stress | None = key(
+        None, "of bedded masonry: strength under shear alone in the axes of its joints; default, and at most, the root of the "
+        "product of both tensile strengths", gt=0,
+    )  # fmt: skip
+    bed_angle: Angle = key(0.0, "angle of the bed joints to the x axis, counter-clockwise", ge=-180, le=180)
     softening: Literal["linear", "exponential", "hordijk"] = key(
         "linear", "how the stress falls after the strength", source="thesis Fig. 4-1"
     )
@@ -51,7 +63,28 @@ class Material(Table):
             raise ValueError("lateral_reduction needs compressive_strength")
         if self.confinement and self.crushing_energy is None:
             raise ValueError("confinement needs compressive_strength and crushing_energy")
+        self._check_bedding()
         return self
+
+    def _check_bedding(self) -> None:
+        """The strengths of masonry with bed joints fit together."""
+        if self.tensile_strength_parallel is None:
+            for name in ("fracture_energy_parallel", "shear_strength"):
+                if getattr(self, name) is not None:
+                    raise ValueError(f"{name} needs tensile_strength_parallel")
+            if self.bed_angle:
+                raise ValueError("bed_angle needs tensile_strength_parallel")
+            return
+        if self.tensile_strength is None:
+            raise ValueError("tensile_strength_parallel needs tensile_strength, that across the bed joints")
+        if self.lateral_reduction:
+            raise ValueError("lateral_reduction is for one tensile strength: leave out tensile_strength_parallel")
+        most = (self.tensile_strength * self.tensile_strength_parallel) ** 0.5
+        if self.shear_strength is not None and self.shear_strength > most * (1.0 + 1e-9):
+            raise ValueError(
+                f"shear_strength is {self.shear_strength:g} Pa, at most the root of the product of both tensile strengths, "
+                f"{most:g} Pa"
+            )
 
 
 class JointType(Table):

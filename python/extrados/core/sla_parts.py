@@ -56,13 +56,48 @@ class Monitor:
 @dataclass(frozen=True)
 class Stop:
     """When a run ends by itself: `load` carried, `displacement` of the first monitor, `fraction` of the peak
-    load after it, compliance over the first (a mechanism). `refuse_overload`: the first state must carry A."""
+    load after it, compliance over the first (a mechanism). `refuse_overload`: the first state must carry A. `target` of
+    the first monitor, met exactly, from below (`side` 1) or above (-1); `already`: loads like B that are on, over B."""
 
     load: float = np.inf
     displacement: float = np.inf
     fraction: float = -1.0
     compliance: float = 1e6
     refuse_overload: bool = False
+    target: float = 0.0
+    side: int = 0
+    already: float = 0.0
+
+
+#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane.f90)
+LEAST_SHARE = 0.2
+
+
+@dataclass(frozen=True)
+class Bedding:
+    """Masonry in courses: the tension law is that across the bed joints, along them it is different.
+
+    angle of the bed joints to x [rad]; strength, energy along them over those across them; shear factor
+    sqrt(fx fy) / shear strength, at least 1 (Lourenco, de Borst and Rots 1997: the root of their alpha).
+    """
+
+    angle: float = 0.0
+    strength: float = 1.0
+    energy: float = 1.0
+    shear: float = 1.0
+
+    def __post_init__(self) -> None:
+        if not (self.strength > 0.0 and self.energy > 0.0 and self.shear >= 1.0):
+            raise ValueError("bedded masonry needs ratios above 0 and a shear factor of at least 1")
+
+    def stretch(self) -> tuple[float, float]:
+        """Least and greatest f^2 / G over all crack directions, over that across the bed joints: the bands whose teeth
+        are those of these cracks, over their own."""
+        a, b = self.strength - 1.0, self.energy - 1.0
+        # q = nx^2 of a crack's normal in the axes of the joints: 0, 1, and where (1 + a q)^2 / (1 + b q) is extreme
+        places = [0.0, 1.0, min(max((b - 2.0 * a) / (a * b), 0.0), 1.0) if a * b != 0.0 else 0.0]
+        ratios = [(1.0 + a * q) ** 2 / (1.0 + b * q) for q in places]
+        return min(ratios) * (LEAST_SHARE if self.shear > 1.0 else 1.0), max(ratios)
 
 
 @dataclass(frozen=True)
@@ -74,7 +109,8 @@ class Plane:
     softening, one for all or a sequence by element, None where it stays linear; `lateral` compressive
     strength that reduces the tensile one (0 none); `confinement` growth of the compressive strength per lateral pressure; `axis` angle of the only crack normal allowed [rad], NaN
     where cracks choose theirs; `joint`: cracks there keep the shear stiffness, so that the joint opens but does not
-    slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle.
+    slide; `points` Gauss points of quadrilaterals; `selective`: shear by the middle; `bedding` one for all or a
+    sequence by element, None where the strength is the same in all directions.
     """
 
     kind: str
@@ -92,6 +128,7 @@ class Plane:
     joint: bool = False
     reach: np.ndarray | None = None
     confinement: float | np.ndarray = 0.0
+    bedding: Bedding | Sequence[Bedding | None] | None = None
 
     @property
     def points_each(self) -> int:
@@ -172,10 +209,12 @@ class Behaviour:
 
 @dataclass
 class Freedoms:
-    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it."""
+    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it; the last `moved` equations are
+    those of supports whose displacements are given."""
 
     equation: np.ndarray
     factor: np.ndarray
+    moved: int = 0
 
     @staticmethod
     def make(
@@ -211,8 +250,9 @@ class Events:
     """What was recorded, one row per event; n_* before the damage of that event is done.
 
     load: multiplier; limit_t, limit_c: least upper and greatest lower limit; stored, external, dissipated
-    (path), crack (area of the teeth) energies [J]; compliance fB.uB; residual of the last guard check; scale of all
-    loads, below 1 where they went down together.
+    (path), crack (area of the teeth) energies [J]; compliance fB.uB (where supports move with lambda their stiffness
+    instead); residual of the last guard check; scale of all loads, below 1 where they went down together; pull, the force
+    that moves such supports [N].
     point (0-based), code (see EVENTS), equilibrium; monitors (events, monitors) [m].
     """
 
@@ -226,6 +266,7 @@ class Events:
     compliance: np.ndarray
     residual: np.ndarray
     scale: np.ndarray
+    pull: np.ndarray
     point: np.ndarray
     code: np.ndarray
     number: np.ndarray
@@ -249,14 +290,25 @@ class Events:
         return float(np.abs(gap).max() / scale) if scale > 0.0 else 0.0
 
     @staticmethod
+    def none() -> "Events":
+        """No events, one monitor."""
+        columns = {name: np.zeros(0) for name in Events.__dataclass_fields__ if name not in ONCE}
+        columns |= {name: np.zeros(0, dtype=int) for name in ("point", "code", "number")}
+        return Events(**columns | {"equilibrium": np.zeros(0, dtype=bool), "monitors": np.zeros((0, 1))})
+
+    @staticmethod
     def join(parts: Sequence["Events"]) -> "Events":
         """Batches one behind the other."""
         last = parts[-1]
         columns = {
             name: np.concatenate([getattr(p, name) for p in parts])
             for name in Events.__dataclass_fields__
-            if name not in ("reason", "guard", "interrupted", "crack_total")
+            if name not in ONCE
         }
         return Events(
             **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total
         )
+
+
+#: What events have once, not each
+ONCE = ("reason", "guard", "interrupted", "crack_total")

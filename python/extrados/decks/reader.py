@@ -16,6 +16,7 @@ from extrados.analyses.table import OVERRIDES, Analysis
 from extrados.building.building import Building
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.building.structure import Structure
+from extrados.building.ties import Tie
 from extrados.decks.moved import MOVED, MOVED_KINDS
 from extrados.decks.positions import key_lines, line_of
 from extrados.schema import files
@@ -24,9 +25,10 @@ from extrados.schema.text import printable
 
 LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
+MOST_TIES = 1000
 #: Tables that say what the building is besides its geometry
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
-TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", "motion", "analysis"}
+TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", "ties", "motion", "analysis"}
 
 
 class DeckError(Exception):
@@ -70,6 +72,11 @@ class Deck:
         """The hash by which results are told from those of another deck."""
         return self.sha256 or hashlib.sha256(repr(self.data).encode()).hexdigest()
 
+    @property
+    def default_out(self) -> Path:
+        """results/<deck name> below the current folder."""
+        return Path("results") / (Path(self.path).stem or "deck")
+
     def resolved(self) -> dict[str, Any]:
         """All keys with their defaults, in SI."""
         own = {name: getattr(self.building, name).model_dump() for name in PROPERTIES}
@@ -78,6 +85,7 @@ class Deck:
             "structure": self.structure.model_dump() if self.structure else None,
             **own,
             "materials": {name: m.model_dump() for name, m in self.building.materials.items()},
+            "ties": [tie.model_dump(exclude_none=True) for tie in self.building.ties],
             "motion": self.motion.model_dump() if self.motion else None,
             "analysis": [a.model_dump(exclude_none=True) for a in self.analyses],
         }
@@ -203,9 +211,26 @@ class _Checker:
                 known = ", ".join(sorted(named)) or "none"
                 self.complain(("structure",), f"unknown material '{part.material}'; [materials] holds {known}")
         return Building(
-            structure, materials={n: m for n, m in named.items() if m}, folder=folder,
+            structure, materials={n: m for n, m in named.items() if m}, ties=self.ties(data.get("ties", [])), folder=folder,
             **{name: table for name, table in own.items() if table},
         )  # fmt: skip
+
+    def ties(self, tables: Any) -> tuple[Tie, ...]:
+        """The ties of the deck, each with a name; what is wrong in them is complained of."""
+        if not isinstance(tables, list) or len(tables) > MOST_TIES:
+            self.complain(("ties",), f"expected tables [[ties]], {MOST_TIES} at most")
+            return ()
+        made, names = [], set()
+        for k, table in enumerate(tables):
+            tie = self.table(Tie, table, ("ties", k))
+            if tie is None:
+                continue
+            name = tie.name or f"tie {k + 1}"
+            if name in names:
+                self.complain(("ties", k, "name"), f"two ties are called '{name}'")
+            names.add(name)
+            made.append(tie.model_copy(update={"name": name}))
+        return tuple(made)
 
     def overridden(self, building: Building, data: dict[str, Any], table: dict[str, Any], path: tuple) -> Building:
         """The building as one analysis sees it."""

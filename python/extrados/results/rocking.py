@@ -143,6 +143,61 @@ def between(places: list[float], values: list[float | None], place: float) -> fl
     return None
 
 
+class MotionImpulse(ResultModel):
+    """The primary impulse of one of the motions."""
+
+    name: str = fact("the motion")
+    amplitude_g: float = fact("amplitude of the sine, with its sign", "g")
+    period_s: float = fact("its period", "s")
+    start_s: float = fact("when it starts", "s")
+    goodness_of_fit: float = fact("share of the squared acceleration over its own span that it explains")
+    peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
+
+
+class FailureCurve(ResultModel):
+    """The failure curve of one structure, and what the motions do to it."""
+
+    label: str = fact("what sets it apart from the others")
+    durations_s: list[float] = fact("durations or periods of the pulses", "s")
+    amplitudes_g: list[float | None] = fact("lowest amplitude that brings it down; null: none below the cap", "g")
+    uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
+    restitution: float = fact("rate after over before an impact")
+    natural_time_s: float = fact("time by which its curve scales: sqrt(R/g) of an arch, 1/p of a block", "s")
+    cycles: int = fact("cycles of a train of sines; 1 for all other pulses")
+    static_verdicts: list[Literal["stands", "fails"]] = fact("of each motion: its peak against the uplift acceleration")
+    curve_verdicts: list[Literal["stands", "fails"] | None] = fact(
+        "of each motion: its primary impulse against the curve; null: its period lies outside the curve"
+    )
+    run_outcomes: list[RockingOutcome | None] = fact("of each motion: what it does, run through; null: no answer")
+
+
+class FailureCurves(KindResults):
+    """failure-curves: several structures or trains of sines beside each other, and the primary impulses of the motions."""
+
+    pulse: Pulse = fact("shape of the pulses")
+    curves: list[FailureCurve] = fact("one for each variant and number of cycles")
+    impulses: list[MotionImpulse] = fact("of the motions of the deck; none where it has no motion")
+    agreement: float | None = fact(
+        "share of verdicts by the curves that the whole motions confirm; null: none to compare"
+    )
+    scaling_misfit: float | None = fact(
+        "greatest difference between curves over their natural times, as a share of the amplitude over uplift; null: their "
+        "pulses or trains differ", source="thesis Eq. 5.7",
+    )  # fmt: skip
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The weakest of the structures; a motion that is a sine is no demand here, as it has a curve for each."""
+        lowest = [
+            (min(failing), c.label) for c in self.curves if (failing := [a for a in c.amplitudes_g if a is not None])
+        ]
+        if not lowest:
+            return judge("None of the pulses tried brings any of them down.", None, None, "g")
+        least, label = min(lowest)
+        return judge(
+            f"Of the {len(self.curves)} curves that of {label} goes lowest: {least:.3g} g.", None, least, "g"
+        )  # fmt: skip
+
+
 class Coefficients(ResultModel):
     """A failure curve A_p/g = C1 (T_p/sqrt(R) - T_min)^C2 + gamma, T_p in s, R in m."""
 

@@ -145,7 +145,7 @@ class _Kept:
 
 
 #: What a building is said to be, table by table
-_TABLES = frozenset({"structure", "material", "materials", "joints", "supports", "initial"})
+_TABLES = frozenset({"structure", "material", "materials", "joints", "supports", "initial", "ties"})
 
 
 class _Seen:

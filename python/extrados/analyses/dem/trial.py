@@ -8,6 +8,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task
+from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
 from extrados.building.errors import NoView
 from extrados.building.rockers.mechanism import MechanismModel
@@ -112,5 +113,11 @@ class Trial:
     def job(self, values: list[JointValues], **change: object) -> Runs:
         """A run with each of these joint values; `change` replaces options of the core."""
         options = replace(self.options, **change)
-        tasks = [Task(k, options, self.ground, shift=self.shift, moves=self.moves) for k in range(len(values))]
+        tasks = [
+            Task(
+                k, replace(options, settlement=farthest_settlement(self.model, v)), self.ground, shift=self.shift,
+                moves=self.moves,
+            )
+            for k, v in enumerate(values)
+        ]  # fmt: skip
         return Runs([self.model.bodies(v) for v in values], tasks)

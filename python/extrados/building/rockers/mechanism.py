@@ -255,7 +255,13 @@ class MechanismModel:
     @cached_property
     def body(self) -> Body:
         """The structure for the rocking core."""
-        return table_body(*self.tables, self.restitution)
+        return self.rebounding(1.0)
+
+    def rebounding(self, factor: float) -> Body:
+        """The structure with c_v times a factor, but no more than leaves all energy."""
+        (right, left), (to_right, to_left) = self.tables, self.restitution
+        most = float(np.sqrt(left.mass / right.mass))
+        return table_body(right, left, (min(most, factor * to_right), min(1.0 / most, factor * to_left)))
 
     def coefficients(self, side: int, q: npt.ArrayLike) -> Coefficients:
         """M, M'/2, V', H and V of one side at rotations q >= 0 [rad]."""
