@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.table import BuildingAnalysis
+from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.building.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
@@ -26,7 +26,7 @@ class RockingTable(BuildingAnalysis):
     )
 
 
-class Rocking(RockingTable):
+class Rocking(RockingTable, Animated):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]
