@@ -9,9 +9,9 @@ import time
 from typing import Any
 
 import pytest
-from conftest import SHOTS, Served
 
 import extrados
+from conftest import SHOTS, Served
 
 DXF_UNIT = 6  # metres
 
@@ -197,7 +197,9 @@ def test_a_drawing_is_dropped_and_its_vertices_are_moved(page: Any) -> None:
     )
     until(page, "window.extrados.scene?.blocks === 2")
     assert capacity(page) == pytest.approx(1.0 / 5.0, rel=1e-9)
-    page.click("text=Free the stones") if page.locator("text=Free the stones").count() else page.evaluate("window.extrados.ask({ do: 'blocks' })")
+    page.click("text=Free the stones") if page.locator("text=Free the stones").count() else page.evaluate(
+        "window.extrados.ask({ do: 'blocks' })"
+    )
     page.wait_for_selector("[data-handle^=vertex-]")
     assert page.locator("[data-handle^=vertex-]").count() == 6
     before = settled(page)
@@ -358,7 +360,8 @@ def _bisect_buttress(page: Any) -> None:
         page.evaluate("c => window.extrados.change(c)", {"structure.buttress_width": middle})
         until(
             page,
-            "m => window.extrados.handles.some(h => h.name === 'buttress_width' && Math.abs(h.value - m) < 1e-9)", arg=middle
+            "m => window.extrados.handles.some(h => h.name === 'buttress_width' && Math.abs(h.value - m) < 1e-9)",
+            arg=middle,
         )
         scene = page.evaluate("window.extrados.scene")
         low, high = (low, middle) if scene.get("capacity") and scene["capacity"]["plus_g"] > 0.1 else (middle, high)
@@ -398,7 +401,9 @@ def test_every_control_has_a_name(page: Any) -> None:
             .map(e => e.outerHTML.slice(0, 120))"""
     )
     assert nameless == []
-    sliders = page.evaluate("[...document.querySelectorAll('[role=slider]')].map(e => e.getAttribute('aria-valuetext'))")
+    sliders = page.evaluate(
+        "[...document.querySelectorAll('[role=slider]')].map(e => e.getAttribute('aria-valuetext'))"
+    )
     assert all(re.search(r"\d", text) for text in sliders)
 
 
