@@ -4,7 +4,7 @@ PYTHON := .venv/bin/python
 # An import after a pull may build anew, and meson then looks for numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: run test verify bench oldest lint format wheel setup table-5-3 docs clean
+.PHONY: run test verify bench oldest lint format wheel setup table-5-3 impact-map docs clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -38,8 +38,11 @@ docs: setup  ## the references of decks and results, from their models
 	@.venv/bin/extrados explain --manual > docs/decks.md
 	@.venv/bin/extrados explain --results > docs/results.md
 
-table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3)
-	@$(PYTHON) -m extrados.analyses.rocking.criterion
+table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints it by another impact rule
+	@$(PYTHON) -m extrados.analyses.rocking.criterion $(RULE)
+
+impact-map: setup  ## c_v of arches by each impact rule beside discrete elements: results/impact-map
+	@$(PYTHON) tools/impact_map.py
 
 wheel: setup
 	@$(PYTHON) -m pip wheel --no-deps --no-build-isolation -w dist .

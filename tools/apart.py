@@ -43,7 +43,18 @@ def build(place: Path, *options: str) -> None:
         shutil.copy2(made, package / made.name)
 
 
-def environment(place: Path, **more: str) -> dict[str, str]:
-    """What Python needs to import the program from there: `python -S`, so that the environment's own is not found."""
-    path = [str(place / "python"), *(p for p in sys.path if p and "lib-dynload" not in p)]
-    return {**os.environ, "PYTHONPATH": os.pathsep.join(path), "PYTHONDONTWRITEBYTECODE": "1", **more}
+def python(place: Path) -> str:
+    """An interpreter that finds the program there, and so do the processes that it starts."""
+    folder = place / "venv"
+    if not folder.exists():
+        subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
+    (packages,) = folder.glob("lib/python*/site-packages")
+    # Named as mere folders, those of this environment do not bring their own program with them
+    others = [
+        p
+        for p in map(Path, sys.path)
+        if p.is_dir() and not (p.is_relative_to(ROOT) and not p.is_relative_to(sys.prefix))
+    ]
+    text = "\n".join(map(str, [place / "python", *others]))
+    (packages / "apart.pth").write_text(text, encoding="utf-8")
+    return str(folder / "bin" / "python")

@@ -1,10 +1,12 @@
 """How many faults in Fortran and C the quick tests see: faults are planted one at a time in a copy, built and tested.
 
-    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--only FILE:LINE]
+    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--only FILE:LINE]
 
 A fault is a changed sign or operator, constant, comparison or bound of a loop, at a place drawn from the seed; every
-room gets its share. A fault counts as caught where the build or a quick test of its room fails. Those that are not are
-printed with their place, and all are noted for the verification book.
+room gets its share. A fault counts as caught where the build, a quick test of its room or a case fails; without a fault
+all of them pass, which is seen to first. What becomes of each fault is kept in the place, and a run that was broken off
+goes on from there; `--again` tries those anew that were not caught, after tests were written. Those that are not caught
+are printed with their place, and all are noted for the verification book.
 """
 
 import argparse
@@ -23,30 +25,41 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parent))
 import apart
 
-#: room -> tests of its own in Fortran and C, then those in Python, the quickest first
-ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
+#: room -> tests of its own in Fortran and C, then those in Python, the quickest first, then its cases
+ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "fortran/common": (
         ("test_dopri5", "test_motion_set", "test_motion", "test_rocking"),
         ("unit/test_motion_core.py", "unit/test_block.py", "unit/test_mechanism.py", "unit/test_statistics.py"),
+        "rocking/ or arch/",
     ),
     "fortran/arch": (
-        ("test_four_hinge",), ("verification/test_arch_rocking.py", "unit/test_mechanism.py", "unit/test_border.py"),
+        ("test_four_hinge",),
+        ("unit/test_mechanism.py", "verification/test_arch_rocking.py", "unit/test_border.py"),
+        "arch/",
     ),
-    "fortran/mechanism": (("test_mechanism",), ("unit/test_mechanism.py", "verification/test_vault_rocking.py")),
+    "fortran/mechanism": (
+        ("test_mechanism",),
+        ("unit/test_mechanism.py", "unit/test_impact.py", "verification/test_vault_rocking.py"),
+        "arch/ or vault/",
+    ),
     "fortran/rocking": (
         ("test_rocking",),
         ("unit/test_block.py", "verification/test_rocking_reference.py", "unit/test_statistics.py", "unit/test_fragility.py"),
+        "rocking/ or arch/",
     ),
-    "fortran/motion": (("test_motion",), ("unit/test_motion_core.py", "unit/test_generated.py")),
-    "fortran/dem": (("test_dem",), ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_analysis.py")),
+    "fortran/motion": (("test_motion",), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
+    "fortran/dem": (
+        ("test_dem",), ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_analysis.py"), "dem/",
+    ),
     "fortran/sla": (
         ("test_sla",),
-        ("unit/test_sla_elements.py", "unit/test_sla_teeth.py", "unit/test_sla_events.py", "unit/test_sla_stones.py",
-         "unit/test_sla_walls.py"),
+        ("unit/test_sla_elements.py", "unit/test_sla_teeth.py", "unit/test_sla_joints.py", "unit/test_sla_events.py",
+         "unit/test_sla_stones.py", "unit/test_sla_walls.py"),
+        "sla/",
     ),
-    "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py")),
-    "c/sparse": (("test_sparse", "test_sla"), ("unit/test_sla_events.py",)),
-    "c/common": (("test_handles",), ("unit/test_border.py", "unit/test_cli.py")),
+    "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
+    "c/sparse": (("test_sparse", "test_sla"), ("unit/test_sla_events.py",), "sla/"),
+    "c/common": (("test_handles", "test_threads", "test_blas"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),
 }  # fmt: skip
 
 #: kind -> (pattern of the part that is changed, what stands in its place)
@@ -69,6 +82,11 @@ class Fault:
     line: int
     old: str
     new: str
+
+    @property
+    def room(self) -> str:
+        """The room that the file belongs to."""
+        return "/".join(self.file.split("/")[:2])
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: {self.kind}: {self.old.strip()}  ->  {self.new.strip()}"
@@ -123,7 +141,6 @@ def draw(count: int, seed: int) -> list[Fault]:
                 if share and options:
                     chosen.append(options.pop())
                     share -= 1
-    rng.shuffle(chosen)
     return chosen
 
 
@@ -135,22 +152,32 @@ def plant(place: Path, fault: Fault, back: bool = False) -> None:
     path.write_text("\n".join(lines), encoding="utf-8")
 
 
-def caught_by(place: Path, fault: Fault, patience: int, most: int | None) -> str:
-    """The test that fails, "" where none does."""
-    native, python = ROOMS["/".join(fault.file.split("/")[:2])]
-    python = python[:most]
-    try:
-        apart.build(place)
-    except subprocess.CalledProcessError:
-        return "the build"
-    meson = Path(sys.executable).with_name("meson")
-    environment = apart.environment(place, OMP_NUM_THREADS="1")
-    for command, name in (
-        ([str(meson), "test", "-C", str(place / "build"), "--no-rebuild", *native], "native tests"),
-        ([sys.executable, "-S", "-m", "pytest", "-q", "-x", *(f"tests/{test}" for test in python)], ""),
-    )[: 2 if python else 1]:
+def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
+    """What is run for a room, in order, and what each is called where it names no test of its own."""
+    native, python, cases = ROOMS[room]
+    pytest = [apart.python(place), "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider"]
+    meson = [
+        str(Path(sys.executable).with_name("meson")),
+        "test",
+        "-C",
+        str(place / "build"),
+        "--no-rebuild",
+        "-t",
+        "20",
+    ]
+    return [
+        ([*meson, *native], "native tests"),
+        ([*pytest, *(f"tests/{test}" for test in python)], ""),
+        ([*pytest, "tests/cases", "-k", cases], ""),
+    ]
+
+
+def failing(place: Path, room: str, patience: int) -> str:
+    """The first test of a room that fails, "" where none does."""
+    environment = {**os.environ, "OMP_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"}
+    for command, name in commands(place, room):
         run = subprocess.run(
-            command, cwd=place, env=environment, capture_output=True, text=True,
+            command, cwd=place, env=environment, capture_output=True, text=True, errors="replace",
             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (patience, patience)),
         )  # fmt: skip
         if run.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
@@ -161,15 +188,27 @@ def caught_by(place: Path, fault: Fault, patience: int, most: int | None) -> str
     return ""
 
 
+def caught_by(place: Path, fault: Fault, patience: int) -> str:
+    """The test that fails with a fault planted, "" where none does."""
+    plant(place, fault)
+    try:
+        try:
+            apart.build(place)
+        except subprocess.CalledProcessError:
+            return "the build"
+        return failing(place, fault.room, patience)
+    finally:
+        plant(place, fault, back=True)
+
+
 def main() -> int:
     """Plant all; the number of faults that no test saw."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--count", type=int, default=80)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--patience", type=int, default=300, help="seconds of a processor that the tests may take")
-    parser.add_argument("--python", type=int, help="how many of a room's Python tests are run; default all")
-    parser.add_argument("--first", type=int, default=1, help="where to go on, counted from 1")
+    parser.add_argument("--patience", type=int, default=300, help="seconds of a processor that a room's tests may take")
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
+    parser.add_argument("--again", action="store_true", help="the faults anew that were not caught")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
     options = parser.parse_args()
     place = options.place.resolve()
@@ -178,25 +217,26 @@ def main() -> int:
     apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
     chosen = draw(options.count, options.seed)
     if options.only:
-        chosen = [
-            f for f in faults_of(apart.ROOT / options.only.split(":")[0]) if f.line == int(options.only.split(":")[1])
-        ]
-    missed = []
-    for k, fault in enumerate(chosen, start=1):
-        if k < options.first:
-            continue
+        file, line = options.only.split(":")
+        chosen = [fault for fault in faults_of(apart.ROOT / file) if fault.line == int(line)]
+    kept = place / "fates.json"
+    fates: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
+    todo = [f for f in chosen if options.only or str(f) not in fates or (options.again and not fates[str(f)])]
+    todo.sort(key=lambda fault: fault.room)  # the tests of a room pass without a fault before its first is planted
+    for k, fault in enumerate(todo, start=1):
+        if f"{fault.room} as it is" not in fates:
+            if by := failing(place, fault.room, 10 * options.patience):
+                sys.exit(f"{fault.room}: {by} fails without a fault")
+            print(f"{fault.room}: its tests pass", flush=True)
+            fates[f"{fault.room} as it is"] = "nothing"
         begin = time.monotonic()
-        plant(place, fault)
-        try:
-            by = caught_by(place, fault, options.patience, options.python)
-        finally:
-            plant(place, fault, back=True)
-        if not by:
-            missed.append(str(fault))
+        by = fates[str(fault)] = caught_by(place, fault, options.patience)
         seconds = time.monotonic() - begin
-        print(f"{k}/{len(chosen)} {f'caught by {by}' if by else 'NOT CAUGHT'} ({seconds:.0f} s) {fault}", flush=True)
+        print(f"{k}/{len(todo)} {f'caught by {by}' if by else 'NOT CAUGHT'} ({seconds:.0f} s) {fault}", flush=True)
+        kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
+    missed = [str(fault) for fault in chosen if not fates[str(fault)]]
     print(f"{len(chosen) - len(missed)} of {len(chosen)} caught", *missed, sep="\n")
-    if not options.only and options.python is None and options.first == 1:
+    if not options.only:
         notes = apart.ROOT / "build" / "trials"
         notes.mkdir(parents=True, exist_ok=True)
         row = {"what": "faults planted in Fortran and C that no quick test sees", "tried": len(chosen),

@@ -62,22 +62,26 @@ def of_loads(ratios: dict[str, list[float]]) -> list[str]:
     return ["### Bias and scatter of single numbers", "", f"{head}\n|---|---|---|---|", *rows, ""]
 
 
-def trials() -> list[str]:
-    """What was tried and did not hold, as the trials of tests/trials and tools/seeded_faults.py noted it."""
-    notes = sorted((ROOT / "build" / "trials").glob("*.json"))
-    rows = [json.loads(path.read_text(encoding="utf-8")) for path in notes]
-    if not rows:
+def trials(book: str) -> list[str]:
+    """What was tried and did not hold, as the trials of tests/trials and tools/seeded_faults.py noted it; what the book
+    tells of a trial stays where that trial has not been run since."""
+    section = book.partition(f"{TRIALS}\n")[2]
+    lines = {
+        row.split(" | ")[0]: row for row in section.split("\n") if row.startswith("| ") and "looked for" not in row
+    }
+    for path in sorted((ROOT / "build" / "trials").glob("*.json")):
+        r = json.loads(path.read_text(encoding="utf-8"))
+        row = f"| {r['what']} | {r['tried']:,} | {r['failures']} | {'; '.join(r['notes'])} |".replace("\n", " ")
+        lines[row.split(" | ")[0]] = row
+    if not lines:
         return []
-    lines = [
-        f"| {r['what']} | {r['tried']:,} | {r['failures']} | {'; '.join(r['notes'])} |".replace("\n", " ") for r in rows
-    ]
     return [TRIALS, "", "From fixed seeds; a failure is one of what the first column says.", "",
-            "| looked for | tried | found | |\n|---|---|---|---|", *lines, ""]  # fmt: skip
+            "| looked for | tried | found | |\n|---|---|---|---|", *sorted(lines.values()), ""]  # fmt: skip
 
 
 def with_trials_alone(book: str) -> str:
     """The book with the section of the trials written anew, and all else as it was."""
-    return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials())
+    return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials(book))
 
 
 def bias(rows: list[tuple[str, Row, object]]) -> list[str]:
@@ -127,7 +131,7 @@ def main() -> int:
             parts += [head, *tables[kind], ""]
         if kind == "experiment":
             parts += of_loads(ratios)
-    parts += trials()
+    parts += trials(BOOK.read_text(encoding="utf-8") if BOOK.exists() else "")
     BOOK.write_text("\n".join(parts), encoding="utf-8")
     print(f"docs/verification.md: {sum(map(len, tables.values()))} rows, {wrong} differ")
     return wrong

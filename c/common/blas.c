@@ -1,13 +1,15 @@
 /* Room for OpenBLAS. Its routines take a buffer of up to 128 MB of addresses for each call that runs at a time and never
  * give it back; where the system has none left they try again for ever, or crash, depending on the version. So one is
- * taken when the core is loaded, and a further one only after it has been seen that there is room for it. */
+ * taken when the core is loaded, and a further one only after it has been seen that there is room for it. OpenBLAS' own
+ * threads take one each as they begin, which may be later: they are waited for, or they would take that one. */
 #include <pthread.h>
 #include <stddef.h>
+#include <stdlib.h>
 #include <sys/mman.h>
 
 #include "extrados.h"
 
-enum { BUFFER = 192 << 20 };
+enum { BUFFER = 192 << 20, WIDE = 256 };
 
 extern void dpotrf_(const char *uplo, const int *n, double *a, const int *lda, int *info, size_t uplo_length);
 
@@ -45,10 +47,15 @@ void extrados_blas_leave(void) {
 int extrados_blas_load(void) {
   const int status = extrados_blas_enter();
   if (status != EXTRADOS_ok) return status;
-  const int one = 1;
-  double a = 2.385;
+  const int rows = WIDE; /* large enough to be shared among all its threads */
   int info;
-  dpotrf_("L", &one, &a, &one, &info, 1);
+  double *a = calloc(WIDE * WIDE, sizeof *a);
+  if (a) {
+    for (int k = 0; k < WIDE; k++) a[k * (WIDE + 1)] = 2.385;
+    dpotrf_("L", &rows, a, &rows, &info, 1);
+  }
+  const int found = a ? EXTRADOS_ok : EXTRADOS_out_of_memory;
+  free(a);
   extrados_blas_leave();
-  return EXTRADOS_ok;
+  return found;
 }

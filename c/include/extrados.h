@@ -42,6 +42,9 @@ EXTRADOS_API int extrados_blas_enter(void);
 EXTRADOS_API void extrados_blas_leave(void);
 EXTRADOS_API int extrados_blas_load(void);
 
+/* threads.c: as many of `wanted` threads as can be started now, at least 1. */
+EXTRADOS_API int extrados_threads(int wanted);
+
 /* random.c: GSL returns errors instead of ending the process, BLAS has its first buffer. */
 EXTRADOS_API int extrados_library_init(void);
 

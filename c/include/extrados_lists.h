@@ -19,7 +19,8 @@
 #define EXTRADOS_ROCKING_BODY_LIST(ENTRY) \
   ENTRY(1, arch, "arch") \
   ENTRY(2, block, "block") \
-  ENTRY(3, table, "table")
+  ENTRY(3, table, "table") \
+  ENTRY(4, restrained, "restrained")
 
 #define EXTRADOS_ROCKING_OUTCOME_LIST(ENTRY) \
   ENTRY(0, no_hinging, "no-hinging") \

@@ -9,12 +9,13 @@
  */
 #include <cholmod.h>
 #include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "extrados.h"
 
-enum { most_vectors = 4, most_changes = 4, most_ahead = 16384 /* bytes */ };
+enum { most_vectors = 4, most_changes = 4, most_ahead = 16384 /* bytes */, most_threads = 4 };
 
 struct extrados_sparse {
   cholmod_common common;
@@ -50,6 +51,9 @@ static void settle(cholmod_common *common) {
   common->final_ll = 1;
   common->quick_return_if_not_posdef = 1;
   common->nmethods = 1;
+#if CHOLMOD_MAIN_VERSION >= 4 /* before, four it is */
+  common->nthreads_max = most_threads;
+#endif
 }
 
 static cholmod_sparse lower(int64_t n, const int64_t *start, const int64_t *row, const double *value) {
@@ -133,6 +137,18 @@ static int all_finite(int64_t count, const double *x) {
   return 1;
 }
 
+/* CHOLMOD's loops are shared among up to four threads, whoever asks; where there is no room for them it goes alone. */
+static int factor_values(struct extrados_sparse *self) {
+  const int room = extrados_blas_enter();
+  if (room != EXTRADOS_ok) return room;
+  const int levels = omp_get_max_active_levels();
+  if (extrados_threads(most_threads) < most_threads) omp_set_max_active_levels(0);
+  cholmod_l_factorize(&self->matrix, self->factor, &self->common);
+  omp_set_max_active_levels(levels);
+  extrados_blas_leave();
+  return EXTRADOS_ok;
+}
+
 /* LL' of new values; the smallest pivot over the largest in `ratio`, its equation in `weakest`. */
 static int factorise(struct extrados_sparse *self, const double *value, double *ratio, int64_t *weakest) {
   *ratio = 0.0;
@@ -140,10 +156,8 @@ static int factorise(struct extrados_sparse *self, const double *value, double *
   if (!all_finite((int64_t)self->matrix.nzmax, value)) return EXTRADOS_not_finite;
   self->matrix.x = (void *)(uintptr_t)value;
   self->matrix.xtype = CHOLMOD_REAL;
-  const int room = extrados_blas_enter();
+  const int room = factor_values(self);
   if (room != EXTRADOS_ok) return room;
-  cholmod_l_factorize(&self->matrix, self->factor, &self->common);
-  extrados_blas_leave();
   if (self->common.status != CHOLMOD_OK) {
     int code = code_of(&self->common);
     *weakest = (int64_t)self->factor->minor;

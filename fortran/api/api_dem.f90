@@ -143,8 +143,8 @@ contains
       real(c_double), intent(in) :: mass_damping              !! alpha [1/s]
       integer(c_int), intent(in) :: moving_base               !! 1: the supports move, 0: body force
       !> End time [s], step [s] or 0, fraction of the critical step, settling tolerance, collapse [m] or 0,
-      !> limit of the energy residual
-      real(c_double), intent(in) :: limits(6)
+      !> limit of the energy residual, farthest settlement [m] or 0
+      real(c_double), intent(in) :: limits(7)
       real(c_double), intent(in) :: domain(4)                 !! left, right, bottom, top [m]
       integer(c_int), intent(in) :: settle_steps              !! at most; 0: no settling
       integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet
@@ -161,7 +161,7 @@ contains
          built%load%moving_base = moving_base /= 0
          built%mass_damping = mass_damping
          built%options = run_options(limits(1), limits(2), limits(3), limits(4), int(settle_steps), limits(5), domain, &
-            limits(6), stop_at_rest /= 0, int(threads))
+            limits(6), stop_at_rest /= 0, int(threads), limits(7))
          built%settled = .true.
       end if
       call handle_leave(handle)

@@ -84,6 +84,7 @@ contains
 
    !> Motions first .. first + count - 1 of a set
    subroutine generate(nl, line, amplitude, points, step, window, seed, first, count, threads, motions, status)
+      use common_threads, only : threads_available
       use motion_generator, only : make => generate
       integer(c_int), intent(in) :: nl
       real(c_double), intent(in) :: line(nl)           !! [Hz]
@@ -98,12 +99,13 @@ contains
       real(c_double), intent(out) :: motions(points, count)  !! [m/s^2]
       integer(c_int), intent(out) :: status
       !f2py threadsafe
-      call make(line, amplitude, step, window, seed, first, threads, motions, status)
+      call make(line, amplitude, step, window, seed, first, threads_available(threads), motions, status)
    end subroutine generate
 
    !> Peak displacement, velocity and absolute acceleration of every oscillator for every motion
    subroutine spectra(points, count, motions, step, np, period, nd, damping, points_per_cycle, threads, &
                       peak, status)
+      use common_threads, only : threads_available
       use motion_oscillator, only : response_spectra
       integer(c_int), intent(in) :: points
       integer(c_int), intent(in) :: count
@@ -118,7 +120,7 @@ contains
       real(c_double), intent(out) :: peak(3, np, nd, count)  !! [m, m/s, m/s^2]
       integer(c_int), intent(out) :: status
       !f2py threadsafe
-      call response_spectra(motions, step, period, damping, points_per_cycle, threads, peak, status)
+      call response_spectra(motions, step, period, damping, points_per_cycle, threads_available(threads), peak, status)
    end subroutine spectra
 
    !> History of one oscillator at the samples
@@ -139,6 +141,7 @@ contains
 
    !> Intensity measures, in the order of motion_measures
    subroutine motion_measure(points, count, motions, step, threads, value, status)
+      use common_threads, only : threads_available
       use motion_measures, only : measures
       integer(c_int), intent(in) :: points
       integer(c_int), intent(in) :: count
@@ -148,7 +151,7 @@ contains
       real(c_double), intent(out) :: value(9, count)
       integer(c_int), intent(out) :: status
       !f2py threadsafe
-      call measures(motions, step, threads, value, status)
+      call measures(motions, step, threads_available(threads), value, status)
    end subroutine motion_measure
 
    !> Velocity and displacement from rest

@@ -5,7 +5,7 @@ module api_sla
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: loads, run, relax, displacement, measure, report, damage, set_damage, standing, resume
+   public :: loads, supports, reactions, run, relax, displacement, measure, report, damage, set_damage, standing, resume
 
 contains
 
@@ -40,8 +40,52 @@ contains
       call handle_leave(handle)
    end subroutine loads
 
+   !> Displacements of the supports that move, for the loads that are set next
+   subroutine supports(handle, count, moved, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use sla_handle, only : model_take, stage_factored, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: count
+      real(c_double), intent(in) :: moved(count, 2)     !! constant and per multiplier [m]
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      call model_take(handle, stage_factored, stage_loaded, model, status)
+      if (status /= status_ok) return
+      if (count /= size(model%moved, 1)) then
+         status = status_invalid_argument
+      else
+         model%moved(:, :) = moved
+         model%stage = stage_factored
+      end if
+      call handle_leave(handle)
+   end subroutine supports
+
+   !> Forces of the supports that move
+   subroutine reactions(handle, count, force, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use sla_handle, only : model_take, stage_loaded
+      use sla_model, only : element_model
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: count
+      real(c_double), intent(out) :: force(count, 2)    !! under A and per multiplier [N], as the batch before left them
+      integer(c_int), intent(out) :: status
+      type(element_model), pointer :: model
+      force = 0.0_c_double
+      call model_take(handle, stage_loaded, stage_loaded, model, status)
+      if (status /= status_ok) return
+      if (count /= size(model%moved, 1)) then
+         status = status_invalid_argument
+      else
+         force = model%reaction
+      end if
+      call handle_leave(handle)
+   end subroutine reactions
+
    !> A batch of events
-   subroutine run(handle, room, limits, refuse_overload, proportional, monitors, entries, first, freedom, share, &
+   subroutine run(handle, room, limits, refuse_overload, variant, monitors, entries, first, freedom, share, &
                   counts, reals, integers, monitored, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
@@ -49,10 +93,12 @@ contains
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: room
-      !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first; see stop_rules
-      real(c_double), intent(in) :: limits(4)
+      !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first, target of
+      !> monitor 1 [m], the side it is reached from, loads like B already on; see stop_rules
+      real(c_double), intent(in) :: limits(7)
       integer(c_int), intent(in) :: refuse_overload
-      integer(c_int), intent(in) :: proportional        !! 1: without equilibrium all loads go down together
+      !> 1: without equilibrium all loads go down together, 2: what a tooth sets free is put on at the load reached
+      integer(c_int), intent(in) :: variant
       integer(c_int), intent(in) :: monitors
       integer(c_int), intent(in) :: entries
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
@@ -60,7 +106,7 @@ contains
       real(c_double), intent(in) :: share(entries)
       !> Events, residual checks, re-solutions, new factors, reason (list sla_stop)
       integer(c_int), intent(out) :: counts(5)
-      real(c_double), intent(out) :: reals(10, room)      !! see sla_events
+      real(c_double), intent(out) :: reals(11, room)      !! see sla_events
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
@@ -81,6 +127,7 @@ contains
 
       subroutine events(fate)
          use common_status, only : status_bad_index, status_out_of_memory
+         use common_threads, only : threads_available
          use sla_events, only : run_events, stop_rules, event_log
          use sla_handle, only : check_nodes
          integer(c_int), intent(out) :: fate
@@ -96,15 +143,16 @@ contains
          if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > 2)) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
          rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0, &
-            proportional /= 0)
+            variant == 1, variant == 2, limits(5), limits(6), limits(7))
          fate = status_out_of_memory
-         allocate (equation(entries), weight(entries), log%reals(10, room), log%integers(4, room), &
+         allocate (equation(entries), weight(entries), log%reals(11, room), log%integers(4, room), &
             log%monitors(monitors, room), stat=info)
          if (info /= 0) return
          do k = 1, entries
             equation(k) = model%equation(freedom(2, k), freedom(1, k))
             weight(k) = share(k) * model%factor(freedom(2, k), freedom(1, k))
          end do
+         model%threads = threads_available(model%threads)
          call run_events(model, rules, first, equation, weight, log, reason, fate)
          counts = [int(log%count, c_int), int(model%guard, c_int), reason]
          reals(:, 1:log%count) = log%reals(:, 1:log%count)
@@ -289,7 +337,7 @@ contains
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model, model_standing
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(out) :: values(30)
+      real(c_double), intent(out) :: values(31)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       values = 0.0_c_double
@@ -306,7 +354,7 @@ contains
       use sla_handle, only : model_take, stage_factored, stage_loaded
       use sla_model, only : element_model, model_resume
       integer(c_int64_t), intent(in) :: handle
-      real(c_double), intent(in) :: values(30)
+      real(c_double), intent(in) :: values(31)
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       !f2py threadsafe

@@ -18,7 +18,8 @@ module arch_four_hinge
       real(wp) :: inertia(3) = 0.0_wp      !! of the links about their centroids [kg m^2]
       real(wp) :: sense = 1.0_wp           !! +1: AB turns counter-clockwise for q > 0
       real(wp) :: branch = 1.0_wp          !! side of line BD on which C lies
-      real(wp) :: bc = 0.0_wp, cd = 0.0_wp !! link lengths [m]
+      real(wp) :: bc2 = 0.0_wp, cd2 = 0.0_wp !! squares of the link lengths [m^2]
+      real(wp) :: arm(2, 3) = 0.0_wp       !! from the undeformed pivot of each link to its centroid [m]
       real(wp) :: lock = 0.0_wp            !! greatest q the links allow [rad]
       real(wp) :: critical = 0.0_wp        !! q of unstable equilibrium under gravity [rad]
    contains
@@ -30,14 +31,14 @@ module arch_four_hinge
 
    !> Positions and derivatives by q of the three links
    type :: four_hinge_state
-      logical :: closed = .false.        !! the links can still meet
-      real(wp) :: turn(3) = 0.0_wp       !! d(rotation)/dq of AB, BC, CD, counter-clockwise
-      real(wp) :: turn2(3) = 0.0_wp      !! second derivative
-      real(wp) :: cosine(3) = 1.0_wp     !! of the link rotations
-      real(wp) :: sine(3) = 0.0_wp
-      real(wp) :: pivot(2, 3) = 0.0_wp   !! a point of each link: A, B, D, displaced [m]
-      real(wp) :: pivot1(2, 3) = 0.0_wp  !! its derivative by q
-      real(wp) :: pivot2(2, 3) = 0.0_wp
+      logical :: closed          !! the links can still meet; the rest is known where they can
+      real(wp) :: turn(3)        !! d(rotation)/dq of AB, BC, CD, counter-clockwise
+      real(wp) :: turn2(3)       !! second derivative
+      real(wp) :: cosine(3)      !! of the link rotations
+      real(wp) :: sine(3)
+      real(wp) :: pivot(2, 3)    !! a point of each link: A, B, D, displaced [m]
+      real(wp) :: pivot1(2, 3)   !! its derivative by q
+      real(wp) :: pivot2(2, 3)
    end type four_hinge_state
 
 contains
@@ -59,8 +60,11 @@ contains
       mechanism%mass = mass
       mechanism%centroid = centroid
       mechanism%inertia = inertia
-      mechanism%bc = norm2(hinge(:, 3) - hinge(:, 2))
-      mechanism%cd = norm2(hinge(:, 4) - hinge(:, 3))
+      mechanism%bc2 = sum((hinge(:, 3) - hinge(:, 2))**2)
+      mechanism%cd2 = sum((hinge(:, 4) - hinge(:, 3))**2)
+      do i = 1, 3
+         mechanism%arm(:, i) = centroid(:, i) - mechanism%undeformed_pivot(i)
+      end do
       mechanism%branch = sign(1.0_wp, cross(hinge(:, 4) - hinge(:, 2), hinge(:, 3) - hinge(:, 2)))
       status = status_bad_geometry
       call mechanism%coefficients(0.0_wp, m, half_dm, dv, dh, closed)
@@ -130,8 +134,8 @@ contains
       class(four_hinge), intent(in) :: arch
       real(wp), intent(in) :: q
       type(four_hinge_state), intent(out) :: state
-      real(wp) :: ab(2), b(2), db(2), ddb(2), bd(2), distance2, along, height2, c(2), r(2), p(2)
-      real(wp) :: r0(2), p0(2), turn_r, turn_p, rp
+      real(wp) :: ab(2), b(2), db(2), ddb(2), bd(2), per_distance2, along, height2, r(2), p(2)
+      real(wp) :: r0(2), p0(2), per_turn, rp
 
       associate (a0 => arch%hinge(:, 1), b0 => arch%hinge(:, 2), c0 => arch%hinge(:, 3), d0 => arch%hinge(:, 4))
          state%cosine(1) = cos(q)
@@ -141,35 +145,39 @@ contains
          db = arch%sense * normal(ab)
          ddb = -ab
          bd = d0 - b
-         distance2 = dot_product(bd, bd)
-         along = 0.5_wp * (arch%bc**2 - arch%cd**2 + distance2) / distance2
-         height2 = arch%bc**2 / distance2 - along**2
+         per_distance2 = 1.0_wp / dot_product(bd, bd)
+         along = 0.5_wp + 0.5_wp * (arch%bc2 - arch%cd2) * per_distance2
+         height2 = arch%bc2 * per_distance2 - along**2
          state%closed = height2 > 0.0_wp
          if (.not. state%closed) return
-         c = b + along * bd + arch%branch * sqrt(height2) * normal(bd)
 
-         r = c - b
-         p = c - d0
-         turn_r = dot_product(normal(r), p)
-         turn_p = dot_product(normal(p), r)
+         r = along * bd + arch%branch * sqrt(height2) * normal(bd)
+         p = r - bd
+         ! What the rates of BC and CD are multiplied by: normal(p) . r, which is -normal(r) . p
+         per_turn = 1.0_wp / cross(p, r)
          rp = dot_product(r, p)
          state%turn(1) = arch%sense
-         state%turn(3) = dot_product(db, r) / turn_p
-         state%turn(2) = -dot_product(db, p) / turn_r
-         state%turn2(3) = (dot_product(ddb, r) - state%turn(2)**2 * arch%bc**2 + state%turn(3)**2 * rp) / turn_p
-         state%turn2(2) = (state%turn(2)**2 * rp - state%turn(3)**2 * arch%cd**2 - dot_product(ddb, p)) / turn_r
+         state%turn(3) = dot_product(db, r) * per_turn
+         state%turn(2) = dot_product(db, p) * per_turn
+         state%turn2(1) = 0.0_wp
+         state%turn2(3) = (dot_product(ddb, r) - state%turn(2)**2 * arch%bc2 + state%turn(3)**2 * rp) * per_turn
+         state%turn2(2) = (dot_product(ddb, p) - state%turn(2)**2 * rp + state%turn(3)**2 * arch%cd2) * per_turn
 
          r0 = c0 - b0
          p0 = c0 - d0
-         state%cosine(2) = dot_product(r0, r) / arch%bc**2
-         state%sine(2) = cross(r0, r) / arch%bc**2
-         state%cosine(3) = dot_product(p0, p) / arch%cd**2
-         state%sine(3) = cross(p0, p) / arch%cd**2
+         state%cosine(2) = dot_product(r0, r) / arch%bc2
+         state%sine(2) = cross(r0, r) / arch%bc2
+         state%cosine(3) = dot_product(p0, p) / arch%cd2
+         state%sine(3) = cross(p0, p) / arch%cd2
          state%pivot(:, 1) = a0
          state%pivot(:, 2) = b
          state%pivot(:, 3) = d0
+         state%pivot1(:, 1) = 0.0_wp
          state%pivot1(:, 2) = db
+         state%pivot1(:, 3) = 0.0_wp
+         state%pivot2(:, 1) = 0.0_wp
          state%pivot2(:, 2) = ddb
+         state%pivot2(:, 3) = 0.0_wp
       end associate
    end subroutine solve
 
@@ -183,25 +191,31 @@ contains
       real(wp), intent(out) :: dh       !! H = sum m dx/dq in the sense of motion [kg m]
       logical, intent(out) :: closed    !! false past the rotation at which the links lock
       type(four_hinge_state) :: state
-      real(wp) :: arm(2), dx(2), ddx(2)
+      real(wp) :: arm(2), dx(2), ddx(2), mass, half_slope, lift, drive
       integer :: i
 
-      m = 0.0_wp
-      half_dm = 0.0_wp
-      dv = 0.0_wp
-      dh = 0.0_wp
+      mass = 0.0_wp
+      half_slope = 0.0_wp
+      lift = 0.0_wp
+      drive = 0.0_wp
       call arch%solve(q, state)
       closed = state%closed
-      if (.not. closed) return
-      do i = 1, 3
-         arm = rotate(arch%centroid(:, i) - arch%undeformed_pivot(i), state%cosine(i), state%sine(i))
-         dx = state%pivot1(:, i) + state%turn(i) * normal(arm)
-         ddx = state%pivot2(:, i) + state%turn2(i) * normal(arm) - state%turn(i)**2 * arm
-         m = m + arch%mass(i) * dot_product(dx, dx) + arch%inertia(i) * state%turn(i)**2
-         half_dm = half_dm + arch%mass(i) * dot_product(dx, ddx) + arch%inertia(i) * state%turn(i) * state%turn2(i)
-         dv = dv + gravity * arch%mass(i) * dx(2)
-         dh = dh + arch%mass(i) * dx(1)
-      end do
+      if (closed) then
+         do i = 1, 3
+            arm = rotate(arch%arm(:, i), state%cosine(i), state%sine(i))
+            dx = state%pivot1(:, i) + state%turn(i) * normal(arm)
+            ddx = state%pivot2(:, i) + state%turn2(i) * normal(arm) - state%turn(i)**2 * arm
+            mass = mass + arch%mass(i) * dot_product(dx, dx) + arch%inertia(i) * state%turn(i)**2
+            half_slope = half_slope + arch%mass(i) * dot_product(dx, ddx) &
+               + arch%inertia(i) * state%turn(i) * state%turn2(i)
+            lift = lift + arch%mass(i) * dx(2)
+            drive = drive + arch%mass(i) * dx(1)
+         end do
+      end if
+      m = mass
+      half_dm = half_slope
+      dv = gravity * lift
+      dh = drive
    end subroutine coefficients
 
    !> Potential energy of gravity above the undeformed arch [J]; the links must be able to meet at q
@@ -215,7 +229,7 @@ contains
       call arch%solve(q, state)
       v = 0.0_wp
       do i = 1, 3
-         arm = rotate(arch%centroid(:, i) - arch%undeformed_pivot(i), state%cosine(i), state%sine(i))
+         arm = rotate(arch%arm(:, i), state%cosine(i), state%sine(i))
          v = v + gravity * arch%mass(i) * (state%pivot(2, i) + arm(2) - arch%centroid(2, i))
       end do
    end function potential

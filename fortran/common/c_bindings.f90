@@ -6,7 +6,7 @@ module common_c_bindings
    public :: extrados_list_entry, extrados_library_init
    public :: extrados_cancel_set, extrados_cancel_get, extrados_watch_signals
    public :: extrados_handle_new, extrados_handle_take, extrados_handle_leave, extrados_handle_close
-   public :: extrados_handle_count
+   public :: extrados_handle_count, extrados_threads
 
    interface
       subroutine extrados_cancel_set(value) bind(c)
@@ -74,6 +74,13 @@ module common_c_bindings
          implicit none (type, external)
          integer(c_int) :: count
       end function extrados_handle_count
+
+      function extrados_threads(wanted) bind(c) result(count)
+         import :: c_int
+         implicit none (type, external)
+         integer(c_int), value, intent(in) :: wanted
+         integer(c_int) :: count
+      end function extrados_threads
 
       function extrados_library_init() bind(c) result(status)
          import :: c_int

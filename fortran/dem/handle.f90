@@ -8,6 +8,7 @@ module dem_handle
    use common_signal, only : signal
    use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
       status_out_of_memory
+   use common_threads, only : threads_available
    use dem_bodies, only : body_set, body_turn
    use dem_contacts, only : overlap, measure
    use dem_law, only : joint_law
@@ -172,11 +173,14 @@ contains
       real(wp), intent(in) :: wanted(:)             !! output times [s]
       integer, intent(in) :: steps                  !! after which it pauses; 0: it does not
       integer(c_int), intent(out) :: status
+      type(run_options) :: options
       type(signal) :: silence
       call new_run(built, wanted, status)
       if (status /= status_ok) return
       built%model%load%ground = ground
-      call run_begin(built%model, built%options, built%record, status)
+      options = built%options
+      options%threads = threads_available(options%threads)
+      call run_begin(built%model, options, built%record, status)
       built%model%load%ground = silence   ! it pointed into the caller's set
       if (status == status_ok .and. built%record%paused) call go_on_built(built, ground, steps, status)
    end subroutine run_built
@@ -187,12 +191,15 @@ contains
       type(signal), intent(in) :: ground
       integer, intent(in) :: steps                  !! after which it pauses again; 0: it does not
       integer(c_int), intent(out) :: status
+      type(run_options) :: options
       type(signal) :: silence
       status = status_not_ready
       if (.not. allocated(built%record)) return
       if (.not. built%record%paused) return
       built%model%load%ground = ground
-      call run_on(built%model, built%options, steps, built%record, status)
+      options = built%options
+      options%threads = threads_available(options%threads)
+      call run_on(built%model, options, steps, built%record, status)
       built%model%load%ground = silence
    end subroutine go_on_built
 

@@ -29,6 +29,7 @@ module dem_run
       real(wp) :: residual_limit = 0.1_wp    !! of the energy that went round
       logical :: stop_at_rest = .false.      !! once the ground is quiet
       integer :: threads = 1
+      real(wp) :: settlement = 0.0_wp        !! displacement by which a body falls instead of settling [m]; 0: none
    end type run_options
 
    !> What a run leaves. The reason is one of the list dem_stop
@@ -134,7 +135,6 @@ contains
       type(run_record), intent(inout) :: record
       integer(c_int), intent(out) :: status
       integer, parameter :: batch = 8
-      real(wp), parameter :: fallen = 0.2_wp   ! of the size of a block: no settlement of what stands goes so far
       type(run_options) :: quiet
       real(wp) :: kinetic, before, step
       integer :: n
@@ -142,7 +142,7 @@ contains
       status = status_ok
       ! A tiny step or collapse limit of the run must not keep from rest what stands.
       quiet = options
-      if (options%collapse > 0.0_wp) quiet%collapse = max(options%collapse, fallen * model%set%size)
+      quiet%collapse = options%settlement
       step = model%step
       model%step = max(step, options%fraction * record%critical)
       model%shaking = .false.

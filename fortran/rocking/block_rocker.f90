@@ -7,7 +7,7 @@ module rocking_block_rocker
    use common_dense_step, only : dense_step
    use common_kinds, only : wp, gravity, pi
    use common_status, only : status_ok, status_invalid_argument
-   use rocking_rocker, only : rocker, side_index
+   use rocking_rocker, only : rocker, series_short, side_index
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -15,8 +15,9 @@ module rocking_block_rocker
 
    !> Length of the parameter list: form (0 nonlinear, 1 linear), mass [kg], inertia about the centre of
    !> mass [kg m^2], its height [m], distance of the right and of the left toe [m], restitution of the
-   !> impacts after which the block rocks to +x and to -x
-   integer, parameter :: block_parameters = 8
+   !> impacts after which the block rocks to +x and to -x, slope of the base up to the right [rad], on which
+   !> height and distances are counted
+   integer, parameter :: block_parameters = 9
    !> Terms of the series of the rate; the rotation has one more
    integer, parameter :: order = 8
    !> Terms below this share of the tolerance end the series: chattering magnifies what is left out
@@ -33,7 +34,16 @@ module rocking_block_rocker
       procedure :: coefficients
       procedure :: potential
       procedure :: series_step
+      procedure :: glide
    end type block_rocker
+
+   !> Terms of rotation and of rate times step length, in powers of the fraction of the step
+   type :: power_series
+      real(wp) :: x(0:order + 1)
+      real(wp) :: u(0:order + 1)
+      integer :: last    !! of u; x has one more
+      real(wp) :: error  !! estimate over tolerance
+   end type power_series
 
 contains
 
@@ -51,10 +61,11 @@ contains
       associate (mass => parameters(2), inertia => parameters(3), height => parameters(4), toe => parameters(5:6))
          radius = hypot(toe, height)
          body%linear = parameters(1) > 0.5_wp
-         body%alpha = atan2(toe, height)
+         body%alpha = atan2(toe, height) + parameters(9) * [1.0_wp, -1.0_wp]
          body%moment = mass * radius
          body%inertia = inertia + mass * radius**2
       end associate
+      if (any(body%alpha <= 0.0_wp) .or. any(body%alpha >= 0.5_wp * pi)) return  ! it slopes more than the block stands
       body%restitution = parameters(7:8)
       body%critical = body%alpha
       ! As far beyond the balance as rest is short of it, and not below the ground.
@@ -102,8 +113,7 @@ contains
       end if
    end function potential
 
-   !> Taylor series in the fraction of the step. Sine and cosine of alpha - q follow their own recurrences
-   !> (S' = -C q', C' = S q'), so one evaluation of each serves the whole step.
+   !> One step by its Taylor series
    pure subroutine series_step(model, side, h, q, v, value, slope, tolerance, step)
       class(block_rocker), intent(in) :: model
       integer, intent(in) :: side
@@ -114,87 +124,177 @@ contains
       real(wp), intent(in) :: slope(2)
       real(wp), intent(in) :: tolerance(3)
       type(dense_step), intent(inout) :: step
-      real(wp) :: s(0:order - 1), c(0:order - 1), u(0:order), x(0:order + 1)
-      real(wp) :: pull, push, pull_slope, push_slope, factor, rise, fall, q_end, u_end, tolerance_q, tolerance_u, per_h
-      integer :: i, j, k, last
+      type(power_series) :: series
+      call expand(model, side_index(side), real(side, wp), h, q, v, value, slope, tolerance, series)
+      call take_over(series, h, series_end(series%x, series%last + 1), &
+         series_end(series%u, series%last) * (1.0_wp / h), step)
+   end subroutine series_step
 
-      i = side_index(side)
-      ! u is h v, so that q_k = u_(k-1)/k; the right-hand side is scaled by h^2
-      factor = h * h * model%moment(i) / model%inertia(i)
-      pull = factor * (gravity + value(2))
-      pull_slope = factor * h * slope(2)
-      push = factor * real(side, wp) * value(1)
-      push_slope = factor * h * real(side, wp) * slope(1)
-      x(0) = q
-      u(0) = h * v
-      x(1) = u(0)
-      if (model%linear) then
-         s(0) = model%alpha(i) - q
-         c(0) = 1.0_wp
-      else
-         s(0) = sin(model%alpha(i) - q)
-         c(0) = cos(model%alpha(i) - q)
-      end if
-      u(1) = -(pull * s(0) + push * c(0))
-      x(2) = 0.5_wp * u(1)
-      tolerance_q = tolerance(1) + tolerance(3) * abs(q)
-      tolerance_u = h * tolerance(2) + tolerance(3) * abs(u(0))
-      last = order
-      do k = 1, order - 1
-         if (model%linear) then
-            s(k) = -x(k)
-            c(k) = 0.0_wp
-         else
-            select case (k)  ! the first convolutions, which every step needs, without a loop
-            case (1)
-               rise = s(0) * u(0)
-               fall = c(0) * u(0)
-            case (2)
-               rise = s(0) * u(1) + s(1) * u(0)
-               fall = c(0) * u(1) + c(1) * u(0)
-            case (3)
-               rise = s(0) * u(2) + s(1) * u(1) + s(2) * u(0)
-               fall = c(0) * u(2) + c(1) * u(1) + c(2) * u(0)
-            case default
-               rise = 0.0_wp
-               fall = 0.0_wp
-               do j = 0, k - 1
-                  rise = rise + s(j) * u(k - 1 - j)
-                  fall = fall + c(j) * u(k - 1 - j)
-               end do
-            end select
-            s(k) = -inverse(k) * fall
-            c(k) = inverse(k) * rise
-         end if
-         u(k + 1) = -inverse(k + 1) * (pull * s(k) + pull_slope * s(k - 1) + push * c(k) + push_slope * c(k - 1))
-         x(k + 2) = inverse(k + 2) * u(k + 1)
-         if (k < 2) cycle
-         ! The last two terms bound what is left out; what follows them is smaller by far.
-         if (abs(u(k + 1)) + abs(u(k)) <= negligible * tolerance_u .and. &
-             abs(x(k + 2)) + abs(x(k + 1)) <= negligible * tolerance_q) then
-            last = k + 1
-            exit
-         end if
-      end do
-      q_end = x(last + 1)
-      u_end = 0.0_wp
-      do k = last, 0, -1
-         q_end = q_end + x(k)
-         u_end = u_end + u(k)
-      end do
+   !> A series as a step
+   pure subroutine take_over(series, h, q_end, v_end, step)
+      type(power_series), intent(in) :: series
+      real(wp), intent(in) :: h                !! length [s]
+      real(wp), intent(in) :: q_end            !! state at the end
+      real(wp), intent(in) :: v_end
+      type(dense_step), intent(inout) :: step  !! t is left alone
+      real(wp) :: per_h
+      integer :: k
       per_h = 1.0_wp / h
       step%h = h
       step%q = q_end
-      step%v = u_end * per_h
+      step%v = v_end
       step%a = 0.0_wp
-      step%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
-      step%degree = last + 1
-      do k = 0, last
-         step%cq(k) = x(k)
-         step%cv(k) = u(k) * per_h
+      step%error = series%error
+      step%degree = series%last + 1
+      do k = 0, series%last
+         step%cq(k) = series%x(k)
+         step%cv(k) = series%u(k) * per_h
       end do
-      step%cq(last + 1) = x(last + 1)
-      step%cv(last + 1) = 0.0_wp
-   end subroutine series_step
+      step%cq(series%last + 1) = series%x(series%last + 1)
+      step%cv(series%last + 1) = 0.0_wp
+   end subroutine take_over
+
+   !> Sample after sample by the same series, with no more than the comparisons that tell where to stop
+   pure subroutine glide(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
+                         step, stopped)
+      class(block_rocker), intent(in) :: model
+      integer, intent(in) :: side
+      real(wp), intent(in) :: start
+      real(wp), intent(in) :: spacing
+      real(wp), intent(in) :: scale
+      real(wp), intent(in) :: samples(:, :)
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: tolerance(3)
+      real(wp), intent(inout) :: q
+      real(wp), intent(inout) :: v
+      integer, intent(out) :: passed
+      type(dense_step), intent(inout) :: step
+      logical, intent(out) :: stopped
+      type(power_series) :: series
+      real(wp) :: value(2), slope(2), begin, h, q_end, v_end, sigma
+      integer :: c, i, k
+
+      passed = 0
+      stopped = .false.
+      i = side_index(side)
+      sigma = real(side, wp)
+      value = 0.0_wp
+      slope = 0.0_wp
+      do k = first, last
+         begin = start + real(k - 1, wp) * spacing
+         h = (start + real(k, wp) * spacing) - begin
+         do c = 1, size(samples, 1)
+            value(c) = scale * samples(c, k)
+            slope(c) = scale * (samples(c, k + 1) - samples(c, k)) / spacing
+         end do
+         call expand(model, i, sigma, h, q, v, value, slope, tolerance, series)
+         q_end = series_end(series%x, series%last + 1)
+         v_end = series_end(series%u, series%last) * (1.0_wp / h)
+         ! A turning point, an impact, a fall, or a step that is too long: for whoever looks closer
+         stopped = series%error > series_short .or. q_end <= 0.0_wp .or. q_end >= model%limit(i) &
+            .or. v * v_end <= 0.0_wp
+         if (stopped) then
+            step%t = begin
+            call take_over(series, h, q_end, v_end, step)
+            exit
+         end if
+         q = q_end
+         v = v_end
+         passed = passed + 1
+      end do
+   end subroutine glide
+
+   !> Taylor series in the fraction of the step. Sine and cosine of alpha - q follow their own recurrences
+   !> (S' = -C q', C' = S q'), so one evaluation of each serves the whole step.
+   pure subroutine expand(model, i, sigma, h, q, v, value, slope, tolerance, series)
+      type(block_rocker), intent(in) :: model
+      integer, intent(in) :: i             !! of the side
+      real(wp), intent(in) :: sigma        !! +1 or -1: the side
+      real(wp), intent(in) :: h            !! see series_step of rocking_rocker
+      real(wp), intent(in) :: q
+      real(wp), intent(in) :: v
+      real(wp), intent(in) :: value(2)
+      real(wp), intent(in) :: slope(2)
+      real(wp), intent(in) :: tolerance(3)
+      type(power_series), intent(out) :: series
+      real(wp) :: s(0:order - 1), c(0:order - 1)
+      real(wp) :: pull, push, pull_slope, push_slope, factor, rise, fall, tolerance_q, tolerance_u
+      integer :: j, k
+
+      associate (x => series%x, u => series%u, last => series%last)
+         ! u is h v, so that q_k = u_(k-1)/k; the right-hand side is scaled by h^2
+         factor = h * h * model%moment(i) / model%inertia(i)
+         pull = factor * (gravity + value(2))
+         pull_slope = factor * h * slope(2)
+         push = factor * sigma * value(1)
+         push_slope = factor * h * sigma * slope(1)
+         x(0) = q
+         u(0) = h * v
+         x(1) = u(0)
+         if (model%linear) then
+            s(0) = model%alpha(i) - q
+            c(0) = 1.0_wp
+         else
+            s(0) = sin(model%alpha(i) - q)
+            c(0) = cos(model%alpha(i) - q)
+         end if
+         u(1) = -(pull * s(0) + push * c(0))
+         x(2) = 0.5_wp * u(1)
+         tolerance_q = tolerance(1) + tolerance(3) * abs(q)
+         tolerance_u = h * tolerance(2) + tolerance(3) * abs(u(0))
+         last = order
+         do k = 1, order - 1
+            if (model%linear) then
+               s(k) = -x(k)
+               c(k) = 0.0_wp
+            else
+               select case (k)  ! the first convolutions, which every step needs, without a loop
+               case (1)
+                  rise = s(0) * u(0)
+                  fall = c(0) * u(0)
+               case (2)
+                  rise = s(0) * u(1) + s(1) * u(0)
+                  fall = c(0) * u(1) + c(1) * u(0)
+               case (3)
+                  rise = s(0) * u(2) + s(1) * u(1) + s(2) * u(0)
+                  fall = c(0) * u(2) + c(1) * u(1) + c(2) * u(0)
+               case default
+                  rise = 0.0_wp
+                  fall = 0.0_wp
+                  do j = 0, k - 1
+                     rise = rise + s(j) * u(k - 1 - j)
+                     fall = fall + c(j) * u(k - 1 - j)
+                  end do
+               end select
+               s(k) = -inverse(k) * fall
+               c(k) = inverse(k) * rise
+            end if
+            u(k + 1) = -inverse(k + 1) * (pull * s(k) + pull_slope * s(k - 1) + push * c(k) + push_slope * c(k - 1))
+            x(k + 2) = inverse(k + 2) * u(k + 1)
+            if (k < 2) cycle
+            ! The last two terms bound what is left out; what follows them is smaller by far.
+            if (abs(u(k + 1)) + abs(u(k)) <= negligible * tolerance_u .and. &
+                abs(x(k + 2)) + abs(x(k + 1)) <= negligible * tolerance_q) then
+               last = k + 1
+               exit
+            end if
+         end do
+         series%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, &
+            (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
+      end associate
+   end subroutine expand
+
+   !> Value at the end of the step: the sum of the terms 0 to last, small ones first
+   pure function series_end(terms, last) result(total)
+      real(wp), intent(in) :: terms(0:order + 1)
+      integer, intent(in) :: last
+      real(wp) :: total
+      integer :: k
+      total = terms(last)
+      do k = last - 1, 0, -1
+         total = total + terms(k)
+      end do
+   end function series_end
 
 end module rocking_block_rocker

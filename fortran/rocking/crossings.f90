@@ -38,71 +38,94 @@ contains
             return
          end if
       end if
-      s = root_between(step, .false., 0.0_wp, low, high)
+      s = root_between(step%cq, step%degree, 0.0_wp, low, high)
    end function impact_fraction
 
    !> Fraction of the step at which the rate changes sign
    pure function turning_fraction(step) result(s)
       type(dense_step), intent(in) :: step
       real(wp) :: s
-      s = root_between(step, .true., 0.0_wp, 0.0_wp, 1.0_wp)
+      s = root_between(step%cv, step%degree, 0.0_wp, 0.0_wp, 1.0_wp)
    end function turning_fraction
 
-   !> Fraction of the step at which q rises through a level
-   pure function crossing_fraction(step, level) result(s)
+   !> Fraction of the step at which q first rises through a level, or 0 where it does not: also where it is back below
+   !> at the end
+   pure function crossing_fraction(step, q, v, level) result(s)
       type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: q  !! at the start, below the level
+      real(wp), intent(in) :: v  !! at the start
       real(wp), intent(in) :: level
       real(wp) :: s
-      s = root_between(step, .false., level, 0.0_wp, 1.0_wp)
+      real(wp) :: last
+
+      s = 0.0_wp
+      last = 1.0_wp
+      if (step%q < level) then
+         if (.not. (v > 0.0_wp .and. step%v <= 0.0_wp) .or. max(q, step%q) + 2.0_wp * v * step%h < level) return
+         last = turning_fraction(step)
+         if (step%coordinate(last) < level) return
+      end if
+      s = root_between(step%cq, step%degree, level, 0.0_wp, last)
    end function crossing_fraction
 
-   !> bracket and takes a fifth of the evaluations of bisection. Returns the end beyond the level.
-   pure function root_between(step, of_rate, level, start, finish) result(s)
-      type(dense_step), intent(in) :: step
-      logical, intent(in) :: of_rate     !! the rate, else the coordinate
+   !> Where a polynomial passes a level, to rounding: Newton's method from the false position, by halves where it
+   !> leaves the bracket or does not converge
+   pure function root_between(c, degree, level, start, finish) result(s)
+      real(wp), intent(in) :: c(0:)     !! coefficients of the powers
+      integer, intent(in) :: degree
       real(wp), intent(in) :: level
-      real(wp), intent(in) :: start      !! value differs from the level in sign from that at finish
+      real(wp), intent(in) :: start     !! value differs from the level in sign from that at finish
       real(wp), intent(in) :: finish
       real(wp) :: s
-      real(wp) :: low, high, f_low, f_high, f, middle
-      integer :: k, stayed
+      !> Newton's error after a change is its square times curvature over slope
+      real(wp), parameter :: enough = 1.0e-10_wp
+      real(wp) :: low, high, f, slope, change, wide
+      logical :: above
+      integer :: j
 
       low = start
       high = finish
-      f_low = value(low)
-      f_high = value(high)
-      stayed = 0
-      do k = 1, 100
-         if (f_high == 0.0_wp .or. abs(high - low) <= 2.0_wp * spacing(high)) exit
-         middle = high - f_high * (high - low) / (f_high - f_low)
-         if (.not. (middle > low .and. middle < high) .or. mod(k, 8) == 0) middle = 0.5_wp * (low + high)
-         if (middle <= low .or. middle >= high) exit
-         f = value(middle)
-         if ((f > 0.0_wp) .eqv. (f_low > 0.0_wp)) then
-            low = middle
-            f_low = f
-            if (stayed == 1) f_high = 0.5_wp * f_high
-            stayed = 1
-         else
-            high = middle
-            f_high = f
-            if (stayed == -1) f_low = 0.5_wp * f_low
-            stayed = -1
-         end if
-      end do
+      call polynomial(low, f, slope)
+      above = f > 0.0_wp
+      change = f
+      call polynomial(high, f, slope)
       s = high
+      wide = 2.0_wp * (high - low)
+      change = -f * (high - low) / (f - change)
+      do j = 1, 100
+         if (f == 0.0_wp) exit
+         if ((f > 0.0_wp) .eqv. above) then
+            low = s
+         else
+            high = s
+         end if
+         ! Newton's method converges where each change is less than half of that before.
+         if (.not. (s + change > low .and. s + change < high .and. abs(change) <= 0.5_wp * wide)) then
+            change = 0.5_wp * (low + high) - s
+         end if
+         s = s + change
+         if (abs(change) <= enough * s .and. j > 1) exit
+         wide = abs(change)
+         call polynomial(s, f, slope)
+         change = -f / slope  ! also where the slope is zero: the change then lies outside
+      end do
 
    contains
 
-      pure function value(x) result(f)
+      !> Value above the level, and slope
+      pure subroutine polynomial(x, value, derivative)
          real(wp), intent(in) :: x
-         real(wp) :: f
-         if (of_rate) then
-            f = step%rate(x) - level
-         else
-            f = step%coordinate(x) - level
-         end if
-      end function value
+         real(wp), intent(out) :: value
+         real(wp), intent(out) :: derivative
+         integer :: k
+         value = c(degree)
+         derivative = 0.0_wp
+         do k = degree - 1, 0, -1
+            derivative = derivative * x + value
+            value = value * x + c(k)
+         end do
+         value = value - level
+      end subroutine polynomial
 
    end function root_between
 

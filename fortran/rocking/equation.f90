@@ -4,7 +4,8 @@ module rocking_equation
    use common_dopri5, only : oscillator, dopri5_attempt
    use common_kinds, only : wp, gravity
    use common_signal, only : signal
-   use rocking_rocker, only : rocker
+   use rocking_restraint, only : restraint_state
+   use rocking_rocker, only : rocker, series_short, side_index
    implicit none
    private
    public :: equation_of_motion, attempt, series_factor, polish_impact
@@ -18,6 +19,8 @@ module rocking_equation
       logical :: series = .false.  !! the structure solves its own steps
       real(wp) :: rest_dv(2) = 0.0_wp  !! V' at rest, both sides
       real(wp) :: rest_dh(2) = 0.0_wp  !! H at rest, both sides
+      real(wp) :: rest_hold(2) = 0.0_wp  !! moment of restraints at rest, both sides [N m]
+      type(restraint_state), allocatable :: memory(:)  !! of the restraints; not allocated where there are none
    contains
       procedure :: acceleration
    end type equation_of_motion
@@ -40,6 +43,9 @@ contains
       end if
       call system%ground%value_at(system%segment, t, horizontal, vertical)
       a = -(half_dm * v * v + dv * (1.0_wp + vertical / gravity) + real(system%side, wp) * horizontal * dh) / m
+      if (allocated(system%memory)) then
+         a = a - system%body%held%moment(side_index(system%side), q, v, system%memory) / m
+      end if
    end function acceleration
 
    !> One step: by the structure's own series where it has one and the ground runs in straight lines
@@ -66,8 +72,8 @@ contains
       real(wp) :: factor
       if (.not. step%error <= huge(1.0_wp)) then
          factor = 0.1_wp
-      else if (step%error <= 1.0e-3_wp) then
-         factor = 2.0_wp  ! the series was cut short: a longer step is as cheap
+      else if (step%error <= series_short) then
+         factor = 2.0_wp
       else
          factor = min(2.0_wp, max(0.1_wp, 0.9_wp * step%error**(-1.0_wp / real(step%degree - 2, wp))))
       end if
@@ -81,7 +87,9 @@ contains
       real(wp), intent(in) :: rtol
       real(wp), intent(in) :: fraction        !! first guess, of the step
       type(dense_step), intent(inout) :: step
-      real(wp) :: h, full, change
+      !> A change by this share of the step is followed to rounding by a straight line
+      real(wp), parameter :: straight = 1.0e-7_wp
+      real(wp) :: h, full, change, rate
       integer :: k
 
       if (problem%series) then
@@ -96,6 +104,13 @@ contains
          change = -step%q / step%v
          if (abs(change) <= 4.0_wp * spacing(step%t + h)) exit
          if (h + change <= 0.0_wp .or. h + change > 1.5_wp * full) exit
+         if (abs(change) <= straight * h) then
+            rate = step%v + change * step%a
+            call step%cut(1.0_wp + change / h)
+            step%q = 0.0_wp
+            step%v = rate
+            exit
+         end if
          h = h + change
       end do
    end subroutine polish_impact

@@ -9,9 +9,13 @@
 module rocking_rocker
    use common_dense_step, only : dense_step
    use common_kinds, only : wp
+   use rocking_restraint, only : restraint_set
    implicit none
    private
-   public :: rocker, side_index
+   public :: rocker, side_index, series_short
+
+   !> A series whose error is below this share of the tolerance was cut short: a longer step is as cheap
+   real(wp), parameter :: series_short = 1.0e-3_wp
 
    type, abstract :: rocker
       !> The second index of all pairs: 1 for side = +1, 2 for side = -1
@@ -21,11 +25,16 @@ module rocking_rocker
       real(wp) :: rest_rate(2) = 0.0_wp    !! rate after impact below which the structure rests [rad/s]
       !> True where series_step solves the motion under straight-line accelerations
       logical :: has_series = .false.
+      !> False where a wall keeps the structure from rocking to that side: it is thrown back from there
+      logical :: free(2) = .true.
+      real(wp) :: rebound(2) = 0.0_wp      !! rate after over rate before being thrown back to this side
+      type(restraint_set), allocatable :: held  !! ties, springs and dampers, where there are any
    contains
       procedure(coefficients), deferred :: coefficients
       procedure(potential), deferred :: potential
       procedure :: set_rest_rate
       procedure :: series_step
+      procedure :: glide
    end type rocker
 
    abstract interface
@@ -79,6 +88,30 @@ contains
       step%error = huge(h)
       if (.false.) step%q = q + v + value(1) + slope(1) + tolerance(1) + model%critical(side_index(side))
    end subroutine series_step
+
+   !> Whole segments of a sampled ground motion in which the structure neither turns nor touches the ground nor
+   !> falls, each by one series; the state is that after the last of them. Here none: the general way takes them.
+   pure subroutine glide(model, side, start, spacing, scale, samples, first, last, tolerance, q, v, passed, &
+                         step, stopped)
+      class(rocker), intent(in) :: model
+      integer, intent(in) :: side            !! +1 or -1
+      real(wp), intent(in) :: start          !! time of the first sample [s]
+      real(wp), intent(in) :: spacing        !! of the samples [s]
+      real(wp), intent(in) :: scale          !! factor on the samples
+      real(wp), intent(in) :: samples(:, :)  !! (channels, points) [m/s^2]
+      integer, intent(in) :: first           !! segment at whose start the state is given
+      integer, intent(in) :: last            !! segment to go through at most
+      real(wp), intent(in) :: tolerance(3)   !! absolute of q and of v, relative
+      real(wp), intent(inout) :: q           !! rotation [rad]
+      real(wp), intent(inout) :: v           !! its rate [rad/s]
+      integer, intent(out) :: passed         !! segments
+      type(dense_step), intent(inout) :: step  !! where it stopped: the segment in which something happens
+      logical, intent(out) :: stopped        !! before the end of `last`
+      passed = 0
+      stopped = .false.
+      if (.false.) step%q = q + v + start + spacing + scale + samples(1, first) + samples(1, last) + tolerance(1) &
+         + model%critical(side_index(side))
+   end subroutine glide
 
    !> Rest where the kinetic energy after an impact is below 1e-6 of the energy barrier.
    !>

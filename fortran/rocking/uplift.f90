@@ -4,7 +4,7 @@ module rocking_uplift
    use rocking_equation, only : equation_of_motion
    implicit none
    private
-   public :: find_uplift
+   public :: find_uplift, last_calm
 
 contains
 
@@ -36,7 +36,8 @@ contains
             else if (f1(j) > 0.0_wp) then
                root = crossing(j, t0, t1)
             else
-               if (grid >= huge(grid) / 64.0_wp .or. max(f0(j), f1(j)) < -0.02_wp * problem%rest_dv(j)) cycle
+               if (grid >= huge(grid) / 64.0_wp .or. max(f0(j), f1(j)) < -0.02_wp &
+                  * (problem%rest_dv(j) + problem%rest_hold(j))) cycle
                call crest(j, t0, t1, top)
                at_top = drive(top)
                if (at_top(j) <= 0.0_wp) cycle
@@ -61,7 +62,9 @@ contains
          real(wp) :: f(2)
          real(wp) :: horizontal, vertical
          call problem%ground%value_at(problem%segment, time, horizontal, vertical)
-         f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity)
+         f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity) &
+            - problem%rest_hold
+         if (.not. all(problem%body%free)) f = merge(f, -huge(f), problem%body%free)
       end function drive
 
       !> Where the drive of side j is greatest between two times, by golden section
@@ -89,28 +92,62 @@ contains
          top = 0.5_wp * (low + high)
       end subroutine crest
 
-      !> The first time at which side j is driven up, between a quiet and a driven time
+      !> The first time at which side j is driven up, between a quiet and a driven time: by the false position, which
+      !> straight lines need once, and halves where one end stays
       function crossing(j, quiet_time, driven_time) result(root)
          integer, intent(in) :: j
          real(wp), intent(in) :: quiet_time
          real(wp), intent(in) :: driven_time
          real(wp) :: root
-         real(wp) :: low, high, middle, f(2)
+         real(wp) :: low, high, middle, f(2), f_low, f_high
          integer :: n
          low = quiet_time
          high = driven_time
-         do n = 1, 60
-            middle = 0.5_wp * (low + high)
+         f = drive(low)
+         f_low = f(j)
+         f = drive(high)
+         f_high = f(j)
+         do n = 1, 120
+            if (high - low <= 2.0_wp * spacing(high)) exit
+            middle = high - (high - low) * f_high / (f_high - f_low)
+            ! A little to the driven side, so that the other end moves too.
+            middle = min(middle + 2.0_wp * spacing(high), high - spacing(high))
+            if (mod(n, 3) == 0 .or. middle <= low) middle = 0.5_wp * (low + high)
             f = drive(middle)
             if (f(j) > 0.0_wp) then
                high = middle
+               f_high = f(j)
             else
                low = middle
+               f_low = f(j)
             end if
          end do
          root = high
       end function crossing
 
    end subroutine find_uplift
+
+   !> Last segment from `segment` on through whose samples the ground does not drive the resting structure
+   pure function last_calm(problem, segment, until) result(calm)
+      type(equation_of_motion), intent(in) :: problem  !! with a sampled ground motion
+      integer, intent(in) :: segment                   !! at whose start the ground does not drive it
+      real(wp), intent(in) :: until                    !! not past this time [s]
+      integer :: calm                                  !! segment - 1 where it drives it there
+      real(wp) :: weight, horizontal
+      integer :: k
+
+      calm = segment - 1
+      do k = segment, problem%ground%segments
+         if (problem%ground%break_time(k + 1) > until) exit
+         associate (sample => problem%ground%samples(:, k + 1), scale => problem%ground%scale)
+            horizontal = scale * sample(1)
+            weight = 1.0_wp
+            if (size(sample) > 1) weight = 1.0_wp + scale * sample(2) / gravity
+         end associate
+         if (any(problem%body%free .and. [-horizontal, horizontal] * problem%rest_dh &
+            > problem%rest_dv * weight + problem%rest_hold)) exit
+         calm = k
+      end do
+   end function last_calm
 
 end module rocking_uplift

@@ -30,7 +30,7 @@ contains
          do e = 1, holders(g)%group%elements
             do i = 1, holders(g)%group%freedoms
                equation = holders(g)%group%equation(i, e)
-               if (equation > 0) first(equation + 2) = first(equation + 2) + 1
+               if (equation > 0 .and. equation <= n) first(equation + 2) = first(equation + 2) + 1
             end do
          end do
       end do
@@ -44,7 +44,7 @@ contains
          do e = 1, holders(g)%group%elements
             do i = 1, holders(g)%group%freedoms
                equation = holders(g)%group%equation(i, e)
-               if (equation == 0) cycle
+               if (equation == 0 .or. equation > n) cycle
                element(first(equation + 1)) = e
                group(first(equation + 1)) = g
                first(equation + 1) = first(equation + 1) + 1
@@ -62,7 +62,7 @@ contains
             associate (touching => holders(group(k))%group)
                do i = 1, touching%freedoms
                   equation = touching%equation(i, element(k))
-                  if (equation <= column) cycle
+                  if (equation <= column .or. equation > n) cycle
                   if (seen(equation) == column) cycle
                   seen(equation) = column
                   count = count + 1
@@ -120,9 +120,10 @@ contains
       integer(c_int64_t), intent(in) :: row(:)
       real(wp), intent(out) :: value(:)
       real(wp) :: k(most_entries, most_entries)
-      integer :: g, e, i, j, row_equation, column_equation
+      integer :: g, e, i, j, n, row_equation, column_equation
       integer(c_int64_t) :: at
 
+      n = size(start) - 1
       value = 0.0_wp
       do g = 1, size(holders)
          associate (group => holders(g)%group)
@@ -130,10 +131,10 @@ contains
                call group%matrix(e, k)
                do j = 1, group%freedoms
                   column_equation = group%equation(j, e)
-                  if (column_equation == 0) cycle
+                  if (column_equation == 0 .or. column_equation > n) cycle
                   do i = 1, group%freedoms
                      row_equation = group%equation(i, e)
-                     if (row_equation < column_equation) cycle
+                     if (row_equation < column_equation .or. row_equation > n) cycle
                      at = position(start, row, row_equation, column_equation)
                      value(at) = value(at) + k(i, j) * group%factor(i, e) * group%factor(j, e)
                   end do
@@ -152,8 +153,9 @@ contains
       integer :: i, j
       integer(c_int64_t) :: at
       do j = 1, event%entries
+         if (event%index(j) > size(start) - 1) cycle
          do i = 1, event%entries
-            if (event%index(i) < event%index(j)) cycle
+            if (event%index(i) < event%index(j) .or. event%index(i) > size(start) - 1) cycle
             at = position(start, row, int(event%index(i)), int(event%index(j)))
             value(at) = value(at) - sum(event%sign(1:event%rank) * event%w(i, 1:event%rank) * event%w(j, 1:event%rank))
          end do

@@ -16,7 +16,7 @@ module sla_events
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change, extrados_sparse_solve
    use sla_group, only : below, bound, event_vectors, point_group, scan_result, unbounded, most_entries, most_rank
-   use sla_model, only : element_model, model_balance, model_factor, model_recorded, model_settled, &
+   use sla_model, only : element_model, model_balance, model_factor, model_reactions, model_recorded, model_settled, &
       model_solve, held_work
    use sla_regions, only : levels, regions_bring, regions_calm, regions_home, regions_margins, regions_window
    use, intrinsic :: iso_c_binding, only : c_int
@@ -24,7 +24,7 @@ module sla_events
    private
    public :: run_events, damage_overloaded, residual, scan_model, stop_rules, event_log, log_reals, log_integers
 
-   integer, parameter :: log_reals = 10, log_integers = 4
+   integer, parameter :: log_reals = 11, log_integers = 4
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    integer, parameter :: few = 100                    !! regions that are looked at sooner by one thread
    !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
@@ -41,13 +41,18 @@ module sla_events
       !> Where no multiplier suits all points: all loads of the last state in equilibrium are scaled down together
       !> (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides
       logical :: proportional = .false.
+      !> The forces that a tooth sets free go onto the others at the load reached, before it grows again
+      logical :: release = .false.
+      real(wp) :: target = unbounded               !! of monitor 1 [m]: the stage ends in the state that has it
+      real(wp) :: side = 0.0_wp                    !! +1: it is reached from below, -1: from above, 0: there is none
+      real(wp) :: already = 0.0_wp                 !! loads like B that are on already, over B
    end type stop_rules
 
    !> What is recorded; monitors are weighted sums of equations
    type :: event_log
       integer :: count = 0
-      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub, residual,
-      !> scale of all loads
+      !> lambda, upper limit, lower limit, stored, external, dissipated, crack energy [J], compliance fb.ub (where
+      !> supports move with lambda their stiffness instead), residual, scale of all loads, force that moves supports [N]
       real(wp), allocatable :: reals(:, :)         !! (log_reals, room)
       !> point (1-based), code, tooth reached by it before, 1 in equilibrium
       integer(c_int), allocatable :: integers(:, :)  !! (log_integers, room)
@@ -68,19 +73,27 @@ contains
       integer(c_int), intent(out) :: status       !! status_cancelled leaves a valid log
       type(scan_result) :: found
       type(bound) :: scaled
-      real(wp) :: ratio(size(first) - 1)
-      integer :: place(2)
-      logical :: equilibrium
+      real(wp), allocatable :: ratio(:)
+      real(wp) :: reached, at
+      logical :: equilibrium, driven, met
+      integer :: info, place(2)
 
+      driven = any(abs(model%moved(:, 2)) > 0.0_wp)
+      at = 0.0_wp
       reason = stop_none
-      status = status_ok
+      status = status_out_of_memory
       log%count = 0
+      allocate (ratio(size(first) - 1), stat=info)
+      if (info /= 0) return
+      status = status_ok
       call watch(model, first, equation, share, ratio)
       do while (log%count < size(log%reals, 2))
          if (cancel_requested()) then
             status = status_cancelled
             return
          end if
+         if (rules%release .and. model%pending(1) /= 0) call hold_state(model, status)
+         if (status /= status_ok) return
          if (model%pending(1) /= 0) then
             place = model%pending(1:2)
             call apply_event(model, reason, status)
@@ -88,8 +101,17 @@ contains
                status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
+         if (model%releasing) then
+            call set_free(model, found, status)
+            if (status /= status_ok) return
+            call record(model, found, .not. model%releasing, first, equation, share, ratio, log)
+            if (too_soft(model, driven, rules%compliance)) reason = stop_mechanism
+            if (reason /= stop_none) return
+            cycle
+         end if
          call scan_model(model, found, status)
          if (status /= status_ok) return
+         if (size(model%moved, 1) > 0) call follow_supports(model)
          model%hot(:, 1) = [found%hi%group, found%hi%point]
          model%hot(:, 2) = [found%lo%group, found%lo%point]
          equilibrium = found%empty%point == 0 .and. .not. crossed(found)
@@ -102,9 +124,12 @@ contains
          scaled = bound()
          if (rules%proportional .and. .not. equilibrium .and. found%bounded) call scan_scaled(model, scaled, status)
          if (status /= status_ok) return
+         call meet_target(model, rules, found, first, equation, share, ratio(1), at, met)
          if (equilibrium .and. rules%lambda < unbounded .and. found%hi%value >= rules%lambda .and. &
              found%lo%value <= rules%lambda) then
             reason = stop_load
+         else if (equilibrium .and. met) then
+            reason = stop_displacement
          else if (scaled%point /= 0) then
             model%scale = scaled%value
             scaled%value = model%lambda_held
@@ -120,9 +145,9 @@ contains
          else
             reason = stop_unbounded    ! only lower limits: the load can grow for ever
          end if
-         if (reason == stop_load) then
+         if (reason == stop_load .or. reason == stop_displacement) then
             model%pending = 0
-            call account(model, rules%lambda, status)
+            call account(model, merge(rules%lambda, at, reason == stop_load), status)
          else if (reason == stop_unbounded) then
             return
          else
@@ -133,28 +158,165 @@ contains
          if (reason /= stop_none) return
          if (equilibrium) then
             model%lambda_held = model%lambda
-            if (model%lambda > model%peak) then
-               model%peak = model%lambda
+            reached = merge(log%reals(log_reals, log%count), model%lambda + rules%already, driven)
+            if (reached > model%peak) then
+               model%peak = reached
                model%peak_displacement = log%monitors(1, log%count)
             end if
             if (abs(log%monitors(1, log%count)) >= rules%displacement) reason = stop_displacement
             ! A drop on the way back from a small crack is no end: the wall must have gone further than at its peak.
             if (rules%fraction >= 0.0_wp .and. model%peak > 0.0_wp .and. &
-                model%lambda < rules%fraction * model%peak .and. &
+                reached < rules%fraction * model%peak .and. &
                 (log%monitors(1, log%count) - model%peak_displacement) * model%slope > 0.0_wp) reason = stop_fraction
          end if
          ! Where no multiplier brings a state back, limits run away
          if (model%peak > 0.0_wp .and. .not. equilibrium) then
-            if (.not. abs(model%lambda) <= farthest * model%peak) reason = stop_lost
+            reached = merge(abs(model%lambda_held), model%peak, driven)
+            if (.not. abs(model%lambda) <= farthest * reached) reason = stop_lost
          end if
          ! Joints that slide make the structure unsymmetric: it may answer the load the other way, until what slides
          ! back sticks, at once
-         if (.not. abs(model%work(3)) <= rules%compliance * model%first_compliance) then
+         if (too_soft(model, driven, rules%compliance)) then
             if (model%pending(3) /= code_stick) reason = stop_mechanism
          end if
          if (reason /= stop_none) return
       end do
    end subroutine run_events
+
+   !> Has the compliance to the growing load grown by a ratio; supports that move also move what has no stiffness left,
+   !> unless the constant loads carry it away
+   pure function too_soft(model, driven, ratio) result(yes)
+      type(element_model), intent(in) :: model
+      logical, intent(in) :: driven
+      real(wp), intent(in) :: ratio
+      logical :: yes
+      if (driven) then
+         yes = model%first_constant > 0.0_wp .and. .not. model%work_now(1) <= ratio * model%first_constant
+      else
+         yes = .not. abs(merge(model%work_now(3), model%work(3), model%releasing)) <= ratio * model%first_compliance
+      end if
+   end function too_soft
+
+   !> Keep the state in which a tooth is about to pass, from which its forces are set free
+   subroutine hold_state(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer :: info
+      call bring_all(model, status)
+      if (status /= status_ok) return
+      model%tree%settled = .false.
+      if (.not. allocated(model%from)) then
+         allocate (model%from, mold=model%ua, stat=info)
+         if (info /= 0) status = status_out_of_memory
+         if (info /= 0) return
+      end if
+      if (model%releasing) then
+         model%from(:) = model%from + model%released * (model%ua + model%lambda * model%ub - model%from)
+      else
+         model%from(:) = model%ua + model%lambda * model%ub
+      end if
+      model%releasing = .true.
+      model%released = 0.0_wp
+   end subroutine hold_state
+
+   !> Go the straight way from the state held to that of equilibrium at the load reached, up to the first point that
+   !> leaves its strength on it, which is the next to be damaged; model%releasing is false at the end of the way
+   subroutine set_free(model, found, status)
+      type(element_model), intent(inout) :: model
+      type(scan_result), intent(out) :: found
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: way(:)
+      real(wp) :: load, excess, total, part
+      integer :: g, k, n, info
+
+      n = model%equations
+      call bring_all(model, status)
+      if (status /= status_ok) return
+      model%tree%settled = .false.
+      if (size(model%moved, 1) > 0) call follow_supports(model)
+      allocate (way, mold=model%ua, stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      way(:) = model%ua + model%lambda * model%ub - model%from
+      do k = 1, size(model%list)
+         model%list(k) = k
+      end do
+      found = scan_result()
+      call scan_list(model, model%from, way, model%noise * max(abs(model%lambda), 1.0_wp), scan_result(), 1, &
+         size(model%list), found)
+      part = 1.0_wp
+      if (found%empty%point /= 0) then
+         part = 0.0_wp
+         call choose(model, found%empty)
+      else if (found%hi%value < 1.0_wp) then
+         part = max(found%hi%value, 0.0_wp)
+         call choose(model, found%hi)
+      end if
+      model%lambda = model%lambda_recorded
+      model%released = part
+      ! Energy: the loads go on at their value; what is above that of equilibrium is lost on the way
+      model%force = 0.0_wp
+      do g = 1, size(model%holders)
+         call model%holders(g)%group%force(way, model%force)
+      end do
+      excess = 0.5_wp * dot_product(way(1:n), model%force(1:n))
+      load = dot_product(model%fa(1:n) + model%lambda * model%fb(1:n), way(1:n))
+      total = model%work_now(1) + model%lambda * (2.0_wp * model%work_now(2) + model%lambda * model%work_now(3))
+      model%external = model%external + part * load
+      model%dissipated = model%dissipated + excess * (1.0_wp - (1.0_wp - part)**2)
+      model%free = [0.5_wp * total - (1.0_wp - part) * load + (1.0_wp - part)**2 * excess, &
+         model%support(1, 2) + model%lambda * model%support(2, 2) - &
+         (1.0_wp - part) * dot_product(model%force(n + 1:), model%moved(:, 2))]
+      model%event%rank = 0
+      model%releasing = part < 1.0_wp
+      if (model%releasing) return
+      model%work = model%work_now
+      model%cross = model%work_now(2)
+      model%support_was = model%support
+   end subroutine set_free
+
+   !> The multiplier at which monitor 1 has its target, where all points admit it
+   pure subroutine meet_target(model, rules, found, first, equation, share, ratio, lambda, met)
+      type(element_model), intent(in) :: model
+      type(stop_rules), intent(in) :: rules
+      type(scan_result), intent(in) :: found
+      integer(c_int), intent(in) :: first(:)
+      integer(c_int), intent(in) :: equation(:)
+      real(wp), intent(in) :: share(:)
+      real(wp), intent(in) :: ratio         !! of monitor 1, see watch
+      real(wp), intent(out) :: lambda
+      logical, intent(out) :: met
+      real(wp) :: start, slope
+      integer :: i
+      met = .false.
+      lambda = 0.0_wp
+      if (.not. abs(rules%side) > 0.0_wp) return
+      start = 0.0_wp
+      slope = 0.0_wp
+      if (abs(ratio) > 0.0_wp .and. .not. model%slides) then
+         start = ratio * (model%work_now(2) - model%support(2, 1))
+         slope = ratio * (model%work_now(3) - model%support(2, 2))
+      else
+         do i = int(first(1)), int(first(2)) - 1
+            start = start + share(i) * model%ua(equation(i))
+            slope = slope + share(i) * model%ub(equation(i))
+         end do
+      end if
+      if (.not. rules%side * slope > 0.0_wp) return
+      lambda = (rules%target - start) / slope
+      met = found%empty%point == 0 .and. lambda >= found%lo%value .and. lambda <= found%hi%value
+   end subroutine meet_target
+
+   !> The forces of moved supports and their part in the work after an event
+   subroutine follow_supports(model)
+      type(element_model), intent(inout) :: model
+      real(wp) :: was(2, 2)
+      was = model%support
+      call model_reactions(model)
+      associate (change => model%support - was)
+         model%work_now = model%work_now + [2.0_wp * change(1, 1), change(1, 2) + change(2, 1), 2.0_wp * change(2, 2)]
+      end associate
+   end subroutine follow_supports
 
    !> Do the limits leave no multiplier, by more than rounding? A joint that closes at zero stress would open again at
    !> the same load, then close, many times over.
@@ -322,8 +484,8 @@ contains
                call group%damage(worst%point, worst%code, lambda, model%ua, model%ub, event, tooth)
                count = count + 1
                do i = 1, event%rank
-                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * dot_product(event%w(1:event%entries, i), &
-                     model%ua(event%index(1:event%entries)) + lambda * model%ub(event%index(1:event%entries)))**2
+                  model%cracked = model%cracked + 0.5_wp * event%sign(i) * &
+                     along(event, i, model%ua, model%ub, lambda)**2
                end do
             end do
          end select
@@ -345,7 +507,7 @@ contains
       call bring_all(model, status)
       if (status /= status_ok) return
       model%tree%settled = .false.                   ! the margins were those of before
-      allocate (zero(0:model%equations), u(0:model%equations), stat=info)
+      allocate (zero, u, mold=model%ua, stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
@@ -483,8 +645,10 @@ contains
       real(wp), intent(in) :: share(:)
       real(wp), intent(out) :: ratio(:)           !! (monitors) to the work, 0: not of this kind [1/N]
       real(wp), parameter :: same = 1.0e-12_wp
-      integer :: i, k, greatest
+      integer :: i, k, n, greatest
+      n = model%equations
       model%watched = .false.
+      call watch_supports(model)
       do k = 1, size(ratio)
          model%force = 0.0_wp
          do i = int(first(k)), int(first(k + 1)) - 1
@@ -494,14 +658,30 @@ contains
          greatest = maxloc(abs(model%fb), dim=1) - 1
          ratio(k) = 0.0_wp
          if (abs(model%fb(greatest)) > 0.0_wp) ratio(k) = model%force(greatest) / model%fb(greatest)
-         if (maxval(abs(model%force - ratio(k) * model%fb)) <= same * maxval(abs(model%force))) cycle
+         if (maxval(abs(model%force(0:n) - ratio(k) * model%fb)) <= same * maxval(abs(model%force))) then
+            if (.not. any(abs(model%force(n + 1:)) > 0.0_wp)) cycle
+         end if
          ratio(k) = 0.0_wp
          do i = int(first(k)), int(first(k + 1)) - 1
-            if (equation(i) > 0) model%watched(model%tree%of(equation(i))) = .true.
+            if (equation(i) > 0 .and. equation(i) <= n) model%watched(model%tree%of(equation(i))) = .true.
          end do
       end do
       model%wanted = model%watched
    end subroutine watch
+
+   !> The regions beside moved supports are brought up to date in each event
+   subroutine watch_supports(model)
+      type(element_model), intent(inout) :: model
+      integer :: i, j, q
+      do i = 1, size(model%beside, 2)
+         associate (e => model%beside(2, i), group => model%holders(model%beside(1, i))%group)
+            do j = 1, group%freedoms
+               q = int(group%equation(j, e))
+               if (q > 0 .and. q <= model%equations) model%watched(model%tree%of(q)) = .true.
+            end do
+         end associate
+      end do
+   end subroutine watch_supports
 
    !> The point to damage next and its multiplier
    pure subroutine choose(model, chosen)
@@ -518,13 +698,17 @@ contains
       integer(c_int), intent(out) :: status
       real(wp) :: w(most_entries * most_rank), b(most_entries * 2), before(2, most_rank), after(2), least
       integer(c_int) :: index0(most_entries), sense(most_rank)
-      integer :: i, k, n, tooth, pass, changes, path
+      integer :: i, k, n, f, tooth, pass, changes, path, unknown(most_entries)
 
       reason = stop_none
       status = status_ok
       select type (group => model%holders(model%pending(1))%group)
       class is (point_group)
-         call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
+         if (model%releasing) then
+            call group%damage(model%pending(2), model%pending(3), 0.0_wp, model%from, model%ub, model%event, tooth)
+         else
+            call group%damage(model%pending(2), model%pending(3), model%lambda, model%ua, model%ub, model%event, tooth)
+         end if
       end select
       model%pending = 0
       model%events = model%events + 1
@@ -534,9 +718,12 @@ contains
          model%cracked = model%cracked + event%crack
          n = event%entries
          do i = 1, event%rank
-            before(:, i) = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
-               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            before(:, i) = [component(event, i, model%ua), component(event, i, model%ub)]
             model%before(i) = model%scale * (before(1, i) + model%lambda * before(2, i)) - event%origin(i)
+            if (model%releasing) then
+               model%before(i) = component(event, i, model%from)
+               model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i)**2
+            end if
             if (event%cracks) model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
@@ -549,6 +736,12 @@ contains
             return
          end if
          model%origin_energy = model%origin_energy + event%shift
+         f = 0
+         do i = 1, n
+            if (event%index(i) > model%equations) cycle     ! of a support that moves
+            f = f + 1
+            unknown(f) = i
+         end do
          ! (K - W S W') du = W S (W' u - origin - hold). Stiffening first: no way-station is less definite than the
          ! ends.
          changes = 0
@@ -556,44 +749,47 @@ contains
          do pass = 1, 2
             do i = 1, event%rank
                if ((event%sign(i) > 0.0_wp) .eqv. (pass == 1)) cycle
-               w(changes * n + 1:changes * n + n) = event%w(1:n, i)
+               w(changes * f + 1:changes * f + f) = event%w(unknown(1:f), i)
                changes = changes + 1
                sense(changes) = int(-sign(1.0_wp, event%sign(i)), c_int)
-               b(1:n) = b(1:n) + event%sign(i) * (before(1, i) - event%origin(i) - event%hold(1, i)) * event%w(1:n, i)
-               b(n + 1:2 * n) = b(n + 1:2 * n) + event%sign(i) * (before(2, i) - event%hold(2, i)) * event%w(1:n, i)
-               model%fo(event%index(1:n)) = model%fo(event%index(1:n)) - &
-                  event%sign(i) * event%origin(i) * event%w(1:n, i)
-               model%fh(event%index(1:n), 1) = model%fh(event%index(1:n), 1) - &
-                  event%sign(i) * event%hold(1, i) * event%w(1:n, i)
-               model%fh(event%index(1:n), 2) = model%fh(event%index(1:n), 2) - &
-                  event%sign(i) * event%hold(2, i) * event%w(1:n, i)
+               b(1:f) = b(1:f) + event%sign(i) * (before(1, i) - event%origin(i) - event%hold(1, i)) * &
+                  event%w(unknown(1:f), i)
+               b(f + 1:2 * f) = b(f + 1:2 * f) + event%sign(i) * (before(2, i) - event%hold(2, i)) * &
+                  event%w(unknown(1:f), i)
+               do k = 1, n
+                  associate (to => event%index(k), w_k => event%w(k, i))
+                     model%fo(to) = model%fo(to) - event%sign(i) * event%origin(i) * w_k
+                     model%fh(to, :) = model%fh(to, :) - event%sign(i) * event%hold(:, i) * w_k
+                  end associate
+               end do
             end do
          end do
-         path = 0
-         k = regions_home(tree, event%index(1:n))
-         do while (k > 0)
-            path = path + 1
-            model%list(path) = k
-            model%z(tree%part(k)%first:tree%part(k)%last, :) = 0.0_wp   ! part of a region may lie off the path
-            k = tree%part(k)%parent
-         end do
-         index0 = event%index - 1_c_int
-         status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(n, c_int), index0, w, 2_c_int, &
-            b, model%z, least)
-         if (status == status_not_positive_definite .or. (status == status_ok .and. least < least_pivot)) then
-            status = status_ok
-            reason = stop_mechanism
+         if (f > 0) then
+            path = 0
+            k = regions_home(tree, event%index(1:n))
+            do while (k > 0)
+               path = path + 1
+               model%list(path) = k
+               model%z(tree%part(k)%first:tree%part(k)%last, :) = 0.0_wp   ! part of a region may lie off the path
+               k = tree%part(k)%parent
+            end do
+            index0(1:f) = event%index(unknown(1:f)) - 1_c_int
+            status = extrados_sparse_change(model%handle, int(changes, c_int), sense, int(f, c_int), index0, w, &
+               2_c_int, b, model%z, least)
+            if (status == status_not_positive_definite .or. (status == status_ok .and. least < least_pivot)) then
+               status = status_ok
+               reason = stop_mechanism
+            end if
+            if (status /= status_ok .or. reason /= stop_none) return
+            ! From the root down to the element
+            do i = path, 1, -1
+               call regions_bring(tree, model%list(i), model%handle, .true., model%ua, model%ub, model%z, status)
+               if (status /= status_ok) return
+            end do
          end if
-         if (status /= status_ok .or. reason /= stop_none) return
          model%friction%current = .false.
-         ! From the root down to the element
-         do i = path, 1, -1
-            call regions_bring(tree, model%list(i), model%handle, .true., model%ua, model%ub, model%z, status)
-            if (status /= status_ok) return
-         end do
          do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
-            after = [dot_product(event%w(1:n, i), model%ua(event%index(1:n))), &
-               dot_product(event%w(1:n, i), model%ub(event%index(1:n)))]
+            after = [component(event, i, model%ua), component(event, i, model%ub)]
             model%work_now = model%work_now + event%sign(i) * &
                [before(1, i) * after(1), before(1, i) * after(2), before(2, i) * after(2)]
          end do
@@ -671,7 +867,7 @@ contains
          end do
          if (k == 1) model%z(:, k) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1) - model%force(1:n)
          if (k == 2) model%z(:, k) = model%fb(1:n) + model%fh(1:n, 2) - model%force(1:n)
-         load = merge(norm2(model%fa), norm2(model%fb), k == 1)
+         load = merge(norm2(model%fa), norm2(model%fb), k == 1) + norm2(model%reaction(:, k))
          if (load > 0.0_wp) model%residual = max(model%residual, norm2(model%z(:, k)) / load)
       end do
    end subroutine residual
@@ -683,16 +879,20 @@ contains
       real(wp), intent(in) :: lambda
       integer(c_int), intent(out) :: status
       logical :: counted
-      real(wp) :: now(3), held(2), after, was, s, t, cross
-      integer :: i
+      real(wp) :: now(3), held(2), after, was, s, t, cross, free(4), before(4)
+      integer :: i, n
 
       was = model%lambda_recorded
       s = model%scale
       t = model%scale_recorded
       if (model%slides) then
          held = held_work(model, lambda)
-         now = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), dot_product(model%fb, model%ub)]
-         cross = dot_product(model%fb, model%ua)   ! fa.ub too, but for friction that slides
+         n = model%equations
+         now = [dot_product(model%fa, model%ua(0:n)) + model%support(1, 1), &
+            dot_product(model%fa, model%ub(0:n)) + model%support(1, 2), &
+            dot_product(model%fb, model%ub(0:n)) + model%support(2, 2)]
+         ! fa.ub too, but for friction that slides
+         cross = dot_product(model%fb, model%ua(0:n)) + model%support(2, 1)
       else
          held = 0.0_wp
          now = model%work_now
@@ -701,8 +901,10 @@ contains
       counted = model%recorded
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
+         ! From there on A does the work lambda fa.ub, also beside the forces of friction, where fb.ua is another.
          if (model%carried) model%external = model%external - 0.5_wp * now(1)
-         model%external = model%external + 0.5_wp * s**2 * (now(1) + lambda * (now(2) + cross + lambda * now(3)))
+         model%external = model%external + 0.5_wp * s**2 * (now(1) + lambda * (now(2) + &
+            merge(now(2), cross, model%carried) + lambda * now(3)))
          model%recorded = .true.
       else
          associate (event => model%event)
@@ -716,12 +918,18 @@ contains
          ! Work of the held forces, (fh_old + fh_new) . (u_new - u_old) / 2
          if (model%slides) model%dissipated = model%dissipated - model%excess - 0.5_wp * dot_product( &
             model%fh(:, 1) + lambda * model%fh(:, 2) + model%f_before, model%ua + lambda * model%ub - model%u_before)
-         ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub)
+         ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub); the loads alone
+         free = [now, cross] - [model%support(1, 1), model%support(1, 2), model%support(2, 2), model%support(2, 1)]
+         before = [model%work, model%cross] - [model%support_was(1, 1), model%support_was(1, 2), &
+            model%support_was(2, 2), model%support_was(2, 1)]
          model%external = model%external + 0.5_wp * ( &
-            s * (s + t) * now(1) + s * (s + t) * lambda * now(2) &
-            + s * (s * lambda + t * was) * (cross + lambda * now(3)) &
-            - t * (s + t) * model%work(1) - t * (s + t) * was * model%work(2) &
-            - t * (s * lambda + t * was) * (model%cross + was * model%work(3)))
+            s * (s + t) * free(1) + s * (s + t) * lambda * free(2) &
+            + s * (s * lambda + t * was) * (free(4) + lambda * free(3)) &
+            - t * (s + t) * before(1) - t * (s + t) * was * before(2) &
+            - t * (s * lambda + t * was) * (before(4) + was * before(3)))
+         ! The reactions of supports that move with lambda
+         model%external = model%external + 0.5_wp * (lambda - was) * (model%support(1, 2) &
+            + lambda * model%support(2, 2) + model%support_was(1, 2) + was * model%support_was(2, 2))
       end if
       model%event%rank = 0
       call model_recorded(model, lambda, status)
@@ -729,6 +937,7 @@ contains
       model%held = held
       model%cross = cross
       model%work = now
+      model%support_was = model%support
       model%lambda_recorded = lambda
       model%scale_recorded = s
       model%lambda = lambda
@@ -762,7 +971,8 @@ contains
 
       log%count = log%count + 1
       log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored_energy(model), model%external, &
-         model%dissipated, model%cracked, model%work(3), model%residual, model%scale]
+         model%dissipated, model%cracked, model%work(3), model%residual, model%scale, &
+         model%support(1, 2) + model%lambda * model%support(2, 2)]
       offset = 0
       if (model%pending(1) /= 0) then
          select type (group => model%holders(model%pending(1))%group)
@@ -774,8 +984,8 @@ contains
          int(model%events, c_int), merge(1_c_int, 0_c_int, equilibrium)]
       do k = 1, size(log%monitors, 1)
          if (abs(ratio(k)) > 0.0_wp) then
-            slope = ratio(k) * model%work(3)
-            log%monitors(k, log%count) = ratio(k) * model%cross + model%lambda * slope
+            slope = ratio(k) * (model%work(3) - model%support(2, 2))
+            log%monitors(k, log%count) = ratio(k) * (model%cross - model%support(2, 1)) + model%lambda * slope
          else
             log%monitors(k, log%count) = 0.0_wp
             slope = 0.0_wp
@@ -788,7 +998,31 @@ contains
          log%monitors(k, log%count) = model%scale * log%monitors(k, log%count)
          if (k == 1) model%slope = slope
       end do
+      if (.not. model%releasing) return
+      log%reals([4, log_reals], log%count) = model%free
+      do k = 1, size(log%monitors, 1)
+         log%monitors(k, log%count) = 0.0_wp
+         do i = int(first(k)), int(first(k + 1)) - 1
+            associate (q => equation(i))
+               log%monitors(k, log%count) = log%monitors(k, log%count) + share(i) * (model%from(q) + &
+                  model%released * (model%ua(q) + model%lambda * model%ub(q) - model%from(q)))
+            end associate
+         end do
+      end do
    end subroutine record
+
+   !> w_i . x over the entries of an event
+   pure function component(event, i, x) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * x(event%index(k))
+      end do
+   end function component
 
    !> w_i . (x + lambda y) over the entries of an event: dot_product would gather them in memory that it does not ask
    !> for

@@ -35,7 +35,8 @@ module sla_friction
 contains
 
    !> Forces of sliding friction and displacements that balance with them
-   subroutine friction_balance(store, holders, event, place, handle, fresh, value, ua, ub, fh, status)
+   subroutine friction_balance(store, holders, event, place, handle, fresh, value, n, ua, ub, fh, &
+                               status)
       type(friction_store), intent(inout) :: store
       type(group_holder), intent(inout) :: holders(:)
       type(event_vectors), intent(in) :: event !! by which the factor changed since the last balance
@@ -43,9 +44,10 @@ contains
       type(c_ptr), intent(in) :: handle        !! of the factor
       logical, intent(in) :: fresh             !! solve with a new factor of `value`
       real(wp), intent(in) :: value(:)         !! of the stiffness
-      real(wp), intent(inout) :: ua(0:)        !! under the constant loads [m]
+      integer, intent(in) :: n                 !! equations
+      real(wp), intent(inout) :: ua(0:)        !! under the constant loads; beyond n supports that move [m]
       real(wp), intent(inout) :: ub(0:)        !! per unit multiplier [m]
-      real(wp), intent(inout) :: fh(0:, :)     !! (0:n, 2) forces of friction, constant and per unit multiplier [N]
+      real(wp), intent(inout) :: fh(0:, :)     !! (0:, 2) forces of friction, constant and per unit multiplier [N]
       integer(c_int), intent(out) :: status    !! not_positive_definite: what slides is a mechanism; nothing was changed
       type(slider), allocatable :: point(:)
       real(wp), allocatable :: coupling(:, :), change(:, :), force(:, :)
@@ -57,7 +59,7 @@ contains
       allocate (coupling(m, m), change(m, 2), force(size(ua) - 1, 2), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
-      call find_answers(store, point, event, place, handle, fresh, value, size(ua) - 1, status)
+      call find_answers(store, point, event, place, handle, fresh, value, n, status)
       if (status /= status_ok .or. m == 0) return
       coupling(:, :) = -store%answer
       do i = 1, m
@@ -78,9 +80,9 @@ contains
          end select
       end do
       fh(1:, :) = fh(1:, :) + force
-      call solve(handle, fresh, value, force, status)
-      ua(1:) = ua(1:) + force(:, 1)
-      ub(1:) = ub(1:) + force(:, 2)
+      call solve(handle, fresh, value, force(1:n, :), status)
+      ua(1:n) = ua(1:n) + force(1:n, 1)
+      ub(1:n) = ub(1:n) + force(1:n, 2)
    end subroutine friction_balance
 
    !> The points of all groups that slide
@@ -151,14 +153,15 @@ contains
          z = 0.0_wp
          do k = 1, event%rank
             do i = 1, event%entries
-               z(event%index(i), k) = event%w(i, k)
+               if (event%index(i) <= n) z(event%index(i), k) = event%w(i, k)
             end do
          end do
          call solve(handle, fresh, value, z, status)
          if (status /= status_ok) return
          do k = 1, event%rank
             do i = 1, event%rank
-               small(i, k) = dot_product(event%w(1:event%entries, i), z(event%index(1:event%entries), k))
+               small(i, k) = sum(event%w(1:event%entries, i) * z(min(event%index(1:event%entries), n), k), &
+                  mask=event%index(1:event%entries) <= n)
             end do
             small(k, k) = small(k, k) + event%sign(k)
          end do
@@ -223,7 +226,7 @@ contains
       integer :: i
       do i = 1, size(entries)
          associate (q => point%index(i))
-            if (q > 0) force(q) = force(q) + entries(i)
+            if (q > 0 .and. q <= size(force)) force(q) = force(q) + entries(i)
          end associate
       end do
    end subroutine add_force
@@ -237,7 +240,7 @@ contains
       integer :: i
       total = 0.0_wp
       do i = 1, size(entries)
-         if (point%index(i) > 0) total = total + entries(i) * u(point%index(i))
+         if (point%index(i) > 0 .and. point%index(i) <= size(u)) total = total + entries(i) * u(point%index(i))
       end do
    end function product_of
 

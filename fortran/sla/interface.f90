@@ -25,11 +25,11 @@ module sla_interface
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : point_group, scan_result, slider, event_vectors, material_options, unbounded, linear_bound, &
       offer_hi
-   use sla_tables, only : tooth_tables
+   use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: interface_group, interface_group_new, joint_law
+   public :: interface_group, interface_group_new, joint_law, joint_law_new
 
    !> How the friction of a closed point is
    integer(c_int), parameter :: sticks = 0, slides_up = 1, slides_down = 2
@@ -100,6 +100,17 @@ module sla_interface
 
 contains
 
+   !> Room for the law of some elements
+   subroutine joint_law_new(elements, law, status)
+      integer, intent(in) :: elements
+      type(joint_law), intent(out) :: law
+      integer(c_int), intent(out) :: status
+      integer :: info
+      allocate (law%kn(elements), law%ks(elements), law%friction(elements), law%small(elements), law%table(elements), &
+         law%crush_table(elements), law%slip_table(elements), law%dry(elements), stat=info)
+      status = merge(status_ok, status_out_of_memory, info == 0)
+   end subroutine joint_law_new
+
    !> A group of joints without damage
    subroutine interface_group_new(area, normal, law, teeth, options, group, bad, status)
       real(wp), intent(in) :: area(:, :)           !! (2, elements) of the points [m^2]; 0: in the next element
@@ -121,8 +132,20 @@ contains
       group%directions = 1
       group%slides = .true.
       group%options = options
-      group%teeth = teeth
-      group%law = law
+      call tooth_tables_copy(teeth, group%teeth, status)
+      if (status /= status_ok) return
+      call joint_law_new(n, group%law, status)
+      if (status /= status_ok) return
+      group%law%kn(:) = law%kn
+      group%law%ks(:) = law%ks
+      group%law%friction(:) = law%friction
+      group%law%small(:) = law%small
+      group%law%table(:) = law%table
+      group%law%crush_table(:) = law%crush_table
+      group%law%slip_table(:) = law%slip_table
+      group%law%dry(:) = law%dry
+      group%law%ripple = law%ripple
+      status = status_out_of_memory
       allocate (group%normal(2, n), group%area(2 * n), group%tooth(2 * n), group%crush(2 * n), group%slip(2 * n), &
          group%shut(2 * n), group%changes(2 * n), group%mode(2 * n), group%even(2 * n), group%start(2 * n), &
          group%mark(2 * n), group%held(2, 2 * n), &
@@ -681,25 +704,25 @@ contains
       class(interface_group), intent(inout) :: group
       logical, intent(in) :: store
       real(wp), intent(inout) :: values(:, :)
-      real(wp) :: ks(group%points)
       integer :: p
-      ks = [(group%law%ks((p + 1) / 2), p=1, group%points)]
       if (store) then
          values(1, :) = group%start
-         values(2, :) = group%held(1, :) / ks
+         do p = 1, group%points
+            values([2, 7], p) = group%held(:, p) / group%law%ks((p + 1) / 2)
+         end do
          values(3, :) = merge(1.0_wp, 0.0_wp, group%tooth > 1)
          values(4, :) = real(group%tooth, wp)
          values(5, :) = real(group%slip, wp)
          values(6, :) = real(group%crush, wp)
-         values(7, :) = group%held(2, :) / ks
          values(8, :) = real(group%shut, wp)
          values(9, :) = group%mark
          values(10, :) = real(group%changes, wp)
          values(11, :) = real(group%mode + 4_c_int * group%even, wp)
       else
          group%start(:) = values(1, :)
-         group%held(1, :) = values(2, :) * ks
-         group%held(2, :) = values(7, :) * ks
+         do p = 1, group%points
+            group%held(:, p) = values([2, 7], p) * group%law%ks((p + 1) / 2)
+         end do
          group%tooth(:) = nint(values(4, :), c_int)
          group%slip(:) = nint(values(5, :), c_int)
          group%crush(:) = nint(values(6, :), c_int)

@@ -10,7 +10,7 @@ module sla_model
    use sla_c_bindings, only : extrados_sparse_order, extrados_sparse_new, extrados_sparse_free, &
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
    use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
-      most_rank, report_rows
+      most_entries, most_rank, report_rows
    use sla_friction, only : friction_store, friction_balance
    use sla_regions, only : region_tree, regions_new, regions_measure, regions_settled, regions_made_up
    use sla_tables, only : tooth_tables
@@ -18,22 +18,22 @@ module sla_model
    implicit none
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
-   public :: model_displacements, model_settled, model_balance, model_recorded
+   public :: model_displacements, model_settled, model_balance, model_reactions, model_recorded
    public :: held_work, model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
    !> No tooth or change of a stored damage has a greater number
    real(wp), parameter :: most_damage = 1.0e8_wp
-   integer, parameter :: standing_values = 30   !! numbers that tell where the event loop stands
+   integer, parameter :: standing_values = 31   !! numbers that tell where the event loop stands
 
    type :: element_model
       integer :: stage = 0                               !! how far it is built, see sla_handle
       integer :: nodes = 0
-      integer :: equations = 0
+      integer :: equations = 0                           !! unknown; those of moved supports come after them
       integer :: points = 0
       real(wp), allocatable :: xy(:, :)                  !! (2, nodes) [m]
-      integer(c_int), allocatable :: equation(:, :)      !! (2, nodes), 0 held
+      integer(c_int), allocatable :: equation(:, :)      !! (2, nodes), 0 held, beyond `equations` moved
       real(wp), allocatable :: factor(:, :)              !! (2, nodes) share of the equation
       type(group_holder), allocatable :: holders(:)
       type(tooth_tables) :: teeth                        !! of the groups that are added next
@@ -53,7 +53,12 @@ module sla_model
       real(wp) :: origin_energy = 0.0_wp                 !! [J]
       type(friction_store) :: friction
       logical :: slides = .false.                        !! a group has origins: no region may wait
-      !> (0:n) displacements where the tree brought them up to date, see model_displacements [m]
+      real(wp), allocatable :: moved(:, :)               !! (moved, 2) supports, constant and per multiplier [m]
+      real(wp), allocatable :: reaction(:, :)            !! (moved, 2) their forces under A and per multiplier [N]
+      integer, allocatable :: beside(:, :)               !! (2, elements) group and element at a moved support
+      real(wp) :: support(2, 2) = 0.0_wp                 !! work of both reactions on both columns of `moved` [J]
+      real(wp) :: support_was(2, 2) = 0.0_wp             !! of the last state
+      !> (0:n + moved) displacements where the tree brought them up to date, see model_displacements [m]
       real(wp), allocatable :: ua(:), ub(:)
       real(wp), allocatable :: z(:, :)                   !! (n, 2)
       real(wp), allocatable :: force(:)                  !! (0:n) of the residual
@@ -76,6 +81,7 @@ module sla_model
       real(wp) :: dissipated = 0.0_wp                    !! [J] along the straight way between events
       real(wp) :: cracked = 0.0_wp                       !! [J] at constant strain: the area of the teeth
       real(wp) :: first_compliance = 0.0_wp              !! fb.ub at the start of the stage
+      real(wp) :: first_constant = 0.0_wp                !! work of the constant loads and supports there [J]
       real(wp) :: peak = 0.0_wp                          !! greatest |lambda| in equilibrium of the stage
       real(wp) :: peak_displacement = 0.0_wp             !! of monitor 1 there [m]
       real(wp) :: slope = 0.0_wp                         !! of monitor 1 per unit lambda [m]
@@ -88,15 +94,20 @@ module sla_model
       real(wp) :: scale = 1.0_wp                         !! of all loads, A too, in the state chosen; see stop_rules
       real(wp) :: scale_recorded = 1.0_wp                !! of the last state
       real(wp) :: lambda_held = 0.0_wp                   !! of the last state in equilibrium
+      logical :: releasing = .false.                     !! the forces of the last tooth are being set free
+      real(wp) :: released = 0.0_wp                      !! part of the way from `from` in the state chosen
+      real(wp) :: free(2) = 0.0_wp                       !! there: stored energy [J], force that moves supports [N]
+      real(wp), allocatable :: from(:)                   !! (0:n + moved) displacements before they are set free [m]
       integer :: hot(2, 2) = 0                           !! group and point of the last upper and lower limit
    end type element_model
 
 contains
 
    !> An empty model on nodes whose freedoms belong to equations
-   subroutine model_new(xy, equation, factor, options, model, status)
+   subroutine model_new(xy, equation, moved, factor, options, model, status)
       real(wp), intent(in) :: xy(:, :)               !! (2, nodes) [m]
       integer(c_int), intent(in) :: equation(:, :)   !! (2, nodes), 0 held
+      integer(c_int), intent(in) :: moved            !! the last equations, whose displacements are prescribed
       real(wp), intent(in) :: factor(:, :)           !! (2, nodes)
       type(material_options), intent(in) :: options
       type(element_model), intent(inout) :: model
@@ -104,14 +115,16 @@ contains
       integer :: info
 
       model%nodes = size(xy, 2)
-      model%equations = int(maxval(equation))
+      model%equations = int(maxval(equation) - moved)
       model%options = options
       status = status_invalid_argument
-      if (model%equations < 1 .or. minval(equation) < 0) return
+      if (model%equations < 1 .or. minval(equation) < 0 .or. moved < 0) return
       allocate (model%xy(2, model%nodes), model%equation(2, model%nodes), model%factor(2, model%nodes), &
-         model%holders(0), stat=info)
+         model%holders(0), model%moved(moved, 2), model%reaction(moved, 2), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
+      model%moved(:, :) = 0.0_wp
+      model%reaction(:, :) = 0.0_wp
       model%xy(:, :) = xy
       model%equation(:, :) = equation
       model%factor(:, :) = factor
@@ -167,12 +180,13 @@ contains
       integer(c_int), intent(out) :: status
       integer(c_int64_t), allocatable :: order(:)
       integer(c_int), allocatable :: new(:)
-      integer :: n, i, e, g, info
+      integer :: n, m, i, e, g, info
 
       n = model%equations
+      m = size(model%moved, 1)
       call build_pattern(model%holders, n, model%start, model%row, status)
       if (status /= status_ok) return
-      allocate (order(n), new(0:n), stat=info)
+      allocate (order(n), new(0:n + m), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
          return
@@ -182,6 +196,9 @@ contains
       new(0) = 0
       do i = 1, n
          new(order(i) + 1) = int(i, c_int)
+      end do
+      do i = n + 1, n + m
+         new(i) = int(i, c_int)
       end do
       do i = 1, model%nodes
          model%equation(1, i) = new(model%equation(1, i))
@@ -215,9 +232,11 @@ contains
       if (status == status_ok .and. .not. (model%refactor .or. model%slides)) call regions_measure(model%tree, &
          model%holders, model%xy, model%equation, model%factor, status)
       if (status /= status_ok) return
-      allocate (model%value(model%start(n + 1)), model%fa(0:n), model%fb(0:n), model%fo(0:n), model%fh(0:n, 2), &
-         model%ua(0:n), model%ub(0:n), &
-         model%z(n, 2), model%force(0:n), model%part(size(model%tree%part)), model%list(size(model%tree%part)), &
+      call find_beside(model, status)
+      if (status /= status_ok) return
+      allocate (model%value(model%start(n + 1)), model%fa(0:n), model%fb(0:n), model%fo(0:n + m), &
+         model%fh(0:n + m, 2), model%ua(0:n + m), model%ub(0:n + m), &
+         model%z(n, 2), model%force(0:n + m), model%part(size(model%tree%part)), model%list(size(model%tree%part)), &
          model%wanted(size(model%tree%part)), model%watched(size(model%tree%part)), stat=info)
       if (info /= 0) then
          status = status_out_of_memory
@@ -232,6 +251,55 @@ contains
       model%ua = 0.0_wp
       model%ub = 0.0_wp
    end subroutine model_prepare
+
+   !> The elements at moved supports
+   subroutine find_beside(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer :: g, e, count, pass, info
+      status = status_ok
+      do pass = 1, 2
+         count = 0
+         do g = 1, size(model%holders)
+            associate (group => model%holders(g)%group)
+               do e = 1, group%elements
+                  if (.not. any(group%equation(:, e) > model%equations)) cycle
+                  count = count + 1
+                  if (pass == 2) model%beside(:, count) = [g, e]
+               end do
+            end associate
+         end do
+         if (pass == 2) exit
+         allocate (model%beside(2, count), stat=info)
+         if (info /= 0) status = status_out_of_memory
+         if (info /= 0) return
+      end do
+   end subroutine find_beside
+
+   !> Forces of the moved supports, and their work; the displacements beside them are up to date
+   subroutine model_reactions(model)
+      type(element_model), intent(inout) :: model
+      real(wp) :: k(most_entries, most_entries), u(most_entries, 2), force(2)
+      integer :: i, j, n, m
+      n = model%equations
+      m = size(model%moved, 1)
+      model%reaction(:, :) = 0.0_wp
+      do i = 1, size(model%beside, 2)
+         associate (e => model%beside(2, i), group => model%holders(model%beside(1, i))%group)
+            call group%matrix(e, k)
+            call group%gather(e, model%ua, u(:, 1))
+            call group%gather(e, model%ub, u(:, 2))
+            do j = 1, group%freedoms
+               if (group%equation(j, e) <= n) cycle
+               force = matmul(k(j, 1:group%freedoms), u(1:group%freedoms, :)) * group%factor(j, e)
+               model%reaction(group%equation(j, e) - n, :) = model%reaction(group%equation(j, e) - n, :) + force
+            end do
+         end associate
+      end do
+      model%reaction(:, 1) = model%reaction(:, 1) - model%fo(n + 1:n + m)
+      model%reaction(:, :) = model%reaction - model%fh(n + 1:n + m, :)
+      model%support = matmul(transpose(model%reaction), model%moved)
+   end subroutine model_reactions
 
    !> Assemble and factorise; names the node that is free to move
    subroutine model_factor(model, node, direction, ratio, status)
@@ -262,8 +330,9 @@ contains
    subroutine model_solve(model, status)
       type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
-      integer :: n, g
+      integer :: n, g, m
       n = model%equations
+      m = size(model%moved, 1)
       model%fo = 0.0_wp
       model%fh = 0.0_wp
       model%origin_energy = 0.0_wp
@@ -277,6 +346,7 @@ contains
       model%fh(0, :) = 0.0_wp
       model%z(:, 1) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1)
       model%z(:, 2) = model%fb(1:n) + model%fh(1:n, 2)
+      if (m > 0) call push_supports(model)
       if (model%refactor) then
          status = extrados_sparse_plain(model%handle, model%value, 2_c_int, model%z)
       else
@@ -296,15 +366,38 @@ contains
       integer(c_int), intent(out) :: status        !! not_positive_definite: what slides is a mechanism
       status = status_ok
       if (model%slides) call friction_balance(model%friction, model%holders, model%event, place, model%handle, &
-         model%refactor, model%value, model%ua, model%ub, model%fh, status)
+         model%refactor, model%value, model%equations, model%ua, model%ub, model%fh, status)
       call model_settled(model)
    end subroutine model_balance
+
+   !> The forces by which moved supports act on the unknowns, into z; the supports move
+   subroutine push_supports(model)
+      type(element_model), intent(inout) :: model
+      integer :: g, k, n
+      n = model%equations
+      model%ua(:) = 0.0_wp
+      model%ub(:) = 0.0_wp
+      model%ua(n + 1:) = model%moved(:, 1)
+      model%ub(n + 1:) = model%moved(:, 2)
+      do k = 1, 2
+         model%force = 0.0_wp
+         do g = 1, size(model%holders)
+            if (k == 1) call model%holders(g)%group%force(model%ua, model%force)
+            if (k == 2) call model%holders(g)%group%force(model%ub, model%force)
+         end do
+         model%z(:, k) = model%z(:, k) - model%force(1:n)
+      end do
+   end subroutine push_supports
 
    !> All displacements are known: what follows from them, and the tree takes them as its start
    subroutine model_settled(model)
       type(element_model), intent(inout) :: model
-      model%work_now = [dot_product(model%fa, model%ua), dot_product(model%fa, model%ub), &
-         dot_product(model%fb, model%ub)]
+      integer :: n
+      n = model%equations
+      if (size(model%moved, 1) > 0) call model_reactions(model)
+      model%work_now = [dot_product(model%fa, model%ua(0:n)) + model%support(1, 1), &
+         dot_product(model%fa, model%ub(0:n)) + model%support(1, 2), &
+         dot_product(model%fb, model%ub(0:n)) + model%support(2, 2)]
       call regions_settled(model%tree, model%ua, model%ub)
    end subroutine model_settled
 
@@ -315,7 +408,7 @@ contains
       real(wp), allocatable, intent(out) :: ub(:)      !! (0:n) per unit multiplier [m]
       integer(c_int), intent(out) :: status
       integer :: info
-      allocate (ua(0:model%equations), ub(0:model%equations), stat=info)
+      allocate (ua, ub, mold=model%ua, stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       ua(:) = model%ua
@@ -331,14 +424,16 @@ contains
       logical, intent(in) :: carried           !! the stage before ended under these constant loads
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: values(:, :), zero(:)
-      integer :: i, k, info
+      integer :: i, k, q, info
 
       model%fa = 0.0_wp
       model%fb = 0.0_wp
       do i = 1, model%nodes
          do k = 1, 2
-            model%fa(model%equation(k, i)) = model%fa(model%equation(k, i)) + model%factor(k, i) * load_a(k, i)
-            model%fb(model%equation(k, i)) = model%fb(model%equation(k, i)) + model%factor(k, i) * load_b(k, i)
+            q = model%equation(k, i)
+            if (q > model%equations) q = 0      ! a moved support takes it
+            model%fa(q) = model%fa(q) + model%factor(k, i) * load_a(k, i)
+            model%fb(q) = model%fb(q) + model%factor(k, i) * load_b(k, i)
          end do
       end do
       model%fa(0) = 0.0_wp
@@ -351,16 +446,19 @@ contains
       model%lambda_held = 0.0_wp
       model%scale = 1.0_wp
       model%scale_recorded = 1.0_wp
+      model%releasing = .false.
       model%peak = 0.0_wp
       model%event%rank = 0
       model%hot = 0
       model%residual = 0.0_wp
       model%recorded = .false.
       model%carried = carried
-      model%first_compliance = dot_product(model%fb, model%ub)
+      model%first_compliance = model%work_now(3)
+      model%first_constant = model%work_now(1)
+      model%support_was = model%support
 
       model%noise = 0.0_wp
-      allocate (zero(0:model%equations), stat=info)
+      allocate (zero, mold=model%ua, stat=info)
       if (info == 0) zero = 0.0_wp
       do i = 1, size(model%holders)
          if (info /= 0) exit
@@ -384,7 +482,7 @@ contains
          model%cracked, model%first_compliance, model%peak, model%peak_displacement, model%slope, model%residual, &
          real(model%guard, wp), real(model%events, wp), merge(1.0_wp, 0.0_wp, model%recorded), &
          merge(1.0_wp, 0.0_wp, model%carried), model%lambda_recorded, reshape(real(model%hot, wp), [4]), &
-         model%scale, model%scale_recorded, model%lambda_held]
+         model%scale, model%scale_recorded, model%lambda_held, model%first_constant]
    end function model_standing
 
    !> Go on from where an event loop stood, after its loads and its damage were set and the factor made: the
@@ -419,11 +517,13 @@ contains
       model%scale = values(28)
       model%scale_recorded = values(29)
       model%lambda_held = values(30)
+      model%first_constant = values(31)
       model%event%rank = 0
       call model_solve(model, status)
       model%held = held_work(model, model%lambda_recorded)
       call model_recorded(model, model%lambda_recorded, status)
-      model%cross = dot_product(model%fb, model%ua)
+      model%cross = dot_product(model%fb, model%ua(0:model%equations)) + model%support(2, 1)
+      model%support_was = model%support
    end subroutine model_resume
 
    !> Remember a state for the work of what slides until the next
@@ -436,7 +536,7 @@ contains
       model%excess = 0.0_wp
       if (.not. model%slides) return
       if (.not. allocated(model%u_before)) then
-         allocate (model%u_before(0:model%equations), model%f_before(0:model%equations), stat=info)
+         allocate (model%u_before, model%f_before, mold=model%ua, stat=info)
          if (info /= 0) status = status_out_of_memory
          if (info /= 0) return
       end if

@@ -5,8 +5,10 @@ from typing import Any
 api_arch: Any
 api_mechanism: Any
 api_dem: Any
+api_limit: Any
 api_motion: Any
 api_rocking: Any
+api_stack: Any
 api_signal: Any
 api_sla: Any
 api_sla_laws: Any

@@ -155,7 +155,7 @@ def run(
     """Run decks: print the answer, write results, figures and report."""
     from extrados.analyses.context import Context
     from extrados.decks.reader import DeckError, read_deck
-    from extrados.running.run import default_out, run_to
+    from extrados.running.run import run_to
 
     if out is not None and len(decks) > 1:
         err_console.say("--out takes one deck at a time")
@@ -163,7 +163,7 @@ def run(
     worst = 0
     with _errors(as_json):
         checked = [read_deck(path) for path in decks]
-        folders = [default_out(deck) for deck in checked]
+        folders = [deck.default_out for deck in checked]
         twice = next((f for f in folders if folders.count(f) > 1), None)
         if twice is not None:
             raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
@@ -171,7 +171,7 @@ def run(
             progress = _Progress(quiet or as_json)
             context = Context(deck, _threads(threads), progress, resume=resume, scheduler=scheduler)
             try:
-                found = run_to(context, out or default_out(deck), figures=False)
+                found = run_to(context, out or deck.default_out, figures=False)
             finally:
                 progress.stop()
             if as_json:
@@ -306,7 +306,6 @@ def check(
     """Check decks without running them: every complaint at once, and how the stones of a survey fit."""
     from extrados.decks.reader import DeckError, read_deck
     from extrados.running.check import check_building
-    from extrados.running.run import default_out
 
     if out is not None and len(decks) > 1:
         err_console.say("--out takes one deck at a time")
@@ -321,7 +320,7 @@ def check(
         checked = check_building(deck)
         complaints += checked.complaints
         if checked.inspection is not None:
-            folder = out or default_out(deck).with_name(f"{default_out(deck).name}-check")
+            folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
             _tell_survey(checked, folder, asked=out is not None)
     for line in complaints:
         err_console.say(line)
@@ -471,6 +470,27 @@ def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> No
         for figures in write_report(folder)[1].values():
             for name, caption in figures:
                 out_console.say(f"{folder / 'figures' / name}.png: {caption}")
+
+
+@app.command()
+def explore(
+    deck: Annotated[Path | None, typer.Argument(help="the deck to open; default a new arch")] = None,
+    port: Annotated[int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")] = None,
+    browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
+) -> None:
+    """Open the interactive page: drag the stones, see the thrust. It is served to this machine alone."""
+    from extrados.decks.reader import read_deck
+
+    folder, first = Path.cwd().resolve(), None
+    if deck is not None:
+        with _errors():
+            read_deck(deck)
+        place = deck.resolve()
+        folder = folder if place.is_relative_to(folder) else place.parent
+        first = place.relative_to(folder).as_posix()
+    from extrados.explore.supervisor import explore as serve_pages
+
+    raise typer.Exit(serve_pages(folder, first, port, browser, lambda text: out_console.say(text)))
 
 
 @app.command()

@@ -37,6 +37,8 @@ STRUCTURES: dict[str, str] = {
     "mesh": "building.templates.walls:MeshFile",
     "column": "building.templates.masonry:Column",
     "brickwork": "building.templates.brickwork:Brickwork",
+    "frame": "building.templates.frame:Frame",
+    "stack": "building.templates.stack:Stack",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
@@ -73,6 +75,9 @@ ANALYSES: dict[str, AnalysisKind] = {
     "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),
     "failure-domain": _analysis(
         "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"
+    ),
+    "failure-curves": _analysis(
+        "rocking", "FailureCurves", "failure_curves", "curves:draw_failure_curves", "arch/figure-5-4"
     ),
     "assessment": _analysis("rocking", "Assessment", "assessment", "arch:draw_assessment", "arch/readme"),
     "fragility": _analysis(

@@ -1,14 +1,17 @@
 """The arch: rocking under a record against SciPy's RK45 at the same error, a failure-domain map, tilt."""
 
+import itertools
 import math
 import time
 
 import numpy as np
-from timing import seconds
+from timing import processor, seconds
 
-from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time
+from extrados.analyses.rocking.failure_domain import Mapper, failure_curves, settling_time, unit_pulse
 from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.block import BlockModel
 from extrados.building.templates.arch import make_arch
+from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.limit.programme import LimitAnalysis
 from extrados.motions.records import locate, read_record, record_motion
@@ -99,6 +102,37 @@ def scipy_run(model: ArchModel, axis: np.ndarray, values: np.ndarray, rtol: floa
     return top
 
 
+def domains(size: int = 100) -> None:
+    """Failure domains with both curves and the pockets to 1e-4 g; error: the curves against a tolerance of 1e-12 at some durations."""
+    arch = ArchModel(make_arch(10.0, 1.5, 157.5, 7), "thesis")
+    block = BlockModel(make_block(1.0, 4.0))
+    unit = 2.5 / float(block.frequency[0])
+    amplitudes = np.linspace(0.0, 1.5, size + 1)[1:] * GRAVITY
+    cases = {
+        "arch": (arch.body, np.linspace(0.1, 1.0, size), settling_time(arch)),
+        "block": (block.body, np.linspace(0.3, 3.0, size), 40.0 * unit),
+    }
+    for (name, (body, durations, settle)), pulse in itertools.product(cases.items(), ("step", "sine")):
+        for threads in (1, 2):
+            wall, cpu, found = np.inf, np.inf, None
+            for _ in range(3):
+                begin = time.perf_counter(), time.process_time()
+                mapper = Mapper(body, pulse, durations.tolist(), settle, threads)
+                found = failure_curves(mapper, durations, amplitudes, 1e-4 * GRAVITY)
+                wall, cpu = min(wall, time.perf_counter() - begin[0]), min(cpu, time.process_time() - begin[1])
+            print(f"failure domain {size} x {size} with both curves, {pulse} pulses, {name}, {threads} thread(s): {wall:.2f} s ({cpu:.2f} s of processor)")  # fmt: skip
+        some = slice(5, None, size // 8)
+        wrong = 0
+        edges = found.mode_i[some]
+        for side, below in ((1.0, False), (1.0 - 1.1e-4 * GRAVITY / edges, True)):
+            e = rocking.ensemble(
+                [body], [unit_pulse(pulse, float(t)).ground for t in durations[some]], 0 * np.arange(len(edges)), np.arange(len(edges)),
+                np.nan_to_num(edges * side, nan=1.0), durations[some] * 3.0 + settle, tolerance=1e-12,
+            )  # fmt: skip
+            wrong += int(((e.outcome == 2) == below)[np.isfinite(edges)].sum())
+        print(f"  of {np.isfinite(edges).sum()} edges {wrong} half sides have another outcome at a tolerance of 1e-12")
+
+
 def main() -> None:
     """Print the rates."""
     motion = record_motion(read_record(locate("extrados:el-centro-1940", None)))
@@ -118,10 +152,12 @@ def main() -> None:
                 [model.body], [motion.ground], index, index, 1.0, end, tolerance=tol, stop_when_safe=False
             )
 
-        rate = n / seconds(run)
+        rate, used = n / seconds(run), processor(run)
         error = abs(abs(run().peak[0]) / exact - 1)
         ours.append((error, rate))
-        print(f"  extrados, tolerance {tolerance:g}: {rate:9.1f} runs/s  error {error:.1e}")
+        print(
+            f"  extrados, tolerance {tolerance:g}: {rate:9.1f} runs/s ({n / used:.0f} a second of processor)  error {error:.1e}"
+        )
     for rtol in (1e-5, 1e-8, 1e-10):
         begin = time.perf_counter()
         top = scipy_run(model, axis, values, rtol, end)
@@ -133,18 +169,7 @@ def main() -> None:
             f"extrados at no greater error: {no_worse * took:.0f} times faster"
         )
 
-    oppenheim = ArchModel(make_arch(10.0, 1.5, 157.5, 7), "thesis")
-    durations = np.linspace(0.1, 1.0, 40)
-    amplitudes = np.linspace(0.0, 1.5, 41)[1:] * GRAVITY
-
-    def domain(threads: int):
-        mapper = Mapper(oppenheim.body, "step", durations, settling_time(oppenheim), threads)
-        return failure_curves(mapper, durations, amplitudes, 1e-4 * GRAVITY)
-
-    for threads in (1, 2):
-        print(
-            f"failure domain 40 x 40 with both curves to 1e-4 g, {threads} thread(s): {seconds(lambda t=threads: domain(t), 3):.2f} s"
-        )
+    domains()
 
     arch = make_arch(10.0, 1.5, 157.5, 36)
     took = seconds(lambda: LimitAnalysis(make_arch(10.0, 1.5, 157.5, 36)).collapse(), 21)

@@ -59,7 +59,7 @@ contains
          end do
       end do
       factor = 1.0_wp
-      call model_new(xy, equation, factor, options, model, status)
+      call model_new(xy, equation, 0_c_int, factor, options, model, status)
       if (status /= status_ok) error stop 'no element_model'
       call tooth_tables_new(reshape([1.0_wp, 7.0e9_wp, 0.3e6_wp, 47.0_wp, 0.17_wp, 0.2_wp, 1.0_wp, 1.0_wp], [8, 1]), &
          teeth, row, status)

@@ -10,15 +10,20 @@ import random
 import signal
 import sys
 from collections.abc import Callable
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
 from extrados import _core
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.templates.arch import make_arch
 from extrados.core import arch, dem, mechanism, motion, rocking, sla
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
+dem.FIRST_PAUSE = 3  # steps
 LAW = dem.Law(1e8, 1e8, 0.6, damping=1e-3)
 
 
@@ -43,6 +48,23 @@ def wall(xy, held, connect, thickness, young, nu, band, strength, energy, latera
         return *found, before
 
 
+def joints(connect, normal, area, stiffness, shear, friction, cohesion, energy, dry, small, ripple, push, pressure, room, slip,
+           load) -> Any:  # fmt: skip
+    """A joint pressed and sheared; then its most overloaded points, all at once."""
+    xy = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
+    free = sla.Freedoms.make(4, [(n, d) for n in (0, 1) for d in (0, 1)], [[(2, d, 1.0), (3, d, 1.0)] for d in (0, 1)])
+    law = sla.Softening(cohesion, energy, "exponential", 0.1)
+    joint = sla.Joints(
+        connect, normal, area, stiffness, shear, friction, cohesion=law, dry=dry, small=small, ripple=ripple
+    )
+    with sla.Model(xy, free, [joint], sla.Behaviour(floor=1e-9, closure=True)) as model:
+        model.loads(pressure, push)
+        events = model.run(room, [sla.Monitor.of(2, 0)], sla.Stop(displacement=slip))
+        found = events.load, model.report(1.0), model.standing_at(1.0)
+        model.loads(pressure, push)
+        return *found, model.relax(load)
+
+
 def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_time, output_step, step, fraction, settle, domain,
            gravity, shift, rate, mover, travel, begin, lasts, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
     """A block on a support that moves, shaken."""
@@ -58,7 +80,10 @@ def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_t
         MotionSet([Ground(samples=samples, step=dt)]) as motions,
     ):
         run = model.run(motions, number, scale=scale, times=times)
-        return run.reason, run.place, run.energy, run.contacts.force
+        states = []
+        paused = model.run(motions, number, scale=scale, times=times, watch=lambda _: states.append(model.state()))
+        again = model.run(motions, number, scale=scale, times=times, state=states[0]) if states else paused
+        return run.reason, run.place, run.energy, run.contacts.force, again.rate
 
 
 def rockers(mass, inertia, height, toe, restitution, linear, kind, parameters, samples, dt, start, breaks, wave, body, shake, scale,
@@ -83,6 +108,31 @@ def rockers(mass, inertia, height, toe, restitution, linear, kind, parameters, s
     )
     one = rocking.history(made, grounds[1], 1.0, output_step, scale=1.0, start_rotation=0.01, room=room)
     return found.outcome, found.peak, found.stop_time, one.rotation, one.events
+
+
+def chains(mass, centroid, inertia, joined, point, row, driver, sense, side, q, restitution, samples, dt, bodies, inertias, places,
+           sides, ends, frame, before) -> Any:  # fmt: skip
+    """A mechanism on hinges, the structure that rocks by it, and a blow at the joints of its blocks."""
+    linkage = SimpleNamespace(
+        mass=mass, centroid=centroid, inertia=inertia, joined=joined, point=point, row=row, driver=driver, sense=sense, side=side
+    )  # fmt: skip
+    table = mechanism.table(linkage)
+    run = rocking.history(mechanism.table_body(table, table, restitution), Ground(samples=samples, step=dt), 1.0, 0.1)
+    return (
+        run.rotation, mechanism.coefficients(table, q).mass, *mechanism.follow(linkage, q),
+        mechanism.inelastic_blow(bodies, inertias, places, sides, ends, frame, before),
+    )  # fmt: skip
+
+
+def hinges(hinge, joint, mass, centroid, inertia, masses, places, inertias, intrados, extrados, q, v, a, horizontal, vertical,
+           restitution, samples, dt) -> Any:  # fmt: skip
+    """The four hinges of an arch: how far they turn, the deformed shape, the thrust line, and the arch that rocks."""
+    four = arch.FourHinge(hinge, joint, mass, centroid, inertia)
+    stones = SimpleNamespace(mass=masses, centroid=places, inertia=inertias, intrados=intrados, extrados=extrados)
+    line = arch.thrust_line(four, stones, q, v, a, horizontal, vertical)
+    run = rocking.history(rocking.arch_body(four, restitution), Ground(samples=samples, step=dt), 1.0, 0.1)
+    limit = arch.limits(four)
+    return limit.critical, limit.drive, arch.pose(four, places, q), line.normal, line.point, run.rotation
 
 
 def motions(kind, parameters, points, step, intensity, frequency, amplitude, wanted, lines, spacing, scaling, factor, duration, seed,
@@ -115,6 +165,10 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
     rng = np.random.default_rng(3)
     push = np.zeros((4, 2))
     push[2, 0] = 1e3
+    stones = make_arch(10.0, 1.5, 157.5, 7)
+    rocker, table = ArchModel(stones), MechanismModel(stones)
+    four, link = rocker.four_hinge, table.linkages[0]
+    shaken = 3.0 * rng.normal(size=(2, 9))
     return [
         (wall, dict(
             xy=BOX, held=[(0, 0), (0, 1), (1, 0), (1, 1)], connect=np.array([[0, 1, 2, 3]]), thickness=0.2, young=1e9, nu=0.2, band=0.5,
@@ -122,10 +176,27 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             node=np.array([[2, -1]]), direction=np.array([[0, 0]]), stiffness=np.array([1e6]), constant=np.zeros((4, 2)),
             reference=push, room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9, damage=1.0, threads=2,
         )),
+        (joints, dict(
+            connect=np.array([[0, 1, 2, 3]]), normal=np.array([[0.0, 1.0]]), area=np.array([[0.5, 0.5]]), stiffness=8e10, shear=4e10,
+            friction=0.75, cohesion=3e5, energy=120.0, dry=False, small=1.0, ripple=0.1, push=np.array([[0.0, 0.0], [0.0, 0.0],
+            [1.0, 0.0], [0.0, 0.0]]), pressure=np.array([[0.0, 0.0], [0.0, 0.0], [0.0, -1e5], [0.0, 0.0]]), room=30, slip=1e-3, load=5e5,
+        )),
+        (chains, dict(
+            mass=link.mass, centroid=link.centroid, inertia=link.inertia, joined=link.joined, point=link.point, row=link.row,
+            driver=link.driver, sense=link.sense, side=link.side, q=np.array([0.0, 0.02]), restitution=(0.8, 0.8), samples=shaken,
+            dt=0.05, bodies=stones.mass, inertias=stones.inertia, places=stones.centroid, sides=np.column_stack([stones.a, stones.b]),
+            ends=np.stack([stones.p, stones.q], axis=1), frame=np.stack([stones.normal, stones.tangent], axis=1),
+            before=table.fields[0],
+        )),
+        (hinges, dict(
+            hinge=four.hinge, joint=four.joint, mass=four.mass, centroid=four.centroid, inertia=four.inertia, masses=stones.mass,
+            places=stones.centroid, inertias=stones.inertia, intrados=stones.p, extrados=stones.q, q=[0.0, 0.02], v=[0.0, 0.1],
+            a=[0.0, 1.0], horizontal=[1.0, -2.0], vertical=[0.0, 0.5], restitution=0.8, samples=shaken, dt=0.05,
+        )),
         (blocks, dict(
             centroid=np.array([[0.5, 0.5], [0.5, -0.5]]), mass=np.array([2000.0, 0.0]), inertia=np.array([300.0, 0.0]), part=BOX,
             owner=[0, 1], outer=np.ones(4, bool), depth=1.0, joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
-            settle=50, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), shift=None, rate=None, mover=1, travel=0.001, begin=0.0,
+            settle=5000, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), shift=np.zeros((2, 3)), rate=np.full((2, 3), 1e-3), mover=1, travel=0.001, begin=0.0,
             lasts=0.01, times=np.array([0.0, 0.01]), scale=1.0, number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
         )),
         (rockers, dict(

@@ -19,7 +19,7 @@ MAY_IMPORT = {
     "core": {"_core", "schema"},
     "geometry": {"errors", "schema"},
     "errors": set(),
-    "limit": {"geometry", "errors", "schema"},
+    "limit": {"geometry", "errors", "core", "schema"},
     "rockers": {"building", "geometry", "errors", "limit", "core", "schema"},
     "building": {"geometry", "errors", "rockers", "schema"},
     "motions": {"core", "schema"},
@@ -53,6 +53,7 @@ MAY_USE = {
     "sla": {"common"},
     "dem": {"common"},
     "motion": {"common"},
+    "limit": {"common"},
 }
 
 

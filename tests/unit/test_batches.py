@@ -365,6 +365,44 @@ def test_cluster_scheduler_dies(cluster, tmp_path: Path) -> None:
     shutil.rmtree(folder_of(out))
 
 
+def test_a_scheduler_that_says_no_goodbye_costs_no_rows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a busy machine the client is not closed in time; all rows are here by then."""
+    distributed = pytest.importorskip("distributed")
+
+    class Done:
+        status = "finished"
+
+        def __init__(self, value):
+            self.value = value
+
+        def done(self) -> bool:
+            return True
+
+        def result(self):
+            return self.value
+
+    class Slow:
+        status = "running"
+
+        def __init__(self, *words, **keys):
+            pass
+
+        def nthreads(self) -> dict[str, int]:
+            return {"one": 1}
+
+        def submit(self, function, *words, **keys) -> Done:
+            return Done(function(*words))
+
+        def close(self, timeout: float) -> None:
+            raise TimeoutError(f"no answer within {timeout} s")
+
+    monkeypatch.setattr(distributed, "Client", Slow)
+    c = context()
+    c.scheduler = "tcp://127.0.0.1:9"
+    s = sweep(c, "t", Squares(), 100, "squares")
+    assert s.complete and np.array_equal(s["value"], np.arange(100) ** 2)
+
+
 def test_no_scheduler_answers() -> None:
     pytest.importorskip("distributed")
     from extrados.analyses.context import Refused

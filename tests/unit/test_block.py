@@ -206,6 +206,41 @@ def test_ensemble_does_not_depend_on_threads() -> None:
     assert len(set(one.outcome)) > 1
 
 
+@pytest.mark.parametrize("channels", [1, 2])
+@pytest.mark.parametrize("linear", [False, True])
+def test_an_ensemble_has_the_bits_of_runs_one_by_one(channels: int, linear: bool) -> None:
+    """An ensemble glides over whole samples and skips calm ones; a run with its history looks into every step."""
+    m = BlockModel(make_block(0.3, 1.2), linear=linear)
+    rng = np.random.default_rng(8)
+    t = 0.01 * np.arange(400)
+    waves = [
+        np.sin(2 * np.pi * rng.uniform(0.4, 6.0, 8)[:, None] * t + rng.uniform(0, 6.0, 8)[:, None]) for _ in range(30)
+    ]
+    window = np.sin(np.pi * t / t[-1]) ** 2
+    grounds = [Ground(samples=np.stack([w.sum(axis=0) * window, 0.5 * w.cumsum(axis=0)[3] * window])[:channels] * 1.6,
+                      step=0.01) for w in waves]  # fmt: skip
+    each = np.arange(len(grounds))
+    e = rocking.ensemble([m.body], grounds, 0 * each, each, 1.0, 4.6, stop_when_safe=False)
+    assert {1, 2} <= set(e.outcome) and e.impacts.max() > 10
+    for k, ground in enumerate(grounds):
+        r = rocking.history(m.body, ground, 4.6, 0.3)
+        assert (r.peak, r.stop_time, r.steps, r.impacts) == (e.peak[k], e.stop_time[k], e.steps[k], e.impacts[k])
+
+
+def test_an_ensemble_stops_only_past_the_greatest_rotation() -> None:
+    """The ground ends while the block comes back fast from a small swing: the next one is greater, though safe."""
+    m = rectangle(0.5, 2.0)
+    p, uplift = float(m.frequency[0]), G * float(np.tan(m.alpha[0]))
+    grounds = [pulses.pulse("cosine", a * uplift, 2.4 / p).ground for a in np.linspace(1.05, 2.5, 30)]
+    each = np.arange(30)
+    stopped, whole = (
+        rocking.ensemble([m.body], grounds, 0 * each, each, 1.0, 40.0 / p, stop_when_safe=safe)
+        for safe in (True, False)
+    )
+    assert np.array_equal(stopped.outcome, whole.outcome) and (stopped.stop_time < whole.stop_time).any()
+    assert stopped.peak == pytest.approx(whole.peak, rel=1e-12)
+
+
 BLOCK = {"kind": "block", "width": 0.5, "height": 2.0}
 
 

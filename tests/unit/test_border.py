@@ -97,6 +97,11 @@ ABUSES = {
     "freedom of direction -1": ("sla.Freedoms.make(4, [(0, -1)])", "IndexError"),
     "equation too high": ("f = sla.Freedoms.make(4, held); f.equation[3, 1] = 10**6; wall(freedoms=f)", "IndexError"),
     "equation below held": ("f = sla.Freedoms.make(4, held); f.equation[3, 1] = -7; wall(freedoms=f)", "IndexError"),
+    "supports move that are not there": ("loaded().supports([1e-3], [0.0])", "ValueError"),
+    "supports move by nothing known": (
+        "f = sla.Freedoms.make(4, held); f.moved = 1; wall(freedoms=f).supports([np.nan], [0.0])", "ValueError"),
+    "more supports move than there are": ("f = sla.Freedoms.make(4, held); f.moved = 9; wall(freedoms=f)", "CoreError"),
+    "fewer supports than none move": ("f = sla.Freedoms.make(4, held); f.moved = -1; wall(freedoms=f)", "CoreError"),
     "monitor node": ("loaded().run(3, [sla.Monitor.of(4, 0)])", "IndexError"),
     "monitor node negative": ("loaded().run(3, [sla.Monitor.of(-1, 0)])", "IndexError"),
     "monitor direction -1": ("loaded().run(3, [sla.Monitor.of(2, -1)])", "IndexError"),

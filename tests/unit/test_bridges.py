@@ -193,7 +193,7 @@ def test_fill_weighs_what_lies_between_the_stones_and_the_road() -> None:
 def test_passive_pressure_adds_up_to_rankines() -> None:
     """From the depth over the extrados at the crown to that at the springing, on either side."""
     made = bridge(fill={**FILL, "cohesion": 2000.0}, surfacing=ROAD, depth=3.0)
-    push = passive_pressure(made.earth, made.depth)
+    push = passive_pressure(made.earth, made.depth, made.centroid)
     kp = np.tan(np.radians(45.0 + 17.5)) ** 2
     top, bottom = 0.3, 2.9 - made.q[0, 1]
     soil = kp * GRAVITY * (0.5 * 2000.0 * (bottom**2 - top**2) + 2300.0 * 0.1 * (bottom - top))
@@ -205,7 +205,7 @@ def test_passive_pressure_adds_up_to_rankines() -> None:
     level = -push.wrench[:, 2] / push.wrench[:, 0]  # it acts between the ends of each voussoir's extrados
     ends = np.sort(np.column_stack([made.q[push.block, 1], made.q[push.block + 1, 1]]), axis=1)
     assert (level > ends[:, 0]).all() and (level < ends[:, 1]).all()
-    assert passive_pressure(bridge(fill={"cover": 0.3}).earth, 1.0) is None
+    assert passive_pressure(bridge(fill={"cover": 0.3}).earth, 1.0, np.zeros((1, 2))) is None
 
 
 def flat(cover: float, dispersal: str, angle: float) -> Earth:

@@ -112,7 +112,7 @@ def test_interior_point_method_on_a_wall(friction: float) -> None:
     problem = CollapseProblem(system, np.full(len(section.a), friction), 1, dilates=True)
     inner, misfit = problem.state()
     assert misfit < 10.0 * RESIDUAL and inner.gamma == pytest.approx(exact.gamma, abs=5e-9)
-    assert problem.residuals(inner.gamma, inner.corners, inner.u).worst < 1e-6
+    assert problem.residuals(inner.gamma, inner.corners, inner.share, inner.u).worst < 1e-6
     assert inner.n.min() > 0.0
     assert (np.abs(inner.s) <= friction * inner.n.sum(axis=1)).all()
     assert system.matrix @ np.append(inner.corners.ravel(), inner.gamma) == pytest.approx(system.right, abs=1e-9)

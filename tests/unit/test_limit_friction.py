@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.brickwork import Bond, make_brickwork
 from extrados.building.templates.masonry import make_column
+from extrados.decks.reader import make_deck
 from extrados.limit.answer import CannotStand, assess
 from extrados.limit.coulomb import CoulombProblem
 from extrados.limit.equilibrium import spanning_tree
@@ -55,23 +58,23 @@ def test_residuals_see_what_is_wrong() -> None:
     assembly = bond(5, 6)
     problem = CoulombProblem(system_of(assembly), np.full(len(assembly.a), 0.65), 1)
     found = problem.least(2, 0.0)
-    gamma, corners, twist = found.gamma, found.corners, found.twist.ravel()
-    assert problem.residuals(gamma, corners, twist).worst < 1e-12
-    assert problem.residuals(gamma + 1e-3, corners, twist).equilibrium > 1e-5
-    assert problem.residuals(gamma + 1e-3, corners, twist).work > 1e-4
+    gamma, corners, twist, none = found.gamma, found.corners, found.twist.ravel(), np.empty(0)
+    assert problem.residuals(gamma, corners, none, twist).worst < 1e-12
+    assert problem.residuals(gamma + 1e-3, corners, none, twist).equilibrium > 1e-5
+    assert problem.residuals(gamma + 1e-3, corners, none, twist).work > 1e-4
     pulled, sheared = corners.copy(), corners.copy()
     pulled[0, 0] -= 1.0
     sheared[0, 2] += 1.0
-    assert problem.residuals(gamma, pulled, twist).tension > 0.1
-    assert problem.residuals(gamma, sheared, twist).friction > 0.1
-    assert problem.residuals(gamma, corners, -twist).overlap > 0.1
+    assert problem.residuals(gamma, pulled, none, twist).tension > 0.1
+    assert problem.residuals(gamma, sheared, none, twist).friction > 0.1
+    assert problem.residuals(gamma, corners, none, -twist).overlap > 0.1
     dilatant = LimitAnalysis(assembly, 0.65, form="sparse")
     _, mechanism = dilatant.collapse()
     size = assembly.size
     x, y = assembly.centroid.T
     v = mechanism.velocity
     other = np.column_stack([(v[:, 0] + v[:, 2] * y) / size, (v[:, 1] - v[:, 2] * x) / size, v[:, 2]])
-    assert problem.residuals(gamma, corners, other.ravel()).complementarity > 1e-3
+    assert problem.residuals(gamma, corners, none, other.ravel()).complementarity > 1e-3
 
 
 def test_single_chains_show_no_difference() -> None:
@@ -169,3 +172,22 @@ def test_a_load_may_pull_down_what_stands() -> None:
     pushed = Loads(loads.dead + forces_at(2, 1, np.array([0.0, 2.0]), (loads.scale, 0.0)), loads.live)
     assert LimitAnalysis(column, 0.7).certificate() is None
     assert LimitAnalysis(column, 0.7, loads=pushed).certificate() is not None
+
+
+def test_a_stone_held_by_friction_alone_bears_nothing() -> None:
+    """A stone between two piers, with nothing below it: it stands with dilatancy, which wedges it, and slides out without."""
+    names = {"left": (0.0, 0.0, 1.0, 1.0), "right": (1.5, 0.0, 1.0, 1.0), "held": (1.0, 0.5, 0.5, 0.4)}
+    stones = [
+        {"name": name, "points": [[x, y], [x + w, y], [x + w, y + h], [x, y + h]]}
+        for name, (x, y, w, h) in names.items()
+    ]
+    deck = {
+        "structure": {"kind": "blocks", "block": stones}, "joints": {"friction": 0.6},
+        "analysis": [{"kind": "tilt"}, {"kind": "tilt", "friction_rule": "non-associated"}],
+    }  # fmt: skip
+    dilating, sliding = run_analyses(Context(make_deck(deck), threads=1))
+    assert dilating.results.collapse_acceleration_g > 0.1
+    assert sliding.status == "ok" and sliding.results.collapse_acceleration_g == 0.0
+    assert sliding.results.non_dilatant.complementarity_residual < 1e-12
+    assert sliding.results.non_dilatant.work_residual < 1e-9
+    assert any("held hangs between its neighbours by friction alone" in w for w in sliding.warnings)

@@ -67,3 +67,22 @@ def test_wrong_loads_are_told() -> None:
     assert result.status == "refused" and "stands beside the structure" in result.reason
     result = tilt([{"x": 0.0, "y": 9.0, "force": 1e3}])
     assert result.status == "refused" and "acts on no block" in result.reason
+
+
+def test_figures_know_the_loads_and_the_line_through_every_stone() -> None:
+    """Loads at rest in pieces that add up to them; under a moving load every stone that carries something has its line."""
+    load = [{"x": -0.5, "x_end": 0.5, "force": 12e3}, {"x": -0.5, "y": 3.5, "force": 1e3, "horizontal": 2e3}]
+    arrays = tilt(load).arrays
+    force, number = arrays["load_force"].data, arrays["load_number"].data
+    assert [force[number == k].sum(axis=0).tolist() for k in (0, 1)] == [[0.0, -12e3], [2e3, -1e3]]
+    points = [
+        [[0, 0], [0.8, 0], [0.8, 2], [0, 2]], [[2, 0], [2.8, 0], [2.8, 2], [2, 2]], [[0.4, 2], [1.4, 2], [1.5, 2.4], [0.4, 2.4]],
+        [[1.4, 2], [2.4, 2], [2.4, 2.4], [1.5, 2.4]], [[0, 2], [0.4, 2], [0.4, 3.4], [0, 3.4]],
+        [[2.4, 2], [2.8, 2], [2.8, 3.4], [2.4, 3.4]],
+    ]  # fmt: skip
+    stones = [{"name": f"stone {k}", "points": outline} for k, outline in enumerate(points)]
+    found = run_analyses(Context(make_deck({
+        "structure": {"kind": "blocks", "block": stones}, "joints": {"friction": 0.6},
+        "analysis": {"kind": "moving-load", "count": 5},
+    }), threads=1))[0]  # fmt: skip
+    assert set(found.arrays["collapse_line_of"].data) == {f"stone {k}" for k in range(6)}

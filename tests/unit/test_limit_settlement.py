@@ -79,7 +79,58 @@ def test_driver_and_refusals() -> None:
     assert result["work_gap_J"] < 1e-6 * result["work_J"]
     assert "right base" in run({"joint": "nowhere", "dy": -0.1}, vault).reason
     assert "not on the ground" in run({"joint": "joint 3", "dy": -0.1}, vault).reason
-    assert "say which supports give way" in run(None, vault).reason
+    spread = run(None, vault)
+    assert [o.name for o in spread.results.openings] and spread.results.movement_at_fall_m is None
+    column = {"kind": "column", "width": 1.0, "height": 4.0, "drums": 4}
+    assert "stands on one support" in run(None, column).reason
     assert (
         run(None, {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}).status == "ok"
     )
+
+
+def test_the_right_support_of_any_structure_spreads() -> None:
+    """A wall over a door: its right pier moves out; what the stones of the pier do is what [[initial.movements]] asks."""
+    structure = {
+        "kind": "brickwork", "units": 6, "courses": 9, "unit_length": 0.5, "unit_height": 0.25,
+        "openings": [{"x": [1.0, 2.0], "y": [0.0, 1.25]}],
+    }  # fmt: skip
+
+    def run(**tables):
+        deck = make_deck(
+            {"structure": structure, "analysis": {"kind": "supports", **tables.pop("asked", {})}, **tables}
+        )
+        return deck.building.blocks(), run_analyses(Context(deck, threads=1))[0]
+
+    assembly, found = run(asked={"movement": "5 mm"})
+    right = [
+        assembly.joint_names[j]
+        for j in range(len(assembly.a))
+        if GROUND in (assembly.a[j], assembly.b[j]) and assembly.middle[j, 0] > 1.5
+    ]
+    _, same = run(initial={"movements": [{"joint": name, "dx": 0.005} for name in right]})
+    assert found.status == same.status == "ok"
+    assert found.results.work_J == pytest.approx(same.results.work_J)
+    assert found.results.work_gap_J < 1e-6 * abs(found.results.work_J) + 1e-9
+    assert found.arrays["support_movement"].data == pytest.approx(same.arrays["support_movement"].data)
+
+
+def test_stones_wedged_without_sliding_follow_where_they_can() -> None:
+    """A wall without sliding, whose stones may press each other as they like: it settles, tells the least forces, and
+    refuses only what would crush it."""
+    structure = {"kind": "brickwork", "units": 4, "courses": 8, "unit_length": 0.5, "unit_height": 0.25}
+
+    def run(**movement: float):
+        deck = {
+            "structure": structure, "joints": {"friction": "no-sliding"}, "analysis": {"kind": "supports"},
+            "initial": {"movements": [{"joint": "base of unit 4", **movement}]},
+        }  # fmt: skip
+        return run_analyses(Context(make_deck(deck), threads=1))[0]
+
+    apart = run(dx=0.02)
+    assert apart.status == "ok" and apart.results.work_gap_J < 1e-6 * abs(apart.results.work_J) + 1e-9
+    deck = make_deck({"structure": structure, "analysis": {"kind": "supports"}})
+    weight = 9.80665 * deck.building.blocks().mass.sum()
+    assert sum(r.vertical_N for r in apart.results.reactions) == pytest.approx(weight)
+    assert max(abs(r.horizontal_N) for r in apart.results.reactions) < weight
+    together = run(dx=-0.02)
+    assert together.status == "refused" and "would have to be crushed" in together.reason

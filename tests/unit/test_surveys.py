@@ -385,6 +385,55 @@ def test_check_lists_and_draws_what_run_refuses(tmp_path: Path) -> None:
     assert good.exit_code == 0 and "0 places amiss" in good.output and good.output.rstrip().endswith("ok")
 
 
+def test_a_crowd_of_blocks_in_one_place_is_refused_with_the_bound(tmp_path: Path) -> None:
+    """Not looked at pair by pair: half a million of them would take a minute."""
+    box = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    blocks = [{"name": f"b{k}", "points": box} for k in range(1000)]
+    (tmp_path / "b.json").write_text(json.dumps({"blocks": blocks}))
+    with pytest.raises(BadGeometry, match=r"1000 outlines.*more than 100,000 pairs"):
+        Blocks(kind="blocks", file="b.json").assembly(2300.0, tmp_path)
+    (tmp_path / "b.json").write_text(json.dumps({"blocks": blocks[:3]}))
+    with pytest.raises(BadGeometry, match="3 overlaps: 'b0' and 'b1' overlap by 500 mm"):
+        Blocks(kind="blocks", file="b.json").assembly(2300.0, tmp_path)
+
+
+def test_lines_drawn_many_times_are_one() -> None:
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.3, 1.0], [0.1, 1.1]])
+    once = np.column_stack([corners, np.roll(corners, -1, axis=0)])
+    many = np.concatenate([once, once[[1, 1, 2]], *(once[:, [2, 3, 0, 1]] for _ in range(2000))])
+    net = net_of(many, 1e-3, 1e-2)
+    assert len(net.faces) == 1 and not net.loose
+    np.testing.assert_array_equal(net.faces[0], net_of(once, 1e-3, 1e-2).faces[0])
+    assert set(net.source[0].tolist()) == {0, 1, 2, 3}
+    # drawn twice, a line weighs no more where its end meets another's; it is firm where one of the two is
+    bent = once.copy()
+    bent[0, 3] += 4e-4
+    twice = np.concatenate([bent, bent[:1]])
+    np.testing.assert_array_equal(net_of(twice, 1e-3, 1e-2).faces[0], net_of(bent, 1e-3, 1e-2).faces[0])
+    firm = np.array([False, False, False, False, True])
+    assert net_of(twice, 1e-3, 1e-2, firm).faces[0][1] == pytest.approx([1.0, 4e-4], abs=1e-6)
+
+
+def test_check_leaves_the_files_of_others(tmp_path: Path) -> None:
+    """What extrados did not write, or what was changed since, stays; what it wrote is replaced."""
+    out = tmp_path / "mine"
+    out.mkdir()
+    (out / "geometry.png").write_text("my own picture")
+    words = ["check", str(CHURCH), "--out", str(out)]
+    assert CliRunner().invoke(app, words).exit_code == 0
+    assert (out / "geometry.png").read_text() == "my own picture" and (out / "geometry-2.png").exists()
+    with (out / "geometry.csv").open("a") as stream:
+        stream.write("a remark of mine\n")
+    (out / "geometry.png").unlink()
+    found = CliRunner().invoke(app, words)
+    assert found.exit_code == 0 and "geometry-2.csv" in found.output
+    assert (out / "geometry.csv").read_text().endswith("a remark of mine\n")
+    assert sorted(p.name for p in out.glob("geometry*")) == [
+        "geometry-2.csv", "geometry.csv", "geometry.png", "geometry.svg",
+    ]  # fmt: skip
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["mine"]
+
+
 def test_check_makes_buildings_that_are_no_surveys_too(tmp_path: Path) -> None:
     deck = tmp_path / "vault.toml"
     text = '[structure]\nkind = "vault"\npreset = "dejong-a"\n{}[[analysis]]\nkind = "tilt"\n'

@@ -1,4 +1,4 @@
-"""Friction without dilatancy on 200 random walls and sections: 198 states, none above its bound; the least by integers."""
+"""Friction without dilatancy on 200 random walls and sections: 200 answers, none above its bound; the least by integers."""
 
 import itertools
 
@@ -16,13 +16,13 @@ from extrados.building.templates.vault import make_vault
 from extrados.limit.answer import CannotStand, assess
 from extrados.limit.equilibrium import spanning_tree
 from extrados.limit.loads import tilt_loads
-from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer
+from extrados.limit.programme import Immovable, LimitAnalysis
 from extrados.limit.systems import Sparse
 
 pytestmark = pytest.mark.verify
 
-#: of the 200: no state was found from any start
-UNANSWERED = {67, 109}
+#: of the 200: a stone hangs by friction between its neighbours alone, and slides out at any load
+HANGING = {67, 109}
 
 
 def random_wall(draw: np.random.Generator) -> Assembly:
@@ -71,15 +71,16 @@ def test_every_one_is_answered(first: int) -> None:
             assert "proof" in str(error) and limit.certificate() is not None, seed
             assert not LimitAnalysis(assembly, friction).stands(), seed
             continue
-        except NoAnswer as error:
-            # A stone that friction alone holds between its neighbours: its bounds are told in place of a state.
-            assert seed in UNANSWERED and "the load lies between" in str(error), seed
-            continue
         except Immovable:
             assert limit.without_dilatancy_between(1)[1] is None or limit.without_dilatancy_between(-1)[1] is None, seed
             continue
         for direction, state in ((1, answer.collapse_state), (-1, answer.back_state)):
-            assert limit.coulomb[direction].residuals.worst < 1e-7, (seed, limit.coulomb[direction].residuals)
+            found = limit.coulomb[direction]
+            assert found.residuals.worst < 1e-7, (seed, found.residuals)
+            assert (found.falling is not None) is (seed in HANGING), seed
+            print(
+                f"{seed:4d} {direction:+d} {state.gamma:+.5f} spread {np.ptp(found.starts):.5f} residual {found.residuals.worst:.1e}"
+            )
             lower, upper = limit.without_dilatancy_between(direction)
             assert upper is None or direction * state.gamma <= direction * upper + 1e-8, seed
             assert lower is None or direction * state.gamma >= direction * lower - 1e-8, seed
@@ -153,4 +154,5 @@ def test_least_of_all_states(units: int, courses: int, friction: float) -> None:
     """On small walls no state lies below the one found: mixed integers over all alternatives of force and motion."""
     assembly = make_brickwork(Bond(0.4, 0.175, "half", False), 0.4 * units, 0.175 * courses)
     limit = LimitAnalysis(assembly, friction, associated=False)
-    assert limit.collapse()[0].gamma == pytest.approx(least_by_integers(assembly, friction), abs=1e-6)
+    # The integer programme is feasible to 1e-6 in every row, and takes what it can of that.
+    assert limit.collapse()[0].gamma == pytest.approx(least_by_integers(assembly, friction), abs=1e-5)

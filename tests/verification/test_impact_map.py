@@ -1,4 +1,4 @@
-"""Impact rules of the arch beside discrete elements, over thickness and embrace: the table of docs/theory.md.
+"""Impact rules of the arch beside discrete elements, over thickness and embrace: the map of docs/theory.md (`make impact-map`).
 
 An arch of stiff joints (1e12 Pa/m) starts at a tenth of its critical rotation and swings back. `swing` is the root of the
 potential energy at the next standstill over that at the start, `blow` the root of the energy after over that before the
@@ -18,11 +18,11 @@ from extrados.building.templates.arch import make_arch
 pytestmark = pytest.mark.verify
 
 RATIO = 0.1
-ARCHES = [
-    (0.07, 120.0), (0.07, 140.0), (0.07, 157.5), (0.10, 120.0), (0.10, 140.0), (0.10, 157.5), (0.10, 170.0),
-    (0.12, 130.0), (0.12, 150.0), (0.12, 170.0), (0.12, 180.0), (0.15, 140.0), (0.15, 157.5), (0.15, 170.0),
-    (0.15, 180.0), (0.20, 140.0), (0.20, 157.5), (0.20, 175.0), (0.20, 185.0), (0.25, 157.5),
-]  # fmt: skip
+EMBRACES = (120.0, 130.0, 140.0, 150.0, 157.5, 165.0, 170.0, 175.0, 180.0, 185.0)
+#: t/R -> the least and the greatest embrace of arches that stand, and do not lock as they rock
+ROCK = {0.07: (120.0, 157.5), 0.10: (120.0, 175.0), 0.12: (120.0, 185.0), 0.15: (120.0, 185.0), 0.20: (120.0, 185.0),
+        0.25: (150.0, 185.0)}  # fmt: skip
+ARCHES = [(t, e) for t, (least, greatest) in ROCK.items() for e in EMBRACES if least <= e <= greatest]
 
 
 @dataclass(frozen=True)
@@ -76,5 +76,5 @@ def test_the_blow_at_all_joints_is_nearest_to_discrete_elements() -> None:
         error = np.clip([m.rules.by_rule[rule] for m in found], 0.0, 1.0) - blow
         rms[rule] = float(np.sqrt((error**2).mean()))
         print(f"{rule}: bias {error.mean():+.3f}, root mean square {rms[rule]:.3f}, greatest {np.abs(error).max():.3f}")
-    assert rms["inelastic"] < 0.12
+    assert rms["inelastic"] < 0.13
     assert rms["inelastic"] < 0.7 * min(rms["thesis"], rms["energy-safe"])

@@ -8,6 +8,7 @@ A search, whose next question depends on the answers so far, is one sweep for ea
 `Chain` keeps the state of a computation whose steps follow from one another.
 """
 
+import contextlib
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
@@ -250,7 +251,10 @@ def _on_cluster(context: Context, batches: _Batches, job: Job, pace: _Pace) -> S
     except OSError:  # what distributed raises where the connection breaks within a call
         return _lost(batches, address)
     finally:
-        client.close(timeout=1.0)
+        with contextlib.suppress(
+            OSError
+        ):  # a scheduler that is busy or gone says no goodbye in time; the rows are here
+            client.close(timeout=1.0)
 
 
 def _collect(batches: _Batches, job: Job, pace: _Pace, client: Any, address: str) -> Swept:

@@ -40,11 +40,22 @@ def run_analyses(context: Context) -> list[Result]:
     return results
 
 
+def _who(what: str) -> str:
+    """Analyses that reckon with a thing, as words."""
+    able = [kind for kind, parts in kinds.ANALYSES.items() if what in kinds.load(parts.table).bears]
+    return " or ".join([", ".join(able[:3]), *able[3:4]]) if len(able) <= 4 else f"{', '.join(able[:3])} and others"
+
+
 def run_one(context: Context, options: Analysis, building: Building) -> Result:
     """One analysis of a building, without its verdict; what it refuses and what fails is told in its result."""
     begin = time.perf_counter()
     try:
         context.warnings, context.building = [], building
+        for what, there in building.special.items() if options.view or options.uses else ():
+            if there and what not in options.bears:
+                raise Refused(
+                    f"{options.kind} does not reckon with {what}: leave it out of its deck, or ask {_who(what)}"
+                )
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

@@ -22,7 +22,8 @@ class Analysis(Table):
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
-    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed.
+    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
+    Building.special it reckons with; one that looks at a building with more is refused.
     """
 
     kind: str
@@ -31,6 +32,7 @@ class Analysis(Table):
     uses: ClassVar[tuple[str, ...]] = ()
     method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
+    bears: ClassVar[tuple[str, ...]] = ()
     starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = ""
 

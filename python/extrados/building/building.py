@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from extrados.building.devices import AddedHinge, Damper
 from extrados.building.errors import BadGeometry, NoView
+from extrados.building.geometry.anchors import Anchored, stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
 from extrados.building.mesh.mesh import Mesh
@@ -22,6 +24,7 @@ from extrados.building.properties import (
     Supports,
 )
 from extrados.building.structure import Structure
+from extrados.building.ties import Tie
 from extrados.schema.table import Table
 
 if TYPE_CHECKING:
@@ -30,7 +33,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Building:
-    """Geometry, material, joints, supports and the state at the start.
+    """Geometry, material, joints, supports, ties, dampers, added hinges and the state at the start.
 
     The views are made when first asked for and kept, also for buildings made from this one by `having`, as long as
     nothing that they depend on has changed. They raise BadGeometry with the part and the bound where they cannot
@@ -43,6 +46,9 @@ class Building:
     joints: Joints = field(default_factory=Joints)
     supports: Supports = field(default_factory=Supports)
     initial: Initial = field(default_factory=Initial)
+    ties: tuple[Tie, ...] = ()
+    dampers: tuple[Damper, ...] = ()
+    hinges: tuple[AddedHinge, ...] = ()
     folder: Path = field(default_factory=Path.cwd)
     _views: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
 
@@ -50,8 +56,21 @@ class Building:
         """Pickled without its views, which are made again where it arrives."""
         return {**self.__dict__, "_views": {}}
 
+    @property
+    def restraints(self) -> tuple[Tie | Damper | AddedHinge, ...]:
+        """Whatever holds it besides its weight and its joints."""
+        return (*self.ties, *self.dampers, *self.hinges)
+
+    @property
+    def special(self) -> dict[str, bool]:
+        """What only some strategies reckon with, as decks call it -> is there any?"""
+        return {
+            "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
+            "[supports] wall": self.supports.wall is not None,
+        }  # fmt: skip
+
     def having(self, **tables: Any) -> "Building":
-        """The same building with other tables: structure, material, joints, supports, initial."""
+        """The same building with other tables: structure, material, joints, supports, initial, ties, dampers, hinges."""
         return replace(self, **tables)
 
     def apart(self) -> "Building":
@@ -99,7 +118,15 @@ class Building:
         """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations."""
         from extrados.building.rockers.rocker import make_rocker
 
-        tables = (self.structure, self.material, self.joints, self.initial.rotation_ratio, linear)
+        tables = (
+            self.structure,
+            self.material,
+            self.joints,
+            self.supports,
+            self.initial.rotation_ratio,
+            self.restraints,
+            linear,
+        )
         return self._view("rocker", tables, lambda: make_rocker(self, linear))
 
     def refuse_mixture(self) -> None:
@@ -155,6 +182,21 @@ class Building:
                     known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
                     groups = ", ".join([*assembly.groups, "ground"])
                     raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}")
+
+    def anchored(self) -> Anchored:
+        """The stones at the ends of its ties, in their order; BadGeometry where an end is in none, or in several."""
+        assembly = self.blocks()
+        block, point = np.full((len(self.ties), 2), GROUND), np.zeros((len(self.ties), 2, 2))
+        for k, tie in enumerate(self.ties):
+            point[k] = tie.start, tie.far
+            block[k, 0] = stone_at(assembly, point[k, 0], tie.start_stone, f"{tie.name}, start")
+            if tie.ground is None:
+                block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end")
+            if block[k, 0] == block[k, 1]:
+                raise BadGeometry(
+                    f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'"
+                )
+        return Anchored(block, point)
 
     def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that

@@ -14,7 +14,8 @@ from extrados import _core
 from extrados.core.errors import check
 
 check(_core.api_support.init_libraries(), "loading the core")
-# numpy's own BLAS ends the process where its first buffer finds no room: it takes it here, not amid a long run
+# numpy's own BLAS ends the process where a buffer finds no room: its threads and we take theirs here, not amid a long run
+np.ones((512, 16)) @ np.ones((16, 512))
 np.linalg.solve(np.eye(2), np.ones(2))
 
 #: Values an answer of the core may have: 2 GB.

@@ -80,7 +80,8 @@ class SupportMove:
 class Options:
     """How to run. step [s]: 0 takes `fraction` of the critical step. domain: left, right, bottom, top [m].
     collapse: displacement that counts as collapse [m], 0 none. residual_limit: of the energy that went round,
-    above it the run is stopped. settle_steps 0 starts without settling under gravity."""
+    above it the run is stopped. settle_steps 0 starts without settling under gravity; settlement: displacement by
+    which a body falls instead of settling [m], 0 none."""
 
     end_time: float
     output_step: float = 0.01
@@ -88,6 +89,7 @@ class Options:
     fraction: float = 0.3
     settle_steps: int = 400_000
     settle_tolerance: float = 1e-6
+    settlement: float = 0.0
     collapse: float = 0.0
     domain: tuple[float, float, float, float] = (-1e30, 1e30, -1e30, 1e30)
     residual_limit: float = 0.1
@@ -229,10 +231,10 @@ class Model(Owner):
 
     def _put_options(self, settle: bool) -> None:
         o = self.options
-        limits = [o.end_time, o.step, o.fraction, o.settle_tolerance, o.collapse, o.residual_limit]
+        limits = [o.end_time, o.step, o.fraction, o.settle_tolerance, o.collapse, o.residual_limit, o.settlement]
         status = _core.api_dem.settings(
             self.handle, real("gravity", o.gravity, (2,)), float(o.mass_damping), int(o.moving_base),
-            real("limits", limits, (6,)), real("domain", o.domain, (4,)), int(o.settle_steps) if settle else 0,
+            real("limits", limits, (7,)), real("domain", o.domain, (4,)), int(o.settle_steps) if settle else 0,
             int(o.stop_at_rest), thread_count(o.threads),
         )  # fmt: skip
         check(status, "options of the run")

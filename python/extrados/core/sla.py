@@ -38,6 +38,7 @@ __all__ = [
     "LAWS",
     "REPORT",
     "STOPS",
+    "VARIANTS",
     "BadElement",
     "Bars",
     "Bedding",
@@ -67,6 +68,8 @@ MOST_TEETH = 4096
 #: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
 #: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
 START, HELD, HELD_RATE, MARK, MODE = 0, 1, 6, 8, 10
+#: What happens after a tooth and where equilibrium is lost, see Model.run
+VARIANTS = ("load-unload", "proportional", "force-release")
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
 BAND_STEP = 1.02
 
@@ -166,9 +169,10 @@ class Model(Owner):
         equations = int(equation.max(initial=-1)) + 1
         if equations > 2 * self.nodes:
             raise IndexError(f"a freedom belongs to equation {equations} of {2 * self.nodes} freedoms")
+        self.moved = int(freedoms.moved)
         handle, status = _core.api_sla_model.create(
             place,
-            indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1),
+            indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1), self.moved,
             real("factor", np.transpose(freedoms.factor), (2, self.nodes)),
             CRACKING[behaviour.cracking], retention, int(behaviour.closure), int(behaviour.most_changes),
             float(behaviour.floor),
@@ -264,7 +268,7 @@ class Model(Owner):
             )  # fmt: skip
             bad, status = _core.api_sla_model.plane(
                 self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(*tables, (1 + int(group.joint)) * given.astype(np.int32), *ladder),
+                properties, _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32)),
             )  # fmt: skip
             what = "element"
         if not isinstance(group, Bars):
@@ -325,25 +329,48 @@ class Model(Owner):
         )
         check(status, "loads")
 
+    def supports(self, constant: npt.ArrayLike, rate: npt.ArrayLike) -> None:
+        """Displacements (moved) [m] of the supports that move, constant and per multiplier; before the loads."""
+        moved = np.asfortranarray(
+            np.column_stack([real("constant", constant, (self.moved,)), real("rate", rate, (self.moved,))])
+        )
+        check(_core.api_sla.supports(self.handle, moved), "supports that move")
+
+    def reactions(self) -> np.ndarray:
+        """Forces (moved, 2) [N] of the supports that move, under the constant loads and per multiplier."""
+        force, status = _core.api_sla.reactions(self.handle, self.moved)
+        check(status, "forces of supports")
+        return np.array(force)
+
     def run(
-        self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None, *, proportional: bool = False
+        self, room: int, monitors: Sequence[Monitor], stop: Stop | None = None, *, variant: str = VARIANTS[0]
     ) -> Events:
         """Up to `room` events; the last one recorded is chosen but not applied until the next call.
 
-        proportional: where no multiplier suits all points all loads of the last state in equilibrium go down together
-        (intermittent proportional loading); else the constant loads stay and the greatest lower limit decides.
+        variant: "load-unload", where no multiplier suits all points the constant loads stay and the greatest lower limit
+        decides; "proportional", all loads of the last state in equilibrium go down together; "force-release", the forces
+        that a tooth sets free go onto the others at the load reached, before it grows again.
         """
         stop = stop or Stop()
         if room < 1 or not monitors:
             raise ValueError("a run needs room for an event, and a monitor")
-        room_for(14 + len(monitors), room)
+        room_for(15 + len(monitors), room)
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
         direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
-        limits = [min(stop.load, huge), min(stop.displacement, huge), stop.fraction, stop.compliance]
+        limits = [
+            min(stop.load, huge),
+            min(stop.displacement, huge),
+            stop.fraction,
+            stop.compliance,
+            stop.target,
+            stop.side,
+            stop.already,
+        ]
         counts, reals, ints, watched, cracked, status = long_call(
-            _core.api_sla.run, self.handle, int(room), real("stop", limits, (4,)), int(stop.refuse_overload), int(proportional), first,
+            _core.api_sla.run, self.handle, int(room), real("stop", limits, (7,)), int(stop.refuse_overload),
+            VARIANTS.index(variant), first,
             _rows(node, direction), real("share", np.concatenate([m.share for m in monitors]), node.shape),
         )  # fmt: skip
         interrupted = status == status_code("cancelled")
@@ -351,9 +378,9 @@ class Model(Owner):
             check(status, "events")
         count, checks, solutions, factors, reason = (int(k) for k in counts)
         reals, ints = reals[:, :count].copy(), ints[:, :count].copy()
-        load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale = reals
+        load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale, pull = reals
         return Events(
-            load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale,
+            load, limit_t, limit_c, stored, external, dissipated, crack, compliance, residual, scale, pull,
             point=ints[0] - 1, code=ints[1], number=ints[2], equilibrium=ints[3].astype(bool),
             monitors=watched[:, :count].T.copy(), reason=STOPS[reason], guard=(checks, solutions, factors),
             interrupted=interrupted, crack_total=float(cracked),
@@ -431,7 +458,7 @@ class Model(Owner):
         Whoever goes on from the same two gets the same bits, after whatever history. Raises FreeNode.
         """
         self.set_damage(damage)
-        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (30,))), "stored events")
+        check(long_call(_core.api_sla.resume, self.handle, real("standing", standing, (31,))), "stored events")
 
 
 def _softenings(law: Softening | Sequence[Softening | None] | None, count: int) -> list[Softening | None]:

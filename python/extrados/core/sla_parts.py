@@ -56,13 +56,17 @@ class Monitor:
 @dataclass(frozen=True)
 class Stop:
     """When a run ends by itself: `load` carried, `displacement` of the first monitor, `fraction` of the peak
-    load after it, compliance over the first (a mechanism). `refuse_overload`: the first state must carry A."""
+    load after it, compliance over the first (a mechanism). `refuse_overload`: the first state must carry A. `target` of
+    the first monitor, met exactly, from below (`side` 1) or above (-1); `already`: loads like B that are on, over B."""
 
     load: float = np.inf
     displacement: float = np.inf
     fraction: float = -1.0
     compliance: float = 1e6
     refuse_overload: bool = False
+    target: float = 0.0
+    side: int = 0
+    already: float = 0.0
 
 
 #: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane.f90)
@@ -205,10 +209,12 @@ class Behaviour:
 
 @dataclass
 class Freedoms:
-    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it."""
+    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it; the last `moved` equations are
+    those of supports whose displacements are given."""
 
     equation: np.ndarray
     factor: np.ndarray
+    moved: int = 0
 
     @staticmethod
     def make(
@@ -244,8 +250,9 @@ class Events:
     """What was recorded, one row per event; n_* before the damage of that event is done.
 
     load: multiplier; limit_t, limit_c: least upper and greatest lower limit; stored, external, dissipated
-    (path), crack (area of the teeth) energies [J]; compliance fB.uB; residual of the last guard check; scale of all
-    loads, below 1 where they went down together.
+    (path), crack (area of the teeth) energies [J]; compliance fB.uB (where supports move with lambda their stiffness
+    instead); residual of the last guard check; scale of all loads, below 1 where they went down together; pull, the force
+    that moves such supports [N].
     point (0-based), code (see EVENTS), equilibrium; monitors (events, monitors) [m].
     """
 
@@ -259,6 +266,7 @@ class Events:
     compliance: np.ndarray
     residual: np.ndarray
     scale: np.ndarray
+    pull: np.ndarray
     point: np.ndarray
     code: np.ndarray
     number: np.ndarray
@@ -282,14 +290,25 @@ class Events:
         return float(np.abs(gap).max() / scale) if scale > 0.0 else 0.0
 
     @staticmethod
+    def none() -> "Events":
+        """No events, one monitor."""
+        columns = {name: np.zeros(0) for name in Events.__dataclass_fields__ if name not in ONCE}
+        columns |= {name: np.zeros(0, dtype=int) for name in ("point", "code", "number")}
+        return Events(**columns | {"equilibrium": np.zeros(0, dtype=bool), "monitors": np.zeros((0, 1))})
+
+    @staticmethod
     def join(parts: Sequence["Events"]) -> "Events":
         """Batches one behind the other."""
         last = parts[-1]
         columns = {
             name: np.concatenate([getattr(p, name) for p in parts])
             for name in Events.__dataclass_fields__
-            if name not in ("reason", "guard", "interrupted", "crack_total")
+            if name not in ONCE
         }
         return Events(
             **columns, reason=last.reason, guard=last.guard, interrupted=last.interrupted, crack_total=last.crack_total
         )
+
+
+#: What events have once, not each
+ONCE = ("reason", "guard", "interrupted", "crack_total")

@@ -9,6 +9,7 @@ from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.decks.moved import MOVED_KINDS
+from extrados.decks.plural import PLURAL
 from extrados.schema import quantities
 from extrados.schema.table import Table
 
@@ -19,7 +20,7 @@ PLAIN: dict[str, type[Table]] = {"material": Material, "joints": Joints, "suppor
 def sections() -> dict[str, dict[str, type[Table]]]:
     """Section -> kind -> table; a section without kinds has one table, under no name."""
     found = {name: {kind: kinds.table(name, kind) for kind in there} for name, there in kinds.TABLES.items()}
-    return {"structure": found["structure"], **{n: {"": m} for n, m in PLAIN.items()},
+    return {"structure": found["structure"], **{n: {"": m} for n, m in {**PLAIN, **PLURAL}.items()},
             "motion": found["motion"], "analysis": found["analysis"]}  # fmt: skip
 
 
@@ -47,6 +48,7 @@ def json_schema() -> dict[str, Any]:
             "title": {"type": "string"},
             "note": {"type": "string"},
             **one,
+            **{name: {"type": "array", "items": one[name]} for name in PLURAL},
             "materials": {"type": "object", "additionalProperties": one["material"]},
             "analysis": {"anyOf": [one["analysis"], {"type": "array", "items": one["analysis"]}]},
         },
@@ -174,7 +176,7 @@ def explain(word: str) -> str:
             keys = {name: about for name, about in _keys(model.model_json_schema()).items() if name != "kind"}
             if itself:
                 rows = [textwrap.indent(_entry(section, kind, name, about), "  ") for name, about in keys.items()]
-                head = f'[{section}] kind = "{kind}"' if kind else f"[{section}]"
+                head = f'[{section}] kind = "{kind}"' if kind else _header(section)
                 found.append(f"{head}: {_summary(model)}\n" + "\n".join(rows))
             asked = {name for name in keys if word in _called(section, kind, name)}
             found += [
@@ -199,6 +201,11 @@ def _renamed(kind: str) -> None:
     for (_, old), new in MOVED_KINDS.items():
         if kind == old:
             raise KeyError(f"'{old}' is now called '{new}'")
+
+
+def _header(section: str) -> str:
+    """The header of a section in a deck."""
+    return f"[[{section}]]" if section in PLURAL else f"[{section}]"
 
 
 def _summary(model: type[Table]) -> str:
@@ -284,7 +291,7 @@ def manual() -> str:
         "",
     ]
     for section, there in sections().items():
-        lines += [f"## [{section}]", ""]
+        lines += [f"## {_header(section)}", ""]
         for kind, model in there.items():
             lines += [
                 *([f'### kind = "{kind}"', ""] if kind else []),

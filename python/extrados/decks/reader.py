@@ -17,6 +17,7 @@ from extrados.building.building import Building
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.building.structure import Structure
 from extrados.decks.moved import MOVED, MOVED_KINDS
+from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import key_lines, line_of
 from extrados.schema import files
 from extrados.schema.table import Motion, Table
@@ -26,7 +27,7 @@ LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
 #: Tables that say what the building is besides its geometry
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
-TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", "motion", "analysis"}
+TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
 
 
 class DeckError(Exception):
@@ -70,6 +71,11 @@ class Deck:
         """The hash by which results are told from those of another deck."""
         return self.sha256 or hashlib.sha256(repr(self.data).encode()).hexdigest()
 
+    @property
+    def default_out(self) -> Path:
+        """results/<deck name> below the current folder."""
+        return Path("results") / (Path(self.path).stem or "deck")
+
     def resolved(self) -> dict[str, Any]:
         """All keys with their defaults, in SI."""
         own = {name: getattr(self.building, name).model_dump() for name in PROPERTIES}
@@ -78,6 +84,7 @@ class Deck:
             "structure": self.structure.model_dump() if self.structure else None,
             **own,
             "materials": {name: m.model_dump() for name, m in self.building.materials.items()},
+            **{name: [one.model_dump(exclude_none=True) for one in getattr(self.building, name)] for name in PLURAL},
             "motion": self.motion.model_dump() if self.motion else None,
             "analysis": [a.model_dump(exclude_none=True) for a in self.analyses],
         }
@@ -202,10 +209,29 @@ class _Checker:
             if part.material is not None and part.material not in named:
                 known = ", ".join(sorted(named)) or "none"
                 self.complain(("structure",), f"unknown material '{part.material}'; [materials] holds {known}")
+        many: dict[str, Any] = {name: self.named(name, data.get(name, [])) for name in PLURAL}
         return Building(
             structure, materials={n: m for n, m in named.items() if m}, folder=folder,
+            **many,
             **{name: table for name, table in own.items() if table},
         )  # fmt: skip
+
+    def named(self, section: str, tables: Any) -> tuple[Any, ...]:
+        """The ties, dampers or hinges of the deck, each with a name; what is wrong in them is complained of."""
+        if not isinstance(tables, list) or len(tables) > MOST:
+            self.complain((section,), f"expected tables [[{section}]], {MOST} at most")
+            return ()
+        made, names = [], set()
+        for k, table in enumerate(tables):
+            one = self.table(PLURAL[section], table, (section, k))
+            if one is None:
+                continue
+            name = one.name or f"{section[:-1]} {k + 1}"
+            if name in names:
+                self.complain((section, k, "name"), f"two {section} are called '{name}'")
+            names.add(name)
+            made.append(one.model_copy(update={"name": name}))
+        return tuple(made)
 
     def overridden(self, building: Building, data: dict[str, Any], table: dict[str, Any], path: tuple) -> Building:
         """The building as one analysis sees it."""

@@ -8,6 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.limit.equilibrium import hanging_stones
 from extrados.limit.graphic import force_polygon, funicular
 from extrados.limit.lines import ThrustPath, inner_stones, thrust_paths
 from extrados.limit.loads import Loads
@@ -15,7 +16,6 @@ from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnsw
 from extrados.limit.systems import Sparse
 
 Found = TypeVar("Found")
-LEVEL = 1e-6  # of a unit normal: a joint that leans this little bears nothing
 TOUCH = 1e-6  # of a joint's length: the thrust line touches its end
 CENTRAL = 1e-6  # of the joints' length: a line this near to all middles runs through them
 
@@ -191,7 +191,8 @@ def _proof(limit: LimitAnalysis) -> str:
 def why_not(limit: LimitAnalysis) -> str:
     """Why no thrust line is admissible upright: stones with nothing below, or the joints it leaves and by how much."""
     assembly = limit.assembly
-    if hanging := _hanging(assembly):
+    hanging = hanging_stones(assembly)
+    if hanging and not LimitAnalysis(assembly, loads=limit.loads).stands():  # else friction alone would hold them
         names = [assembly.block_names[i] for i in hanging]
         more = f" and {len(names) - 4} more" if len(names) > 4 else ""
         return f"nothing bears {', '.join(names[:4])}{more} from below"
@@ -222,13 +223,6 @@ def why_not(limit: LimitAnalysis) -> str:
         f"no thrust line stays inside it: the joints would have to be {part:.4f} times as long about their middles, "
         f"the line leaves first at {', '.join(worst[:6])}"
     )
-
-
-def _hanging(assembly: Assembly) -> list[int]:
-    """Stones that no joint bears from below: they touch others at upright joints and from above only."""
-    up = assembly.normal[:, 1]
-    borne = np.concatenate([assembly.a[up > LEVEL], assembly.b[up < -LEVEL]])
-    return sorted(set(range(len(assembly.mass))) - set(borne.tolist()))
 
 
 def _slides(limit: LimitAnalysis) -> str:

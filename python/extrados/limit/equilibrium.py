@@ -12,6 +12,8 @@ import numpy as np
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.loads import Loads
 
+LEVEL = 1e-6  # of a unit normal: a joint that leans this little bears nothing
+
 
 class Disconnected(ValueError):
     """A block hangs on no joint that leads to the ground."""
@@ -145,3 +147,10 @@ def joint_forces(assembly: Assembly, loads: Loads, tree: Tree) -> JointForces:
     rows[:, 1] = chi[:, None] * moment_about(p)
     rows[:, 2] = tangent[:, 0, None] * resultant[:, 0] + tangent[:, 1, None] * resultant[:, 1]
     return JointForces(rows, weight, size, tree)
+
+
+def hanging_stones(assembly: Assembly) -> list[int]:
+    """Stones that no joint bears from below: they touch others at upright joints and from above only."""
+    up = assembly.normal[:, 1]
+    borne = np.concatenate([assembly.a[up > LEVEL], assembly.b[up < -LEVEL]])
+    return sorted(set(range(len(assembly.mass))) - set(borne.tolist()))

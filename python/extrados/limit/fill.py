@@ -1,34 +1,18 @@
 """What earth over stones does: it pushes back where they move into it, and spreads loads on its surface."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from extrados.building.geometry.earth import BESIDE, Earth
+from extrados.limit.resistance import Resistance
 from extrados.schema.constants import GRAVITY
 
 
-@dataclass(frozen=True)
-class Resistance:
-    """Pushes on blocks that answer to movement, each anything from nothing up to its whole and never a pull: `wrench`
-    (k, 3), force x, force y [N] and moment about the origin [N m] on block[k]. The programmes choose how much.
-    """
-
-    block: np.ndarray
-    wrench: np.ndarray
-
-    def spread(self, blocks: int) -> np.ndarray:
-        """The whole pushes (blocks, 3, k), one a column."""
-        out = np.zeros((blocks, 3, len(self.block)))
-        out[self.block, :, np.arange(len(self.block))] = self.wrench
-        return out
-
-
-def passive_pressure(earth: Earth, depth: float) -> Resistance | None:
+def passive_pressure(earth: Earth, depth: float, centroid: np.ndarray) -> Resistance | None:
     """Horizontal passive pressure on the sloping tops of stones, those of one block that face one way together.
 
     At a depth z below the formation it is m (K_p sigma_v + 2 c sqrt(K_p)), sigma_v the weight of fill and surfacing
-    above, m the share that counts (Rankine; Gilbert and Melbourne 1994). What faces left is pushed to the right.
+    above, m the share that counts (Rankine; Gilbert and Melbourne 1994). What faces left is pushed to the right. Each is
+    anything from nothing up to its whole; drawn where it meets the upright through the centroid (blocks, 2) [m] of its block.
     """
     if earth.passive <= 0.0:
         return None
@@ -50,7 +34,11 @@ def passive_pressure(earth: Earth, depth: float) -> Resistance | None:
     index = index.ravel()
     push = np.bincount(index, force, len(side)) * side[:, 1]
     moment = -np.bincount(index, force * arm, len(side)) * side[:, 1]
-    return Resistance(side[:, 0].astype(int), np.column_stack([push, np.zeros(len(side)), moment]))
+    block, count = side[:, 0].astype(int), len(side)
+    return Resistance(
+        np.arange(count), block, np.column_stack([push, np.zeros(count), moment]),
+        np.column_stack([centroid[block, 0], -moment / push]), np.zeros(count), np.ones(count),
+    )  # fmt: skip
 
 
 def under_load(earth: Earth, count: int, x: float, force: float, length: float) -> np.ndarray:

@@ -8,6 +8,8 @@ from extrados.limit.loads import Loads
 from extrados.limit.states import State
 from extrados.schema.constants import GRAVITY
 
+ROUNDING = 1e-12  # of the greatest compression
+
 
 def force_polygon(assembly: Assembly, state: State, joints: list[int]) -> np.ndarray:
     """Rays (k, 2) [N] from the pole: the force that the part left of each joint of a chain puts on the right.
@@ -19,7 +21,8 @@ def force_polygon(assembly: Assembly, state: State, joints: list[int]) -> np.nda
 
 def thrust_of(assembly: Assembly, state: State, joints: list[int]) -> float:
     """Horizontal thrust of a chain across the first of its joints [N]; negative where it would pull."""
-    return float(force_polygon(assembly, state, joints)[0, 0])
+    thrust = float(force_polygon(assembly, state, joints)[0, 0])
+    return thrust if abs(thrust) > ROUNDING * state.normal.max() else 0.0
 
 
 def senses(assembly: Assembly, joints: list[int]) -> np.ndarray:
@@ -90,6 +93,10 @@ def section_forces(
     wrench = np.column_stack([force, x * force[:, 1] - y * force[:, 0]])
     above = (assembly.middle[joints, 1] >= levels[:, None]).astype(float)
     total = loads.dead[block] + state.gamma * loads.live[block] + above @ wrench
+    if (answers := loads.resistance) is not None:
+        on = answers.block == block
+        force = state.mobilised[answers.number[on], None] * answers.wrench[on]
+        total = total + (answers.point[on, 1] >= levels[:, None]).astype(float) @ force
     outline = assembly.outlines[block]
     under = below(outline, levels) * (assembly.mass[block] * GRAVITY / abs(signed_area(outline)))
     side = sway * state.gamma

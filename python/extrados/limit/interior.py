@@ -25,16 +25,21 @@ CORRECTIONS = 3  # of the centring, each a solve with the factor of the step
 FAR, FURTHER, GAINED = 0.95, 0.3, 0.03  # steps that need none; how much longer they should be, and at least become
 LEAST_FRICTION = 1e-6  # what joints without friction have
 FLAT = 1e-9  # of the strength: so near to half of it the bounds of both ends are one
+LEAST_STIFF = 1e-10  # of what never yields either way
+SIDES = np.array([[1.0], [-1.0]])  # of the least and the greatest share
 SLIGHT = 0.25  # of the strength: joints pressed by less are taken as uncrushed by the formulas of small forces
+
+
+Products = tuple[np.ndarray | float, np.ndarray | float, np.ndarray | float]
 
 
 @dataclass(frozen=True)
 class Residuals:
     """How far a state is from the laws; forces over the total load, motions over the fastest joint.
 
-    equilibrium; friction, |s| - mu N; tension (or crushing); overlap; complementarity: opening where a joint is
-    pressed, or sliding where friction holds, each as the lesser of force and motion; work: of the load against
-    what weight and friction take, over the former.
+    equilibrium; friction, |s| - mu N; tension (or crushing), or a tie beyond its yield force; overlap; complementarity:
+    opening where a joint is pressed, sliding where friction holds, a tie that grows longer below its yield force, each
+    as the lesser of force and motion; work: of the load against what weight, friction and ties take, over the former.
     """
 
     equilibrium: float
@@ -56,7 +61,8 @@ class Point:
     """Iterate of the interior-point method, or a step of it.
 
     n (joints, 2) and s: forces; v, w (joints, 2): how far the ends are from tension (or crushing) and the shear from
-    +-mu N; o, slip (joints, 2): the motions that go with v and w; u: twists; gamma.
+    +-mu N; o, slip (joints, 2): the motions that go with v and w; u: twists; gamma. share (k) of the forces that answer
+    to movement, room (2, k) how far it is above its least and below its greatest, hold (2, k) the work that goes with it.
     """
 
     n: np.ndarray
@@ -67,16 +73,24 @@ class Point:
     slip: np.ndarray
     u: np.ndarray
     gamma: float
+    share: np.ndarray
+    room: np.ndarray
+    hold: np.ndarray
 
     def moved(self, step: "Point", force: float, motion: float) -> "Point":
         return Point(
             self.n + force * step.n, self.s + force * step.s, self.v + force * step.v, self.w + force * step.w,
             self.o + motion * step.o, self.slip + motion * step.slip, self.u + motion * step.u,
-            self.gamma + force * step.gamma,
+            self.gamma + force * step.gamma, self.share + force * step.share, self.room + force * step.room,
+            self.hold + motion * step.hold,
         )  # fmt: skip
 
     @property
     def gap(self) -> float:
+        return self.gap_of_joints + float((self.room * self.hold).sum())
+
+    @property
+    def gap_of_joints(self) -> float:
         return float((self.v * self.o).sum() + (self.slip * self.w).sum())
 
     @property
@@ -102,6 +116,12 @@ class CollapseProblem:
         self.live = sense * system.matrix[:, [-1]].toarray().ravel()
         self.normal = NormalMatrix(system)
         self.joints = len(friction)
+        answers = system.loads.resistance
+        self.answers = sparse.csr_array(system.matrix[:, system.shares])
+        self.answers_t = sparse.csr_array(self.answers.T)
+        self.bounds = np.zeros((2, 0)) if answers is None else np.stack([answers.low, answers.high])
+        self.bounded = np.isfinite(self.bounds)
+        self.pairs = 4 * self.joints + int(self.bounded.sum())
 
     def state(self, scatter: np.random.Generator | None = None) -> tuple[Point, float]:
         """The best iterate from a start that `scatter` chooses, and how far it is from a state: done below RESIDUAL."""
@@ -115,7 +135,8 @@ class CollapseProblem:
                 misfit = max(
                     point.gap / max(1.0, abs(point.gamma)) * RESIDUAL / GAP,
                     100.0 * max(float(np.abs(r).max()) for r in (rest.u, rest.v, rest.w)),
-                    max(float(np.abs(r).max()) for r in (rest.o, rest.s)) / max(1.0, float(np.abs(point.u).max())),
+                    max(float(np.abs(r).max(initial=0.0)) for r in (rest.o, rest.s, rest.share))
+                    / max(1.0, float(np.abs(point.u).max())),
                 )
                 if not np.isfinite(misfit):
                     break
@@ -141,7 +162,15 @@ class CollapseProblem:
         normal = n.sum(axis=1)
         v = np.maximum(n - (self.crush * normal**2)[:, None], 0.1 * n)
         w = np.repeat((friction * normal)[:, None], 2, axis=1)
-        return Point(n, np.zeros(m), v, w, o, slip, np.zeros(self.system.equations), 0.0)
+        # In the middle of its bounds, or one whole away from the only one.
+        low, high = np.where(
+            self.bounded, self.bounds, np.where(self.bounded[::-1], self.bounds[::-1], 0.0) + 2.0 * -SIDES
+        )
+        share = 0.5 * (low + high)
+        room = np.where(self.bounded, SIDES * (share - self.bounds), 1.0)
+        return Point(
+            n, np.zeros(m), v, w, o, slip, np.zeros(self.system.equations), 0.0, share, room, self.bounded.astype(float)
+        )
 
     def _rest(self, x: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point:
         """What is left of the equations, each under the name of the unknown it would fix."""
@@ -149,13 +178,16 @@ class CollapseProblem:
         bend = 2.0 * self.crush * normal
         return Point(
             n=np.empty(0),
-            u=self.system.right - self.corner @ x.corners.ravel() - self.live * x.gamma,
+            u=self.system.right - self.corner @ x.corners.ravel() - self.answers @ x.share - self.live * x.gamma,
             v=x.n - (self.crush * normal**2)[:, None] - x.v,
             w=np.column_stack([friction * normal - x.s, friction * normal + x.s]) - x.w,
             o=x.o + (dilatancy * x.slip.sum(axis=1) - bend * x.o.sum(axis=1))[:, None] - motion[:, :2],
             s=x.slip[:, 1] - x.slip[:, 0] - motion[:, 2],
             slip=np.empty(0),
             gamma=1.0 - float(self.live @ x.u),
+            share=self.answers_t @ x.u - (SIDES * x.hold).sum(axis=0),
+            room=np.empty(0),
+            hold=np.empty(0),
         )
 
     def _stepped(self, x: Point, rest: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point:
@@ -182,17 +214,21 @@ class CollapseProblem:
         spring[:, 2, :2] = (friction * lean)[:, None] * total
         spring[:, :2, 2] = (dilatancy * lean)[:, None] * total
         spring[:, 2, 2] = 1.0 / both + friction * dilatancy * lean**2 * (t_p + t_q) / det
-        solver = self.normal.factor(spring, symmetric=self.dilates)
+        yields = 1.0 / np.maximum((x.hold / x.room).sum(axis=0), LEAST_STIFF)
+        solver = self.normal.factor(spring, yields, symmetric=self.dilates)
         along = solver.solve(self.live)
 
-        def newton(aim: float, second_v: np.ndarray | float, second_w: np.ndarray | float) -> Point:
+        def newton(aim: float, second: Products) -> Point:
             """Step towards complementarity `aim`, with the products of the predictor taken off."""
-            want_v, want_w = aim - x.v * x.o - second_v, aim - x.w * x.slip - second_w
+            want_v, want_w = aim - x.v * x.o - second[0], aim - x.w * x.slip - second[1]
+            want = np.where(self.bounded, aim - x.room * x.hold - second[2], 0.0)
+            held = (SIDES * want / x.room).sum(axis=0) - rest.share
             opens, slips = (want_v - x.o * rest.v) / x.v, (want_w - x.slip * rest.w) / x.w
             free = np.empty((self.joints, 3))
             free[:, :2] = rest.o + opens + (dilatancy * slips.sum(axis=1) - bend * opens.sum(axis=1))[:, None]
             free[:, 2] = rest.s + slips[:, 1] - slips[:, 0]
-            part = solver.solve(self.corner @ np.matmul(spring, free[..., None]).ravel() - rest.u)
+            pushed = self.corner @ np.matmul(spring, free[..., None]).ravel() + self.answers @ (yields * held)
+            part = solver.solve(pushed - rest.u)
             dgamma = (rest.gamma - float(self.live @ part)) / float(self.live @ along)
             du = part + along * dgamma
             moved = self.motion(du)
@@ -213,30 +249,30 @@ class CollapseProblem:
             do = np.where(opening, self._unbent(known, bend), do)
             dv = np.where(opening, (want_v - x.v * do) / x.o, dv)
             dn = np.where((bend < SLIGHT)[:, None], self._unbent(dv - rest.v, bend), dn)
-            return Point(dn, more * lean + shear, dv, dw, do, dslip, du, dgamma)
+            dshare = yields * (held - self.answers_t @ du)
+            dhold = np.where(self.bounded, (want - x.hold * SIDES * dshare) / x.room, 0.0)
+            droom = np.where(self.bounded, SIDES * dshare, 0.0)
+            return Point(dn, more * lean + shear, dv, dw, do, dslip, du, dgamma, dshare, droom, dhold)
 
-        mean = x.gap / (4 * self.joints)
-        guess = newton(0.0, 0.0, 0.0)
+        mean = x.gap / self.pairs
+        guess = newton(0.0, (0.0, 0.0, 0.0))
         reached = x.moved(guess, *_reaches(x, guess))
         # Not far below what ends the iteration: the forces must not vanish before the equations are met.
-        aim = max(min(1.0, max(reached.gap, 0.0) / x.gap) ** 3 * mean, FLOOR * GAP / (4 * self.joints))
-        second_v, second_w = guess.v * guess.o, guess.w * guess.slip
-        step = newton(aim, second_v, second_w)
+        aim = max(min(1.0, max(reached.gap, 0.0) / x.gap) ** 3 * mean, FLOOR * GAP / self.pairs)
+        second = _products(guess)
+        step = newton(aim, second)
         reach = _reaches(x, step)
         for _ in range(CORRECTIONS):
             if min(reach) >= FAR:
                 break
             # Gondzio (1996): products that a longer step would carry far from the aim are led back to it.
             tried = x.moved(step, *(min(1.0, r + FURTHER) for r in reach))
-            more_v, more_w = (
-                second_v - _led_back(tried.v * tried.o, aim),
-                second_w - _led_back(tried.w * tried.slip, aim),
-            )
-            other = newton(aim, more_v, more_w)
+            corrected = [s - _led_back(product, aim) for s, product in zip(second, _products(tried), strict=True)]
+            other = newton(aim, (corrected[0], corrected[1], corrected[2]))
             longer = _reaches(x, other)
             if sum(longer) < sum(reach) + GAINED:
                 break
-            step, reach, second_v, second_w = other, longer, more_v, more_w
+            step, reach, second = other, longer, (corrected[0], corrected[1], corrected[2])
         force, motion = (1.0 if r >= 1.0 else TOWARDS_EDGE * r for r in reach)
         if not self.dilates:  # forces and motions bear on each other: they go together
             force = motion = min(force, motion)
@@ -251,10 +287,14 @@ class CollapseProblem:
         """Motion (joints, 3) of block a against b: opening at p, at q, slip."""
         return (self.corner_t @ twist).reshape(-1, 3)
 
-    def residuals(self, gamma: float, corners: np.ndarray, twist: np.ndarray) -> Residuals:
+    def residuals(self, gamma: float, corners: np.ndarray, share: np.ndarray, twist: np.ndarray) -> Residuals:
         """Of a state whose load is sense * gamma."""
         motion = self.motion(twist)
-        motion = motion / max(float(np.abs(motion).max()), 1e-300)
+        fastest = max(float(np.abs(motion).max()), 1e-300)
+        motion, moved = motion / fastest, self.answers_t @ twist / fastest
+        # A force that answers is whole where the motion works against it, and at its least where it works with it.
+        beyond = SIDES * (self.bounds - share)
+        inner = np.where(SIDES * moved > 0.0, np.minimum(-beyond, np.abs(moved)), 0.0)
         normal, shear = corners[:, :2].sum(axis=1), corners[:, 2]
         room, opening = corners[:, :2] - (self.crush * normal**2)[:, None], motion[:, :2]
         slip = motion[:, 2]
@@ -265,13 +305,16 @@ class CollapseProblem:
         limit = self.friction * normal
         held = np.minimum(limit + np.sign(slip) * shear, np.abs(slip))
         forced, dead = float(gamma * (self.live @ twist)), float(self.system.right @ twist)
-        taken = dead - float((corners * self.motion(twist)).sum())
+        taken = dead - float((corners * self.motion(twist)).sum()) - fastest * float(share @ moved)
+        left = self.corner @ corners.ravel() + self.answers @ share + gamma * self.live - self.system.right
         return Residuals(
-            equilibrium=float(np.abs(self.corner @ corners.ravel() + gamma * self.live - self.system.right).max()),
+            equilibrium=float(np.abs(left).max()),
             friction=max(0.0, float((np.abs(shear) - limit).max())),
-            tension=max(0.0, float(-room.min())),
+            tension=max(0.0, float(-room.min()), float(beyond.max(initial=0.0))),
             overlap=max(0.0, float(-opening.min())),
-            complementarity=max(0.0, float(held.max()), float(np.minimum(room, np.abs(opening)).max())),
+            complementarity=max(
+                0.0, float(held.max()), float(np.minimum(room, np.abs(opening)).max()), float(inner.max(initial=0.0))
+            ),
             work=abs(forced - taken) / max(abs(forced), abs(dead), 1e-300),
         )
 
@@ -286,8 +329,13 @@ class CollapseProblem:
 
 def _reaches(x: Point, step: Point) -> tuple[float, float]:
     """How much of a step keeps the forces, and the motions, from going below zero; at most one."""
-    force = min(1.0, _reach(x.v, step.v), _reach(x.w, step.w))
-    return force, min(1.0, _reach(x.o, step.o), _reach(x.slip, step.slip))
+    force = min(1.0, _reach(x.v, step.v), _reach(x.w, step.w), _reach(x.room, step.room))
+    return force, min(1.0, _reach(x.o, step.o), _reach(x.slip, step.slip), _reach(x.hold, step.hold))
+
+
+def _products(x: Point) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What complementarity makes small: force times motion."""
+    return x.v * x.o, x.w * x.slip, x.room * x.hold
 
 
 def _reach(value: np.ndarray, change: np.ndarray) -> float:

@@ -72,6 +72,9 @@ def _through(
     bearing = (into * assembly.normal[joints])[:, 1] > BEARS
     base = [j for j, bears in zip(joints, bearing.tolist(), strict=True) if bears]
     above = [j for j in joints if j not in base]
+    tied = loads.resistance is not None and bool((loads.resistance.block == block).any())
+    if tied and len(base) == 1 and not above:  # the line of what pulls at it and of the weight above each section
+        return _down(assembly, loads, state, block, base[0], above, points, force, sway)
     if not above or len(joints) == 1:  # nothing presses on it: its load comes from where the stone is
         return [(np.array([assembly.centroid[block], points[j]]), float(force[j])) for j in joints]
     if len(base) == 1 and above:
@@ -93,8 +96,9 @@ def _down(
     """The line down a tall stone on level sections, and the lines that meet it from its other joints; nothing where
     no section is pressed."""
     order = sorted(above, key=lambda j: -float(points[j, 1]))
-    start, foot = points[order[0]], points[base]
-    levels = np.linspace(start[1], foot[1], SECTIONS + 1)[1:-1]
+    foot = points[base]
+    top = points[order[0]] if order else np.array([np.nan, assembly.outlines[block][:, 1].max()])
+    levels = np.linspace(top[1], foot[1], SECTIONS + 1)[1:-1]
     carried, x = section_forces(assembly, block, levels, state, loads, sway)
     outline = assembly.outlines[block]
     shown = [
@@ -105,7 +109,7 @@ def _down(
         return []
     line = np.column_stack([x, levels])[shown]
     greatest = float(np.hypot(*carried[shown].T).max())
-    found = [(np.concatenate([[start], line, [foot]]), greatest)]
+    found = [(np.vstack([top, line, foot] if order else [line, foot]), greatest)]
     for j in order[1:]:
         # The first section below all of the joint: there its force has been added.
         low = min(assembly.p[j, 1], assembly.q[j, 1], assembly.middle[j, 1])

@@ -6,14 +6,15 @@ from functools import cached_property
 import numpy as np
 
 from extrados.building.geometry.assembly import Assembly
-from extrados.limit.fill import Resistance, passive_pressure
+from extrados.limit.fill import passive_pressure
+from extrados.limit.resistance import Resistance
 from extrados.schema.constants import GRAVITY
 
 
 @dataclass(frozen=True)
 class Loads:
-    """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block; what else pushes
-    where blocks move towards it."""
+    """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block; what else
+    answers where blocks move, ties behind pressures."""
 
     dead: np.ndarray
     live: np.ndarray
@@ -26,8 +27,8 @@ class Loads:
 
     @property
     def pushes(self) -> int:
-        """How many pushes answer to movement."""
-        return 0 if self.resistance is None else len(self.resistance.block)
+        """How many forces answer to movement."""
+        return 0 if self.resistance is None else self.resistance.count
 
 
 def forces_at(count: int, block: int, point: np.ndarray, force: tuple[float, float]) -> np.ndarray:
@@ -54,4 +55,5 @@ def tilt_loads(assembly: Assembly, fill_sways: bool = True) -> Loads:
         dead = dead + np.column_stack([nothing, -weight, -x * weight])
         if fill_sways:
             live = live + np.column_stack([weight, nothing, -y * weight])
-    return Loads(dead, live, None if assembly.earth is None else passive_pressure(assembly.earth, assembly.depth))
+    earth, depth = assembly.earth, assembly.depth
+    return Loads(dead, live, None if earth is None else passive_pressure(earth, depth, assembly.centroid))

@@ -8,13 +8,14 @@ from scipy import sparse
 
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.coulomb import CoulombProblem, CoulombState
-from extrados.limit.equilibrium import spanning_tree
+from extrados.limit.equilibrium import hanging_stones, spanning_tree
 from extrados.limit.graphic import senses
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.solver import (
     BOUND,
     INFINITY,
+    MADE_UP,
     Immovable,
     NoAnswer,
     NoEquilibrium,
@@ -40,14 +41,13 @@ INNER_REST = 1e-5
 
 # Of the total load: joints pressed by less carry nothing but rounding.
 CARRIES = 1e-7
-# Trials of which pushes act where friction does not dilate
-PUSHED = 20
 # Of a step's gain to that of the step before: more is creeping.
 CREEPS = 0.25
-# Of the load: what bounds of the unknowns may have of it by rounding.
-MADE_UP = 1e-6
 # Of the joints' length: where the search for the most central line may end.
 SETTLED = 1e-9
+
+# Of the joints' length: room for a line through a place that rounding has found
+HAIR = 1e-9
 
 # Of the joints' length: to which the most central line of a wall is found.
 LEAST_PART = 1e-3
@@ -61,7 +61,9 @@ def _mixed(one: State, two: State, gamma: float, part: float) -> State | None:
     normal = share * one.normal + (1.0 - share) * two.normal
     lean = share * one.normal * (one.position - 0.5) + (1.0 - share) * two.normal * (two.position - 0.5)
     position = 0.5 + part * lean / np.maximum(normal, 1e-300)
-    return State(gamma, normal, share * one.shear + (1.0 - share) * two.shear, position)
+    shear = share * one.shear + (1.0 - share) * two.shear
+    mobilised = share * one.mobilised + (1.0 - share) * two.mobilised
+    return State(gamma, normal, shear, position, mobilised)
 
 
 def _eccentric(lean: np.ndarray, normal: np.ndarray) -> float:
@@ -185,7 +187,7 @@ class LimitAnalysis:
         """
         if not self.associated:
             return self._coulomb(direction)
-        inner = self._cone is not None and not self.loads.pushes
+        inner = self._cone is not None
         wall = isinstance(self.system, Sparse) and inner
         if wall and (found := self._interior(direction)):
             return found
@@ -200,10 +202,7 @@ class LimitAnalysis:
     def _by_programme(self, direction: int) -> tuple[State, Mechanism]:
         """Collapse by linear programmes."""
         solution, rows, corners = self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))
-        # Forces at the bound may hold each other, as in stones wedged without sliding; what the bound has of the load it made up.
-        bounded = np.abs(solution.x) > 0.99 * BOUND
-        made_up = float(np.abs(solution.columns * solution.x)[bounded].sum())
-        if bounded[-1] or made_up > MADE_UP * max(1.0, abs(solution.value)):
+        if abs(solution.x[-1]) > 0.99 * BOUND or solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
             raise Immovable("no such load brings it down: the joints hold it from all sides")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(self.assembly.a))
         if isinstance(self.system, Reduced):
@@ -230,17 +229,15 @@ class LimitAnalysis:
             return None
         motion = problem.motion(point.u)
         # No forces the joints bear take more work than these and what is left of the gap (weak duality).
-        taken = point.gap - float((point.corners * motion).sum())
-        return self._read(direction * point.gamma, point.corners, point.u.reshape(-1, 3), motion, taken)
+        taken = point.gap_of_joints - float((point.corners * motion).sum())
+        return self._read(direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken)
 
     def _coulomb(self, direction: int) -> tuple[State, Mechanism]:
         """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""
         if self.strength is None and self.certificate() is not None:
             raise NoEquilibrium("no admissible thrust line")
-        if self.loads.pushes:
-            return self._coulomb_pushed(direction)
         problem = CoulombProblem(self._equations, self._mu, direction, self._crush)
-        found = problem.least(self.starts, 0.0)
+        found = problem.least(self.starts, 0.0) or self._neutral(problem)
         if found is None:
             self._refuse_immovable(direction)
             lower, upper = (
@@ -252,35 +249,15 @@ class LimitAnalysis:
             )
         self.coulomb[direction] = found
         taken = -float((found.corners * found.motion).sum())
-        return self._read(found.gamma, found.corners, found.twist, found.motion, taken)
+        return self._read(found.gamma, found.corners, found.share, found.twist, found.motion, taken)
 
-    def _coulomb_pushed(self, direction: int) -> tuple[State, Mechanism]:
-        """The same where pushes answer to movement: whole where blocks move against them, nothing where they move away,
-        and what equilibrium asked for where they rest, found by trying; the start is what they are with dilatancy."""
-        push = self.loads.resistance
-        assert push is not None
-        first, _ = LimitAnalysis(self.assembly, self._mu, strength=self.strength, loads=self.loads).collapse(direction)
-        share = np.asarray(first.mobilised)
-        x, y = self.assembly.centroid[push.block].T
-        for _ in range(PUSHED):
-            dead = self.loads.dead + (push.spread(len(self.loads.dead)) * share).sum(axis=2)
-            limit = LimitAnalysis(
-                self.assembly, self._mu, strength=self.strength, associated=False, loads=Loads(dead, self.loads.live),
-                starts=self.starts,
-            )  # fmt: skip
-            state, mechanism = limit.collapse(direction)
-            u, v, spin = mechanism.velocity[push.block].T
-            work = (push.wrench * np.column_stack([u + spin * y, v - spin * x, spin])).sum(axis=1)
-            fastest = float(np.hypot(*mechanism.velocity[:, :2].T).max())
-            rests = np.abs(work) < INNER_REST * fastest * np.abs(push.wrench[:, 0])
-            follows = np.where(rests, share, np.where(work < 0.0, 1.0, 0.0))
-            if np.abs(follows - share).max() < SETTLED:
-                self.coulomb[direction] = limit.coulomb[direction]
-                return replace(state, mobilised=share), mechanism
-            share = follows
-        raise NoAnswer(
-            'no state without dilatancy was found in which the fill pushes where it is pressed: take friction_rule = "associated"'
-        )
+    def _neutral(self, problem: CoulombProblem) -> CoulombState | None:
+        """A state at rest in which a stone that friction alone holds between its neighbours slides out of them, by which the
+        load does no work: the structure bears nothing that can be relied on. None where there is none."""
+        if self._crush is not None:
+            return None
+        found = (problem.neutral(stone) for stone in hanging_stones(self.assembly))
+        return next((state for state in found if state is not None), None)
 
     def without_dilatancy_between(self, direction: int) -> tuple[float | None, float | None]:
         """Drucker's bounds (1954) on the collapse load without dilatancy: of joints without friction, and of joints whose
@@ -297,14 +274,12 @@ class LimitAnalysis:
 
     def _refuse_immovable(self, direction: int) -> None:
         """Immovable where not even joints without friction let the load do work."""
-        if (
-            self._certificate(np.zeros_like(self.loads.live), direction * self.loads.live, np.zeros(len(self._mu)))
-            is None
-        ):
+        # However much soil and ties take, a greater load overcomes it.
+        if self._certificate(direction * self.loads.live, np.zeros(len(self._mu)), taking=False) is None:
             raise Immovable("no such load brings it down: the joints hold it from all sides")
 
     def _read(
-        self, gamma: float, corners: np.ndarray, twist: np.ndarray, motion: np.ndarray, taken: float
+        self, gamma: float, corners: np.ndarray, share: np.ndarray, twist: np.ndarray, motion: np.ndarray, taken: float
     ) -> tuple[State, Mechanism]:
         """State and mechanism of a collapse whose forces and motion were found together; taken: work of the joints."""
         nothing = Constraints(np.empty(0, dtype=int), np.empty((0, 3)), np.empty(0))
@@ -312,7 +287,7 @@ class LimitAnalysis:
         mechanism = read_mechanism(
             self.assembly, self.loads, nothing, np.empty(0), motion, twist, defect, INNER_REST, taken
         )  # fmt: skip
-        return read_state(gamma, corners, self.loads.scale), mechanism
+        return read_state(gamma, corners, self.loads.scale, share), mechanism
 
     def certificate(self, gamma: float = 0.0) -> np.ndarray | None:
         """A motion (blocks, 3) that proves that nothing can stand at gamma, or None where there is none.
@@ -322,15 +297,18 @@ class LimitAnalysis:
         Crushing is left out of account.
         """
         mu = None if self._cone is None else self._mu
-        return self._certificate(self.loads.dead + gamma * self.loads.live, np.zeros_like(self.loads.live), mu)
+        return self._certificate(self.loads.dead + gamma * self.loads.live, mu)
 
-    def _certificate(self, force: np.ndarray, other: np.ndarray, mu: np.ndarray | None) -> np.ndarray | None:
-        """The motion of greatest work of `force` + `other`, every twist at most one, that joints take no work from."""
+    def _certificate(self, force: np.ndarray, mu: np.ndarray | None, taking: bool = True) -> np.ndarray | None:
+        """The motion of greatest work of `force`, every twist at most one, that joints take no work from.
+
+        taking: what soil and ties that yield take of the work counts.
+        """
         system = self._equations
         m, n = len(self._joints), system.equations
         turned = sparse.csr_array(system.corner_matrix.T)
         unit = self.loads.scale * np.array([1.0, 1.0, self.assembly.size])
-        work = ((force + other) / unit).ravel()
+        work = (force / unit).ravel()
         dilates = sparse.diags_array(np.zeros(m) if mu is None else mu)
         one, none = sparse.eye_array(m), sparse.csr_array((m, m))
         rows = sparse.vstack([
@@ -339,14 +317,20 @@ class LimitAnalysis:
             sparse.hstack([turned[2::3], one if mu is not None else none, -one if mu is not None else none]),
         ])  # fmt: skip
         lower, upper = np.zeros(3 * m), np.concatenate([np.full(2 * m, INFINITY), np.zeros(m)])
-        k = self.loads.pushes
-        if k:  # what a push can take of the work: all of it that the motion does against it
-            pushes = sparse.csr_array(system.matrix[:, system.shares].T)
-            rows = sparse.vstack([
-                sparse.hstack([rows, sparse.csr_array((3 * m, k))]),
-                sparse.hstack([pushes, sparse.csr_array((k, 2 * m)), sparse.eye_array(k)]),
-            ])  # fmt: skip
-            lower, upper = np.append(lower, np.zeros(k)), np.append(upper, np.full(k, INFINITY))
+        k, answers = self.loads.pushes, self.loads.resistance
+        if (
+            answers is not None
+        ):  # what each can take of the work, whole or at its least; what never yields lets none be done
+            works = sparse.csr_array(system.matrix[:, system.shares].T)
+            blocks = [sparse.hstack([rows, sparse.csr_array((3 * m, k))])]
+            for bound, sign in ((answers.low, -1.0), (answers.high, 1.0)):
+                yields = np.isfinite(bound)
+                share = sparse.diags_array(np.where(yields, bound if taking else 0.0, sign))
+                blocks.append(sparse.hstack([
+                    share @ works, sparse.csr_array((k, 2 * m)), sparse.diags_array(yields.astype(float))
+                ]))  # fmt: skip
+            rows = sparse.vstack(blocks)
+            lower, upper = np.append(lower, np.zeros(2 * k)), np.append(upper, np.full(2 * k, INFINITY))
         bound = np.concatenate([np.ones(n), np.full(2 * m + k, INFINITY)])
         cost = np.concatenate([-work, np.zeros(2 * m), np.ones(k)])
         found = linear_programme(rows, lower, upper, cost, np.concatenate([-np.ones(n), np.zeros(2 * m + k)]), bound)
@@ -354,7 +338,7 @@ class LimitAnalysis:
         motion = (turned @ twist).reshape(-1, 3)
         least = motion[:, :2].min(axis=1) - (0.0 if mu is None else mu) * np.abs(motion[:, 2])
         broken = max(0.0, -float(least.min()), 0.0 if mu is not None else float(np.abs(motion[:, 2]).max()))
-        taken = 0.0 if not k else float(np.maximum(-(pushes @ twist), 0.0).sum())
+        taken = 0.0 if answers is None or not taking else answers.taken(works @ twist)
         if float(work @ twist) - taken <= max(PROVES, 1e4 * broken):
             return None
         return twist.reshape(-1, 3)
@@ -380,6 +364,32 @@ class LimitAnalysis:
         found = [self.optimise(sign * cost, (gamma, gamma)) for sign in (1.0, -1.0)]
         least, greatest = (self._state(solution, corners) for solution, _, corners in found)
         return least, greatest
+
+    def through(self, joint: int, position: float, gamma: float = 0.0) -> State:
+        """The state at gamma whose line passes a joint as near to `position` (0 at p, 1 at q) as any line can, and keeps
+        as far from the ends of the other joints as it may."""
+        m = len(self.assembly.a)
+        here = np.array([joint])
+        near = self._rows(here, (-position, 1.0 - position, 0.0)) + self._rows(here, (position, position - 1.0, 0.0))
+        whole = self._whole()
+        rows = whole + near
+        slack, cost = np.zeros(len(rows.lower)), np.zeros(self.system.unknowns + 1)
+        # z >= |n_q - position N|, which is least
+        slack[-2:], cost[-1] = -1.0, 1.0
+        programme = Programme(self.system, rows, slack)
+        corners = self.system.corners(programme.minimise(cost, (gamma, gamma)).x[:-1])
+        found = corners[joint, 1] / max(corners[joint, :2].sum(), 1e-300)
+        # A hair of room: the place was found to rounding.
+        near = self._rows(here, (HAIR - found, 1.0 - found + HAIR, 0.0)) + self._rows(
+            here, (found + HAIR, found - 1.0 + HAIR, 0.0)
+        )
+        rows = whole + near
+        slack, cost = np.zeros(len(rows.lower)), -cost
+        others = np.setdiff1d(self._joints, here)
+        share = np.maximum(corners[others, :2].sum(axis=1), CARRIES)
+        slack[others] = slack[m + others] = share
+        programme = Programme(self.system, rows, slack)
+        return self._state(solution := programme.minimise(cost, (gamma, gamma)), self.system.corners(solution.x[:-1]))
 
     def central(self, gamma: float = 0.0, start: list[State] | None = None) -> tuple[State, float]:
         """The most central state at a given gamma, and the least part of the joints' length that holds it.
@@ -466,9 +476,10 @@ class LimitAnalysis:
 
     def _unclipped(self, solution: Solution, corners: np.ndarray) -> State:
         """State whose line may leave the joints: positions below 0 or above 1."""
-        normal = (corners[:, 0] + corners[:, 1]) * self.loads.scale
+        normal, shear = (corners[:, 0] + corners[:, 1]) * self.loads.scale, corners[:, 2] * self.loads.scale
         position = corners[:, 1] * self.loads.scale / np.maximum(normal, 1e-300)
-        return State(float(solution.x[self.system.unknowns - 1]), normal, corners[:, 2] * self.loads.scale, position)
+        x = solution.x
+        return State(float(x[self.system.unknowns - 1]), normal, shear, position, x[self.system.shares])
 
     def recentred(self, state: State, moving: list[int]) -> State:
         """A collapse state with the joints that do not move as far from their ends as may be.
@@ -490,4 +501,4 @@ class LimitAnalysis:
         room = 1e-10 * max(1.0, abs(state.gamma))
         solution = Programme(self.system, rows, slack).minimise(cost, (state.gamma - room, state.gamma + room))
         found = self._state(solution, self.system.corners(solution.x[:-1]))
-        return State(state.gamma, found.normal, found.shear, found.position)
+        return replace(found, gamma=state.gamma)

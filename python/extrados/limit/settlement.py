@@ -11,9 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND
-from extrados.limit.programme import LimitAnalysis, NoEquilibrium, State
-from extrados.limit.solver import BOUND
+from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.limit.solver import BOUND, MADE_UP
 from extrados.limit.states import read_state
+
+SLIGHT = 1e-6  # cost of pressing beside that of the work on the supports
+SAME = 1e-8  # of the total load: states that do this little more work are as good
+CANNOT_FOLLOW = "the stones cannot follow: they are wedged, and would have to be crushed"
 
 
 @dataclass(frozen=True)
@@ -43,24 +47,43 @@ def settle(limit: LimitAnalysis, movement: np.ndarray) -> Settlement:
         [(at_p * normal).sum(axis=1), (at_q * normal).sum(axis=1), (movement[:, :2] * tangent).sum(axis=1)]
     )
     most = float(np.abs(given).max())
-    solution, rows, corners = limit.optimise(limit.system.cost(given / most), (0.0, 0.0))
-    if np.abs(solution.x).max() > 0.99 * BOUND:
-        raise NoEquilibrium("the movement meets no resistance: the structure would have to be torn")
+    cost = limit.system.cost(given / most)
+    try:
+        solution, rows, corners = limit.optimise(cost, (0.0, 0.0))
+    except (NoEquilibrium, NoAnswer):
+        if limit.stands():  # the forces that resist grow without an end
+            raise NoEquilibrium(CANNOT_FOLLOW) from None
+        raise
+    if solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
+        raise NoEquilibrium(CANNOT_FOLLOW)
+    share = solution.x[limit.system.shares]
+    if (
+        np.abs(solution.x).max() > 0.99 * BOUND
+    ):  # wedged stones press each other as they like: the state that presses least
+        pressing = np.zeros_like(corners)
+        pressing[:, :2] = SLIGHT
+        easiest, _, pressed = limit.optimise(cost + limit.system.cost(pressing), (0.0, 0.0))
+        if abs(float((pressed - corners).ravel() @ given.ravel())) < SAME * most * max(1.0, abs(solution.value)):
+            corners, share = pressed, easiest.x[limit.system.shares]
     opened = rows.openings(np.maximum(solution.rows, 0.0), len(assembly.a)) * most
     scaled = (opened - given) / assembly.size
     twist, defect = limit.system.velocities(
         scaled, *([solution.equations * most / assembly.size] if limit.system.equations else [])
     )
+    defect *= float(np.abs(twist).max()) * assembly.size / most  # of the movement: where no block moves, of nothing
     if defect > 1e-6:
-        raise NoEquilibrium(f"the motions of blocks and joints differ by {defect:.1e} of the greatest")
+        raise NoAnswer(f"the motions of blocks and joints differ by {defect:.1e} of the movement")
     size = assembly.size
     shift = twist[:, :2] * size
     x, y = assembly.centroid.T
     pose = np.column_stack([x + shift[:, 0] - twist[:, 2] * y, y + shift[:, 1] + twist[:, 2] * x, twist[:, 2]])
     dead = limit.loads.dead
     work = float((dead[:, :2] * shift).sum() + (dead[:, 2] * twist[:, 2]).sum())
-    reactions = limit.loads.scale * float((corners * given).sum())
     taken = limit.loads.scale * float((corners * opened).sum())
+    if (answers := limit.loads.resistance) is not None:
+        held = answers.on_blocks(share, len(shift))
+        taken += float((held[:, :2] * shift).sum() + (held[:, 2] * twist[:, 2]).sum())
+    reactions = limit.loads.scale * float((corners * given).sum())
     return Settlement(
-        pose, opened, read_state(0.0, corners, limit.loads.scale), work, abs(work + taken - reactions)
+        pose, opened, read_state(0.0, corners, limit.loads.scale, share), work, abs(work + taken - reactions)
     )  # fmt: skip

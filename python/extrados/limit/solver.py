@@ -2,11 +2,13 @@
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import highspy
 import numpy as np
 from scipy import sparse
 
+from extrados.core.limit import least_vertex
 from extrados.limit.errors import Immovable as Immovable
 from extrados.limit.errors import NoAnswer as NoAnswer
 from extrados.limit.errors import NoEquilibrium as NoEquilibrium
@@ -14,7 +16,10 @@ from extrados.limit.systems import Constraints, Reduced, Sparse
 
 FEASIBILITY = 1e-10
 BOUND = 1e5  # of the scaled unknowns; reached only where the structure cannot be moved at all
+FEW = 32  # unknowns: more are left to HiGHS
+MADE_UP = 1e-6  # of the value: what bounds may have of it by rounding
 INFINITY = highspy.kHighsInf
+_NONE = np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -27,9 +32,17 @@ class Solution:
     columns: np.ndarray
     value: float
 
+    @property
+    def made_up(self) -> float:
+        """What the bounds of the unknowns have of the value: forces at the bound may hold each other, as in stones wedged
+        without sliding, and count for nothing then."""
+        bounded = np.abs(self.x) > 0.99 * BOUND
+        return float(np.abs(self.columns * self.x)[bounded].sum())
+
 
 class Programme:
-    """Constraints over the unknowns of a system; solved for many costs from the last basis.
+    """Constraints over the unknowns of a system, solved for many costs: of few unknowns from vertex to vertex in the core,
+    else, and where that gives up, by HiGHS from the last basis.
 
     `slack` (k), if given, adds a last unknown z with row k reading coefficient . c - slack z >= lower.
     """
@@ -38,63 +51,88 @@ class Programme:
         self.system = system
         self.columns = system.unknowns + (slack is not None)
         self._gamma = system.unknowns - 1
-        self._index = np.arange(self.columns, dtype=np.int32)
-        self._solver = highspy.Highs()
-        self._solver.passOptions(_options(system.equations > 0, len(constraints.lower) > 2 * len(system.assembly.a)))
+        self._small = isinstance(system, Reduced) and self.columns <= FEW
+        self._highs: highspy.Highs | None = None
         self.pass_rows(constraints, slack)
 
     def pass_rows(self, constraints: Constraints, slack: np.ndarray | None = None) -> None:
-        """Put the constraints in the place of as many earlier ones; the next solve starts from the last basis."""
-        system, n = self.system, self.columns
-        self.constraints = constraints
-        matrix, constant = system.express(constraints)
-        lower = constraints.lower - constant
+        """Put the constraints in the place of as many earlier ones; HiGHS goes on from the last basis."""
+        system = self.system
+        self.constraints, self._slack = constraints, slack
+        self._matrix: Any
+        self._matrix, constant = system.express(constraints)
+        self._lower = constraints.lower - constant
+        self._most = np.full(self.columns, BOUND if system.equations == 0 else INFINITY)
+        self._least = -self._most
+        if (answers := system.loads.resistance) is not None:
+            self._least[system.shares] = np.maximum(answers.low, self._least[system.shares])
+            self._most[system.shares] = np.minimum(answers.high, self._most[system.shares])
+        if self._small and slack is not None:
+            self._matrix = np.concatenate([self._matrix, -slack[:, None]], axis=1)
+        if self._highs is not None:
+            self._pass_to(self._highs)
+
+    def _pass_to(self, solver: highspy.Highs) -> None:
+        """The rows for HiGHS, which keeps its basis."""
+        system, n, matrix, lower = self.system, self.columns, self._matrix, self._lower
         k, e = len(lower), system.equations
         if isinstance(system, Reduced):
-            if slack is not None:
-                matrix = np.concatenate([matrix, -slack[:, None]], axis=1)
+            if self._slack is not None and matrix.shape[1] < n:
+                matrix = np.concatenate([matrix, -self._slack[:, None]], axis=1)
             start = np.arange(0, k * n + 1, n, dtype=np.int32)
-            index = np.broadcast_to(self._index, (k, n)).ravel()
+            index = np.broadcast_to(np.arange(n, dtype=np.int32), (k, n)).ravel()
             value = matrix.ravel()
             row_lower, row_upper = lower, np.full(k, INFINITY)
         else:
             equations = system.matrix
-            if slack is not None:
-                matrix = sparse.hstack([matrix, sparse.csr_array(-slack[:, None])], format="csr")
+            if self._slack is not None:
+                matrix = sparse.hstack([matrix, sparse.csr_array(-self._slack[:, None])], format="csr")
                 equations = sparse.csr_array((equations.data, equations.indices, equations.indptr), shape=(e, n))
             whole = sparse.vstack([equations, matrix], format="csr")
             start, index, value = whole.indptr.astype(np.int32), whole.indices.astype(np.int32), whole.data
             row_lower = np.concatenate([system.right, lower])
             row_upper = np.concatenate([system.right, np.full(k, INFINITY)])
-        most = np.full(n, BOUND if e == 0 else INFINITY)
-        least = -most
-        least[system.shares], most[system.shares] = 0.0, 1.0
-        basis = self._solver.getBasis()
-        passed = self._solver.passModel(
+        basis = solver.getBasis()
+        passed = solver.passModel(
             n, e + k, len(value), int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize), 0.0,
-            np.zeros(n), least, most, row_lower, row_upper, start, index, value,
+            np.zeros(n), self._least, self._most, row_lower, row_upper, start, index, value,
             np.zeros(n, dtype=np.int32),
         )  # fmt: skip
         if passed == highspy.HighsStatus.kError:
             raise NoAnswer("the linear programme was not accepted: some number in it is not finite")
         if basis.valid:
-            self._solver.setBasis(basis)
+            solver.setBasis(basis)
 
     def minimise(self, cost: np.ndarray, gamma: tuple[float, float]) -> Solution:
         """Minimise cost @ x with gamma in the given range."""
-        self._solver.changeColsCost(self.columns, self._index, cost)
-        self._solver.changeColBounds(self._gamma, *gamma)
-        status = _decided(self._solver)
+        if self._small:
+            least, most = self._least.copy(), self._most.copy()
+            least[self._gamma], most[self._gamma] = gamma
+            if found := least_vertex(self._matrix, self._lower, cost, least, most):
+                x, rows, sides = found
+                return Solution(x, rows, _NONE, sides, float(cost @ x))
+        solver = self._highs or self._start()
+        solver.changeColsCost(self.columns, np.arange(self.columns, dtype=np.int32), cost)
+        solver.changeColBounds(self._gamma, *gamma)
+        status = _decided(solver)
         if status in _INFEASIBLE:
             raise NoEquilibrium("no admissible thrust line")
         if status != highspy.HighsModelStatus.kOptimal:
-            raise NoAnswer(f"the linear programme ended as: {self._solver.modelStatusToString(status)}")
-        solution = self._solver.getSolution()
+            raise NoAnswer(f"the linear programme ended as: {solver.modelStatusToString(status)}")
+        solution = solver.getSolution()
         dual = np.array(solution.row_dual)
         e = self.system.equations
         return Solution(
-            np.array(solution.col_value), dual[e:], dual[:e], np.array(solution.col_dual), self._solver.getObjectiveValue()
+            np.array(solution.col_value), dual[e:], dual[:e], np.array(solution.col_dual), solver.getObjectiveValue()
         )  # fmt: skip
+
+    def _start(self) -> highspy.Highs:
+        """HiGHS with these rows."""
+        self._highs = highspy.Highs()
+        more_than_pressing = len(self._lower) > 2 * len(self.system.assembly.a)
+        self._highs.passOptions(_options(self.system.equations > 0, more_than_pressing))
+        self._pass_to(self._highs)
+        return self._highs
 
 
 def _decided(solver: highspy.Highs) -> highspy.HighsModelStatus:

@@ -10,6 +10,8 @@ from extrados.limit.systems import Constraints
 
 # A joint whose motion at one end is this much smaller than at the other turns about the former.
 HINGE = 1e-4
+# Of the work of the dead loads: less of the load is none.
+NO_WORK = 1e-9
 # Joints that move less than this part of the fastest block are at rest.
 AT_REST = 1e-7
 
@@ -19,14 +21,14 @@ class State:
     """One admissible state of the joints: forces in N, positions as fractions of the joints.
 
     normal, shear (joints); position 0 at p (intrados), 1 at q (extrados); gamma load multiplier; mobilised: the shares
-    of the pushes that answer to movement, in the order of the loads.
+    of the forces that answer to movement, in the order of the loads.
     """
 
     gamma: float
     normal: np.ndarray
     shear: np.ndarray
     position: np.ndarray
-    mobilised: np.ndarray | None = None
+    mobilised: np.ndarray
 
     @property
     def friction(self) -> np.ndarray:
@@ -66,7 +68,7 @@ class Mechanism:
         return np.divide(self.opening_p, turn, out=np.full_like(turn, np.nan), where=turn != 0.0)
 
 
-def read_state(gamma: float, corners: np.ndarray, scale: float, mobilised: np.ndarray | None = None) -> State:
+def read_state(gamma: float, corners: np.ndarray, scale: float, mobilised: np.ndarray) -> State:
     """State from scaled corner forces (joints, 3); what is negative by rounding is taken as zero."""
     n_p, n_q = np.maximum(corners[:, :2].T * scale, 0.0)
     normal = n_p + n_q
@@ -86,19 +88,19 @@ def read_mechanism(
 ) -> Mechanism:
     """Mechanism from the scaled twists about the origin and the duals of the constraints.
 
-    Virtual work gives the bound: (taken - dead . u - sum dual * lower - pushes against it) / (live . u); taken is the
-    work that the joints take up by sliding and crushing, where no constraint says so; a push is whole where its block
-    moves against it, and nothing where it moves away.
+    Virtual work gives the bound: (taken - dead . u - sum dual * lower) / (live . u); taken is the work that the joints
+    take up by sliding and crushing, where no constraint says so, and what pressures and ties take that the motion
+    presses or stretches.
     """
     size = assembly.size
     unit = loads.scale * np.array([1.0, 1.0, size])
     live = float((loads.live / unit * twist).sum())
     dead = float((loads.dead / unit * twist).sum())
-    resisted = 0.0
     if loads.resistance is not None:
-        work = (loads.resistance.wrench / unit * twist[loads.resistance.block]).sum(axis=1)
-        resisted = float(np.minimum(work, 0.0).sum())
-    upper = (taken - dead - float(dual @ constraints.lower) - resisted) / live
+        taken += loads.resistance.taken(loads.resistance.work(twist / unit))
+    # Where the load does no work the motion is neutral at any load, and bounds that at rest.
+    driven = live if abs(live) > NO_WORK * abs(dead) else abs(dead)
+    upper = (taken - dead - float(dual @ constraints.lower)) / driven
     x, y = (assembly.centroid / size).T
     velocity = np.column_stack([twist[:, 0] - twist[:, 2] * y, twist[:, 1] + twist[:, 2] * x, twist[:, 2]])
 
@@ -112,7 +114,7 @@ def read_mechanism(
         (j, "intrados" if abs(opening_p[j]) < abs(opening_q[j]) else "extrados")
         for j in np.flatnonzero(moves & turns).tolist()
     ]
-    scale = 1.0 / (abs(live) * size)
+    scale = 1.0 / (abs(driven) * size)
     return Mechanism(
         velocity * np.array([size, size, 1.0]) * scale, hinges, np.flatnonzero(moves & ~turns).tolist(),
         opening_p * size * scale, opening_q * size * scale, slip * size * scale, upper, defect,

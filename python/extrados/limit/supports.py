@@ -11,7 +11,7 @@ import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
-from extrados.limit.solver import BOUND
+from extrados.limit.solver import MADE_UP
 from extrados.schema.constants import GRAVITY
 
 ROOM = 1e-9  # of a joint's length: how far outside the line may lie by rounding
@@ -59,8 +59,8 @@ class _Chain:
         # Force of the arch on the right support, along the movement; the ground is block a there.
         cost[j] = a.normal[j] @ self.direction, a.normal[j] @ self.direction, a.tangent[j] @ self.direction
         solution, rows, _ = limit.optimise(limit.system.cost(cost), (0.0, 0.0))
-        if np.abs(solution.x).max() > 0.99 * BOUND:
-            raise NoEquilibrium("the movement meets no resistance")
+        if solution.made_up > MADE_UP * max(1.0, abs(solution.value)):
+            raise NoEquilibrium("the stones cannot follow: they are wedged, and would have to be crushed")
         motion = rows.openings(np.maximum(solution.rows, 0.0), len(a.a))[self.joints]
         active = np.flatnonzero(np.abs(motion).max(axis=1) > 1e-9 * np.abs(motion).max())
         hinges = tuple((int(k), "intrados" if motion[k, 0] < motion[k, 1] else "extrados") for k in active)

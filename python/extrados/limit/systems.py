@@ -3,8 +3,8 @@
 `Reduced` keeps the redundants of the loops and gamma as the only unknowns: right for chains, arches and
 churches. `Sparse` keeps three forces per joint and three equations per block: right for walls, where loops
 are as many as blocks. Both speak of corner forces c = (n_p, n_q, s) per joint, scaled by the total load,
-lengths by the size of the assembly. `shares` are the places among the unknowns of the shares, from 0 to 1, of pushes
-that answer to movement; gamma is the last unknown.
+lengths by the size of the assembly. `shares` are the places among the unknowns of the shares of forces that answer to
+movement, pressures and ties; gamma is the last unknown.
 """
 
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Constraints:
 
 
 class Reduced:
-    """Unknowns: the redundants, the shares of pushes, then gamma. No equations are left."""
+    """Unknowns: the redundants, the shares of forces that answer, then gamma. No equations are left."""
 
     equations = 0
 
@@ -86,7 +86,7 @@ class Reduced:
 
 
 class Sparse:
-    """Unknowns: corner forces of all joints, the shares of pushes, then gamma; three equations per block."""
+    """Unknowns: corner forces of all joints, the shares of forces that answer, then gamma; three equations per block."""
 
     def __init__(self, assembly: Assembly, loads: Loads, tree: Tree):
         self.assembly, self.loads, self.tree = assembly, loads, tree
@@ -110,7 +110,7 @@ class Sparse:
             row.append(np.broadcast_to(3 * ends[held][:, None, None] + np.arange(3), shape).ravel())
             column.append(np.broadcast_to(3 * held[:, None, None] + np.arange(3)[:, None], shape).ravel())
             value.append(sign * on_a[held].ravel())
-        unit = loads.scale * np.array([1.0, 1.0, size])
+        self.unit = unit = loads.scale * np.array([1.0, 1.0, size])
         live = (loads.live / unit).ravel()
         moved = np.flatnonzero(live)
         row.append(moved)
@@ -118,7 +118,7 @@ class Sparse:
         value.append(live[moved])
         if loads.resistance is not None:
             row.append((3 * loads.resistance.block[:, None] + np.arange(3)).ravel())
-            column.append(np.repeat(3 * m + np.arange(loads.pushes), 3))
+            column.append(np.repeat(3 * m + loads.resistance.number, 3))
             value.append((loads.resistance.wrench / unit).ravel())
         entries = np.concatenate(value), (np.concatenate(row), np.concatenate(column))
         self.matrix = sparse.csr_array(entries, shape=(self.equations, self.unknowns))

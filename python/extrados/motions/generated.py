@@ -19,7 +19,7 @@ class GeneratedSet:
     """A set of motions by seed: motion k is the same in any batch, on any number of threads, in any run.
 
     lines (n) [Hz] with the Fourier amplitude `spectrum` [m/s] and the amplitude of the sines [m/s^2];
-    window (points): the envelope at 0, step, ... [s].
+    window (points): the envelope at 0, step, ... [s]. dispersion: of the logarithm of a further factor on each motion.
     """
 
     mmi: float
@@ -30,6 +30,7 @@ class GeneratedSet:
     spectrum: np.ndarray
     amplitude: np.ndarray
     window: np.ndarray
+    dispersion: float = 0.0
 
     @property
     def points(self) -> int:
@@ -42,9 +43,15 @@ class GeneratedSet:
 
     def batch(self, first: int, count: int, threads: int = 1) -> np.ndarray:
         """Motions first .. first + count - 1 (count, points) [m/s^2]."""
-        return core.generate(
+        made = core.generate(
             self.lines, self.amplitude, self.window, self.step, self.seed, first, count, threads=threads
         )
+        return made * self.factors(first, count)[:, None] if self.dispersion > 0.0 else made
+
+    def factors(self, first: int, count: int) -> np.ndarray:
+        """Lognormal factors of median 1 on the strength of motions first .. first + count - 1."""
+        seeds = ([self.seed % 2**64, k] for k in range(first, first + count))
+        return np.exp(self.dispersion * np.array([np.random.default_rng(s).standard_normal() for s in seeds]))
 
     def batches(
         self, count: int, *, first: int = 0, size: int | None = None, threads: int = 1
@@ -114,6 +121,7 @@ def generated(
     spacing: str = "log",
     scaling: str = "energy",
     factor: float = 1.0,
+    dispersion: float = 0.0,
     envelope: str = "arctangent",
     rise: float | None = None,
     decay: float | None = None,
@@ -127,7 +135,7 @@ def generated(
     spectrum: 'boore-worden' or a CSV file (of `folder`). lines: how many over the band of the spectrum
     (spacing 'log' or 'uniform'), or the frequencies [Hz]. scaling, of the sine amplitudes: 'thesis' factor |X| df
     (Eq. 6.6 as printed), 'fourier' 2 |X| df, 'energy' 2 |X| sqrt(df / int P^2 dt), which keeps the energy of the
-    spectrum. envelope: 'arctangent' (Eq. 6.7; rise is its width, 0.1 s), 'trapezoid' (Hou 1968; rise 0.15 t_d,
+    spectrum. dispersion: standard deviation of the logarithm of a further factor on each motion. envelope: 'arctangent' (Eq. 6.7; rise is its width, 0.1 s), 'trapezoid' (Hou 1968; rise 0.15 t_d,
     decay 0.4 t_d, both within t_d), 'jennings' (rise within t_d, then decay to 5 % in `decay`), 'saragoni-hart'
     (rise: time of the peak, 0.2 t_d; 5 % at t_d). lead and tail [s] before and after t_d.
     """
@@ -142,4 +150,6 @@ def generated(
     values, widths = table.at(mmi, frequency), core.line_widths(frequency, spacing)
     strong = float(np.sum(window**2) * step)
     amplitude = core.line_amplitudes(values, widths, scaling, factor, strong)
-    return GeneratedSet(float(mmi), int(seed), float(step), frequency, widths, values, amplitude, window)
+    return GeneratedSet(
+        float(mmi), int(seed), float(step), frequency, widths, values, amplitude, window, float(dispersion)
+    )

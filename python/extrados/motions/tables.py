@@ -191,6 +191,10 @@ class Generated(Motion):
         source="thesis Eq. 6.6",
     )
     factor: float = key(1.0, "factor on the amplitudes; with scaling = thesis the unit of the frequency step", gt=0)
+    dispersion: float = key(
+        0.0, "scatter of the strength from motion to motion: standard deviation of the logarithm of a factor of median 1", ge=0,
+        le=2,
+    )  # fmt: skip
     envelope: Literal["arctangent", "trapezoid", "jennings", "saragoni-hart"] = key(
         "arctangent",
         "how the strength grows and fades",

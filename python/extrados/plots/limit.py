@@ -18,6 +18,8 @@ HATCH = "#cfc6b2"
 LONG = 0.5  # height over length: below it section and mechanism stand one over the other
 MOST_LETTERS = 8  # hinges of a moving load: letters of more would run into each other
 FILL, PAVED, EVEN = "#f3ead6", "#b9b4aa", "#c98a2b"
+TIE, LOAD = "#2b5d8a", "#333333"
+MOST_TIES_TOLD = 12  # ties whose forces are written beside them
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
 
@@ -66,6 +68,64 @@ def ground(ax: Axes, run: Stored, name: str, joints: list[int]) -> None:
         ax.plot(*np.array([p[j], q[j]]).T, color=style.EDGE, linewidth=2.2, solid_capstyle="butt", zorder=2)
 
 
+def resting(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray]) -> None:
+    """Loads at rest as arrows, as long as they are great, each with its force; nothing without them."""
+    if "load_point" not in run.arrays[name]:
+        return
+    points, forces, number = (run.array(name, f"load_{what}") for what in ("point", "force", "number"))
+    length = 0.1 * float(np.ptp(np.concatenate(blocks), axis=0).max()) / float(np.hypot(*forces.T).max())
+    for k in np.unique(number):
+        here = number == k
+        for point, force in zip(points[here], forces[here], strict=True):
+            ax.annotate(
+                "", point, point - length * force, zorder=6,
+                arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0},
+            )  # fmt: skip
+        tails = points[here] - length * forces[here]
+        ax.update_datalim(tails)
+        style.letters(ax, tails[[len(tails) // 2]], [f"{np.hypot(*forces[here].sum(axis=0)) / 1e3:.3g} kN"], LOAD)
+    ax.plot([], [], color=LOAD, marker=">", markersize=4, label="load at rest")
+
+
+def ties(ax: Axes, run: Stored, name: str, state: str, pose: np.ndarray | None = None) -> None:
+    """Ties, struts and springs with their forces in a state, dashed where they are slack; nothing without them.
+
+    pose (blocks, 3): where the stones have gone; the ties follow them, and tell no forces.
+    """
+    forces = f"{state}_tie_force"
+    if forces not in run.arrays[name]:
+        return
+    ends, force = run.array(name, "tie_point"), run.array(name, forces)
+    if pose is not None:
+        ends = np.stack(
+            [_moved(run, name, ends[:, k], run.array(name, "tie_block")[:, k], pose) for k in (0, 1)], axis=1
+        )
+    taut = np.abs(force) > 1e-6 * max(float(np.abs(force).max(initial=0.0)), 1e-300)
+    for k, (one, two) in enumerate(ends):
+        ax.plot(
+            *np.array([one, two]).T, "-o" if taut[k] else "--o", color=TIE, linewidth=1.3, markersize=3, zorder=4,
+            label="tie" if k == 0 else "_",
+        )  # fmt: skip
+    if pose is not None:
+        return
+    shown = ends[:MOST_TIES_TOLD].mean(axis=1)
+    style.letters(ax, shown, [_pull(f) if t else "slack" for f, t in zip(force, taut, strict=True)], TIE)
+
+
+def _moved(run: Stored, name: str, points: np.ndarray, block: np.ndarray, pose: np.ndarray) -> np.ndarray:
+    """Points of blocks, -1 the ground, where these have gone."""
+    arm = points - run.array(name, "centroid")[block]
+    x, y, turn = pose[block].T
+    cos, sin = np.cos(turn), np.sin(turn)
+    gone = np.column_stack([x + cos * arm[:, 0] - sin * arm[:, 1], y + sin * arm[:, 0] + cos * arm[:, 1]])
+    return np.where((block < 0)[:, None], points, gone)
+
+
+def _pull(force: float) -> str:
+    """A force in a tie as drawings tell it."""
+    return f"{force / 1e3:.3g} kN" if force > 0.0 else f"{-force / 1e3:.3g} kN pressed"
+
+
 def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text: str) -> None:
     """A dimension line with arrows at both ends and its length beside it."""
     ax.annotate(
@@ -82,15 +142,24 @@ def dimension(ax: Axes, one: tuple[float, float], two: tuple[float, float], text
     )  # fmt: skip
 
 
-def overall_dimensions(ax: Axes, blocks: list[np.ndarray]) -> None:
-    """Width below and height beside a section."""
+def beside(run: Stored, name: str, ax: Axes) -> np.ndarray:
+    """Points (k, 2) [m] that the drawing needs room for besides the blocks: what it has, and the ends of the ties."""
+    ends = run.array(name, "tie_point").reshape(-1, 2) if "tie_point" in run.arrays[name] else np.empty((0, 2))
+    return np.concatenate([ends, ax.dataLim.get_points()])
+
+
+def overall_dimensions(ax: Axes, blocks: list[np.ndarray], others: np.ndarray) -> None:
+    """Width below and height beside a section; the drawing has room for other points (k, 2)."""
     points = np.concatenate(blocks)
     (left, low), (right, high) = points.min(axis=0), points.max(axis=0)
     away = 0.07 * max(right - left, high - low)
     dimension(ax, (left, low - away), (right, low - away), f"{right - left:.2f} m")
     dimension(ax, (left - away, low), (left - away, high), f"{high - low:.2f} m")
-    ax.set_xlim(left - 2.6 * away, right + 1.2 * away)
-    ax.set_ylim(low - 2.0 * away, high + 1.2 * away)
+    (most_left, lowest), (most_right, highest) = (
+        getattr(np.concatenate([points, others]), end)(axis=0) for end in ("min", "max")
+    )
+    ax.set_xlim(min(left - 2.6 * away, most_left - away), max(right, most_right) + 1.2 * away)
+    ax.set_ylim(min(low - 2.0 * away, lowest - away), max(high, highest) + 1.2 * away)
 
 
 def thrust_lines(ax: Axes, run: Stored, name: str, state: str, colour: str, label: str) -> None:
@@ -99,7 +168,8 @@ def thrust_lines(ax: Axes, run: Stored, name: str, state: str, colour: str, labe
     points, start = run.array(name, f"{state}_line"), run.array(name, f"{state}_line_start")
     lines = [points[a:b] for a, b in itertools.pairwise(start)]
     force = run.array(name, f"{state}_line_force")
-    if len(run.array(name, f"{state}_polygon_of")):
+    chained = f"{state}_polygon_of" if f"{state}_polygon_of" in run.arrays[name] else "chain_joint"
+    if len(run.array(name, chained)):
         _, stone_of = np.unique(run.array(name, f"{state}_line_of").astype(str), return_inverse=True)
         greatest = np.zeros(len(lines))
         np.maximum.at(greatest, stone_of, force)
@@ -163,14 +233,17 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         stone(axes[0], blocks)
         ground(axes[0], run, name, _standing(run, name))
         thrust_lines(axes[0], run, name, "collapse", style.THRUST, "thrust line")
+        ties(axes[0], run, name, "collapse")
+        resting(axes[0], run, name, blocks)
         if polygons:
             funiculars(axes[0], run, name, "collapse")
             style.legend_below(fig, axes[0])
         hinge_marks(axes[0], r.hinges)
-        overall_dimensions(axes[0], blocks)
+        overall_dimensions(axes[0], blocks, beside(run, name, axes[0]))
         axes[0].set_title(f"Collapse at {r.collapse_acceleration_g:.4f} g to +x (tilt {r.tilt_angle_deg:.2f} deg)")
         stone(axes[1], blocks, ghost=True)
         stone(axes[1], carried(blocks, centroid, run.array(name, "mechanism_pose")))
+        ties(axes[1], run, name, "collapse", run.array(name, "mechanism_pose"))
         axes[1].set_title("Mechanism (finite rotations)")
         for ax in axes[:2]:
             style.section_axes(ax)
@@ -185,6 +258,7 @@ def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             ground(ax, run, name, _standing(run, name))
             thrust_lines(ax, run, name, "least", style.THRUST, f"least thrust {_per_metre(r, r.thrust_min_N)}")
             thrust_lines(ax, run, name, "most", style.HINGE, f"greatest thrust {_per_metre(r, r.thrust_max_N)}")
+            ties(ax, run, name, "least")
             style.legend_below(fig, ax)
             ax.set_title("Thrust lines upright")
             style.section_axes(ax)
@@ -262,7 +336,9 @@ def draw_thrust(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for which, colour in colours.items():
             label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m" if arched else f"{which} state"
             thrust_lines(ax, run, name, which, colour, label)
-        overall_dimensions(ax, blocks)
+        resting(ax, run, name, blocks)
+        ties(ax, run, name, "central" if r.central is not None else "least")
+        overall_dimensions(ax, blocks, beside(run, name, ax))
         style.legend_below(fig, ax)
         safety = r.geometric_safety_factor
         told = f", safety factor {safety:.2f}" if safety is not None and np.isfinite(safety) else ""
@@ -465,6 +541,7 @@ def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tup
     with style.figure(7.5, 5.2) as (fig, (ax,)):
         stone(ax, blocks, ghost=True)
         stone(ax, carried(blocks, centroid, moved))
+        ties(ax, run, name, "settled", moved)
         sides = run.array(name, "joint_block")
         for o in [o for o in r.openings if o.opening_mm > 0.0][:MOST_OPENINGS]:
             end = (p if openings[o.joint, 0] > openings[o.joint, 1] else q)[o.joint]
@@ -501,17 +578,30 @@ def road_of(run: Stored, name: str, blocks: list[np.ndarray]) -> float:
     return max(float(o[:, 1].max()) for o in [*blocks, *tops])
 
 
-def _load_marks(ax: Axes, run: Stored, name: str, road: float, size: float) -> None:
-    """Axles as arrows and even loads as bands on the road."""
+def _load_marks(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray], size: float) -> None:
+    """Axles as arrows and even loads as bands, on the road, or on the stones where there is no fill."""
+    paved = any(what in run.arrays[name] for what in ("fill_outline", "surfacing_outline"))
+    road = road_of(run, name, blocks)
     for x in run.array(name, "axle"):
-        ax.annotate(
-            "", (x, road), (x, road + 0.12 * size), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}, zorder=6
-        )
+        y = road if paved else _surface(blocks, float(x), road)
+        ax.annotate("", (x, y), (x, y + 0.12 * size), arrowprops={"arrowstyle": "-|>", "color": style.THRUST}, zorder=6)
     for i, (start, stop) in enumerate(run.array(name, "even_load")):
+        x = np.linspace(start, stop, 60)
+        y = np.full(len(x), road) if paved else np.array([_surface(blocks, float(one), road) for one in x])
         ax.fill_between(
-            [start, stop], road, road + 0.03 * size, color=EVEN, alpha=0.7, linewidth=0.0, zorder=4,
-            label="even load" if i == 0 else "_",
-        )  # fmt: skip
+            x, y, y + 0.03 * size, color=EVEN, alpha=0.7, linewidth=0.0, zorder=4, label="even load" if i == 0 else "_"
+        )
+
+
+def _surface(blocks: list[np.ndarray], x: float, otherwise: float) -> float:
+    """Height [m] of the highest stone at x; `otherwise` beside all stones."""
+    found = []
+    for outline in blocks:
+        x0, y0 = outline.T
+        x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
+        met = (np.minimum(x0, x1) <= x) & (x <= np.maximum(x0, x1)) & (x0 != x1)
+        found += (y0[met] + (x - x0[met]) / (x1[met] - x0[met]) * (y1[met] - y0[met])).tolist()
+    return max(found, default=otherwise)
 
 
 def _pushes(ax: Axes, run: Stored, name: str, size: float) -> None:
@@ -567,10 +657,12 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
                 rows[np.isfinite(rows).all(axis=(1, 2))], colors=style.EDGE, linewidths=0.25, alpha=0.5, zorder=2.2,
                 label="thrust lines, all places" if i == 0 else "_",
             ))  # fmt: skip
-            ax.plot(*point[link].T, color=style.THRUST, zorder=3, label="thrust line" if i == 0 else "_")
+        thrust_lines(ax, run, name, "collapse", style.THRUST, "thrust line")
         _zones(ax, run, name, links)
         _pushes(ax, run, name, size)
-        _load_marks(ax, run, name, road, size)
+        ties(ax, run, name, "collapse")
+        resting(ax, run, name, blocks)
+        _load_marks(ax, run, name, blocks, size)
         hinged = [h.joint for h in r.hinges]
         lettered = len(hinged) <= MOST_LETTERS
         style.draw_hinges(ax, point[hinged], [chr(65 + i) for i in range(len(hinged))] if lettered else None)
@@ -580,7 +672,8 @@ def draw_moving_load(run: Stored, name: str, folder: Path) -> list[tuple[str, st
         earth(moved, run, name)
         stone(moved, blocks, ghost=True)
         stone(moved, carried(blocks, centroid, run.array(name, "mechanism_pose")))
-        _load_marks(moved, run, name, road, size)
+        ties(moved, run, name, "collapse", run.array(name, "mechanism_pose"))
+        _load_marks(moved, run, name, blocks, size)
         moved.set_title("Mechanism (finite rotations)")
         for drawn in (ax, moved):
             drawn.set_ylim(top=road + (0.15 if len(run.array(name, "axle")) else 0.06) * size)

@@ -1,7 +1,6 @@
 """Figures and one self-contained HTML report of a stored run."""
 
 import base64
-import logging
 import multiprocessing
 import os
 import signal
@@ -21,7 +20,6 @@ from extrados.results.explain import fact_of
 from extrados.results.fields import ResultModel
 from extrados.results.store import REPORT, Stored, StoreError, read, reason
 
-log = logging.getLogger(__name__)
 #: Figures of an analysis with their captions
 Figures = list[tuple[str, str]]
 
@@ -173,37 +171,10 @@ def write_report(folder: Path) -> tuple[Path, dict[str, Figures]]:
             drawn = draw(run, scratch)
             (scratch / REPORT).write_text(_page(run, scratch, drawn), encoding="utf-8", errors="backslashreplace")
             with written.alone(within):
-                names = _put(scratch, folder)
+                names = written.put(scratch, folder, lambda name: name == REPORT or name.startswith("figures/"))
     except OSError as error:
         raise StoreError(f"{folder}: the report could not be written: {reason(error)}") from None
     return folder / names[REPORT], drawn
-
-
-def _put(scratch: Path, folder: Path) -> dict[str, str]:
-    """Move what was drawn into the folder; the name that each file got there."""
-    new = written.sums_of(scratch)
-    known = written.noted(folder)
-    others = {name: sums[-1] for name, sums in known.items() if name != REPORT and not name.startswith("figures/")}
-    names = {}
-    for name in new:
-        taken = os.path.lexists(folder / name) and not written.is_ours(folder, name, known)
-        names[name] = written.beside(folder / name).relative_to(folder).as_posix() if taken else name
-        if taken:
-            log.warning(
-                "%s: was not written by extrados or changed since; the new one is %s", folder / name, names[name]
-            )
-    drawn = {names[name]: value for name, value in new.items()}
-    # noted before it is moved: whoever is killed in between leaves nothing that is taken for a stranger's
-    before = {name: value for name, sums in known.items() for value in sums[:1]}
-    written.note(folder, before, drawn)
-    for name in known:
-        if name.startswith("figures/") and name not in drawn and written.is_ours(folder, name, known):
-            (folder / name).unlink()
-    for name, target in names.items():
-        (folder / target).parent.mkdir(exist_ok=True)
-        (scratch / name).replace(folder / target)
-    written.note(folder, others, drawn)
-    return names
 
 
 def _page(run: Stored, folder: Path, drawn: dict[str, Figures]) -> str:

@@ -16,6 +16,9 @@ from extrados.results.store import Stored
 CRACKS = LinearSegmentedColormap.from_list("cracks", ["#f4a261", "#d1495b", "#7b2d8b", "#10002b"])
 LOST, ENVELOPE = "#d9822b", "#1f4e79"
 CORNERS = {3: 3, 6: 3, 4: 4, 8: 4}
+#: Panels that stand beside each other at most; one more does before the next row begins
+MOST_BESIDE = 3
+STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 #: What the names of the figures of each sense of the load have in them
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
 
@@ -63,7 +66,77 @@ def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     sections = zip(*(run.series(name, f"section_{what}") for what in ("y", "lo", "hi")), strict=True)
     figures += [_section(run, name, folder, i, *arrays) for i, arrays in enumerate(sections)]
     figures.append(_energy(run, name, folder))
+    if run[name].stages:
+        figures += [_all_stages(run, name, folder), *_cracks_by_stage(run, name, folder)]
     return figures
+
+
+def _all_stages(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Loads against displacements of all stages; those in one direction, or its opposite, share a panel."""
+    stages = run[name].stages
+    panels = _panels_of_stages(run, name)
+    columns = min(len(panels), 2)
+    rows = -(-len(panels) // columns)
+    with style.figure(4.8 * columns + 0.4, 3.8 * rows, rows=rows, columns=columns) as (fig, axes):
+        for ax in axes[len(panels) :]:
+            ax.set_axis_off()
+        for ax, panel in zip(axes, panels, strict=False):
+            for k, sense in panel:
+                stage = stages[k]
+                get = lambda n, prefix=stage.prefix: run.array(name, f"{prefix}{n}")  # noqa: E731
+                fine = get("event_equilibrium") > 0
+                d = sense * 1e3 * np.append(stage.displacement_of_constant_loads_m, get("event_displacement")[fine])
+                p = sense * 1e-3 * np.append(stage.start_load_N, get("event_load")[fine])
+                color = STAGES[k % len(STAGES)]
+                ax.plot(d, p, color=color, linewidth=0.25, alpha=0.45)
+                low, high = get("envelope_displacement"), get("envelope_load")
+                ax.plot(1e3 * sense * low, 1e-3 * sense * high, color=color, linewidth=1.4, label=stage.name)
+                ax.plot(d[:1], p[:1], "o", color=color, markersize=4)
+            _measured(run, name, ax, any(not stages[k].prefix for k, _ in panel))
+            ax.axhline(0.0, color="#999", linewidth=0.5)
+            ax.set_xlabel("control displacement [mm]")
+            ax.set_ylabel("load [kN]")
+            ax.legend(title="stage")
+        title = style.save(fig, folder, f"{name}-stages")
+    return title, (
+        "All stages: load against displacement, every event in equilibrium (thin) and envelopes; a dot where a stage begins. "
+        "Stages in one direction, or its opposite, share a panel, in the sense of the first of them."
+    )
+
+
+def _panels_of_stages(run: Stored, name: str) -> list[list[tuple[int, int]]]:
+    """The stages (from 0) of each panel with their sense: one that begins with the displacement and the load at which
+    an earlier one ended, or with their opposites, goes on in its panel."""
+    panels: list[list[tuple[int, int]]] = []
+    stages = run[name].stages
+    for k, stage in enumerate(stages):
+        begin = np.array([stage.displacement_of_constant_loads_m, stage.start_load_N])
+        for panel in panels:
+            last, sense = panel[-1]
+            end = np.array([stages[last].last_displacement_m, stages[last].end_load_N])
+            size = 1e-6 * np.abs(end) + 1e-15
+            turn = next((t for t in (1, -1) if (np.abs(t * end - begin) <= size).all() and np.abs(end).all()), 0)
+            if turn:
+                panel.append((k, sense * turn))
+                break
+        else:
+            panels.append([(k, 1)])
+    return panels
+
+
+def _cracks_by_stage(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """Cracks at the end of each stage, one magnification and one scale of widths for all; none where no state was kept."""
+    shown = []
+    for stage in run[name].stages:
+        if f"{stage.prefix}state_event" in run.arrays[name]:
+            held = run.array(name, f"{stage.prefix}event_equilibrium")[
+                run.array(name, f"{stage.prefix}state_event") - 1
+            ]
+            shown += [(stage.prefix, int(s), f"end of stage {stage.name}") for s in np.flatnonzero(held > 0)[-1:]]
+    if not shown:
+        return []
+    title = _draw_cracks(run, name, folder, shown, f"{name}-stage-cracks")
+    return [(title, "Cracks on the deformed shape at the end of each stage, all to one scale.")]
 
 
 def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -77,18 +150,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             at, load = (run.array(other, f"event_{n}") for n in ("displacement", "load"))
             ax.plot(at * 1e3, load / 1e3, "o-", color="#8a8a8a", markersize=3, linewidth=0.8,
                     label=f"incremental, {run[other].stop}")  # fmt: skip
-        if "measured_displacement" in run.arrays[name]:
-            test = get("measured_displacement") * 1e3
-            least, greatest = get("measured_least") / 1e3, get("measured_greatest") / 1e3
-            if (greatest > least).any():
-                ax.fill_between(test, least, greatest, color="#d9d9d9", linewidth=0, label="tests, least to greatest")
-            ax.plot(
-                test,
-                0.5 * (least + greatest),
-                color="#8c8c8c",
-                linewidth=1.2,
-                label="tests, mean" if (greatest > least).any() else "test",
-            )
+        _measured(run, name, ax, True)
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
             if numbers is None:
                 continue
@@ -96,7 +158,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             fine = get(f"{prefix}event_equilibrium") > 0
             color = style.THRUST if not prefix else style.SAFE
             begin = 1e3 * numbers.displacement_of_constant_loads_m
-            ax.plot(np.append(begin, d[fine]), np.append(0, p[fine]), color=color, linewidth=0.25, alpha=0.4)
+            on = next((1e-3 * s.start_load_N for s in numbers.get("stages", []) if not s.prefix), 0.0)
+            ax.plot(np.append(begin, d[fine]), np.append(on, p[fine]), color=color, linewidth=0.25, alpha=0.4)
             if (~fine).any():
                 ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
@@ -129,9 +192,26 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         )
 
 
+def _measured(run: Stored, name: str, ax: Axes, here: bool) -> None:
+    """The measured curve in grey, behind, where there is one and it belongs `here`."""
+    if not here or "measured_displacement" not in run.arrays[name]:
+        return
+    test = run.array(name, "measured_displacement") * 1e3
+    least, greatest = (run.array(name, f"measured_{end}") / 1e3 for end in ("least", "greatest"))
+    band = bool((greatest > least).any())
+    if band:
+        ax.fill_between(
+            test, least, greatest, color="#d9d9d9", linewidth=0, zorder=0.5, label="tests, least to greatest"
+        )
+    ax.plot(
+        test, 0.5 * (least + greatest), color="#8c8c8c", linewidth=1.2, zorder=0.6,
+        label="tests, mean" if band else "test",
+    )  # fmt: skip
+
+
 def _incremental(run: Stored, name: str) -> list[str]:
     """The incremental analyses of the same run, to be drawn behind a curve of events."""
-    steps = [n for n, a in run.arrays.items() if "event_scale" in a and (run.array(n, "event_point") < 0).any()]
+    steps = [n for n, a in run.arrays.items() if "event_scale" in a and (run.array(n, "event_point") < 0).all()]
     return [] if name in steps else steps
 
 
@@ -150,46 +230,55 @@ def _peak(run: Stored, name: str, prefix: str) -> int:
 
 
 def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
+    shown = [(prefix, s, f"event {run.array(name, f'{prefix}state_event')[s]}") for s in _peak_state(run, name, prefix)]
+    title = _draw_cracks(run, name, folder, shown, f"{name}{SENSES[prefix]}-cracks")
+    return title, "Cracks on the deformed shape, at the peak and at the end; colour and thickness give the width."
+
+
+def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, int, str]], file: str) -> str:
+    """Cracks of some states: how the names of their arrays begin, number, words. One magnification and one scale of
+    widths for the series."""
     reach = "point_reach" if "point_reach" in run.arrays[name] else "point_band"
     xy, at, reach = (run.array(name, n) for n in ("node", "point_xy", reach))
-    states = _peak_state(run, name, prefix)
     span = np.ptp(xy, axis=0)
-    # One magnification and one scale of widths for the series
-    all_moved = run.array(name, f"{prefix}state_displacement")[states]
-    factor = _scale(span, all_moved.reshape(-1, 2))
-    most = max(float(run.array(name, f"{prefix}state_width_{d}")[states].max()) for d in "ns")
+
+    def get(prefix: str, what: str, s: int) -> np.ndarray:
+        return run.array(name, f"{prefix}state_{what}")[s]
+
+    factor = _scale(span, np.concatenate([get(prefix, "displacement", s) for prefix, s, _ in shown]))
+    most = max(float(get(prefix, f"width_{d}", s).max()) for prefix, s, _ in shown for d in "ns")
     edges = _outline(run, name)
-    with _panels(span, len(states)) as (fig, axes):
-        for ax, s in zip(axes, states, strict=True):
-            moved = run.array(name, f"{prefix}state_displacement")[s]
-            event = run.array(name, f"{prefix}state_event")[s]
-            load = run.array(name, f"{prefix}state_load")[s]
+    with _panels(span, len(shown)) as (fig, axes):
+        drawn = None
+        for ax in axes[len(shown) :]:
+            ax.set_axis_off()
+        for ax, (prefix, s, words) in zip(axes, shown, strict=False):
+            moved, load = get(prefix, "displacement", s), get(prefix, "load", s)
             shape = xy + factor * moved
             _wall(ax, _polygons(run, name, shape), facecolors="white", edgecolors="#e4e4e4")
             ax.add_collection(LineCollection(shape[edges], colors=style.EDGE, linewidths=0.7))
-            angle = run.array(name, f"{prefix}state_angle")[s]
-            widths = [run.array(name, f"{prefix}state_width_{d}")[s] for d in "ns"]
+            angle = get(prefix, "angle", s)
+            widths = [get(prefix, f"width_{d}", s) for d in "ns"]
             place = at + factor * _at_points(run, name, moved)
             for width, turn in zip(widths, (0.5 * np.pi, 0.0), strict=True):
                 # A crack runs across its normal; those too fine to matter are left out
-                shown = width > max(1e-3 * most, 1e-9)
-                if not shown.any():
+                wide = width > max(1e-3 * most, 1e-9)
+                if not wide.any():
                     continue
-                along = angle[shown] + turn
-                half = 0.42 * reach[shown][:, None] * np.column_stack([np.cos(along), np.sin(along)])
+                along = angle[wide] + turn
+                half = 0.42 * reach[wide][:, None] * np.column_stack([np.cos(along), np.sin(along)])
                 lines = LineCollection(
-                    np.stack([place[shown] - half, place[shown] + half], axis=1), cmap=CRACKS,
-                    norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * width[shown] / most,
+                    np.stack([place[wide] - half, place[wide] + half], axis=1), cmap=CRACKS,
+                    norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * width[wide] / most,
                 )  # fmt: skip
-                lines.set_array(1e3 * width[shown])
+                lines.set_array(1e3 * width[wide])
                 ax.add_collection(lines)
                 drawn = lines
-            if most > 1e-9 and len(ax.collections) > 2:
-                fig.colorbar(drawn, ax=ax, shrink=0.7, label="crack width [mm]")
             style.section_axes(ax)
-            ax.set_title(f"event {event}, {load / 1e3:.4g} kN, displacements x {factor:g}")
-        title = style.save(fig, folder, f"{name}{SENSES[prefix]}-cracks")
-    return title, "Cracks on the deformed shape, at the peak and at the end; colour and thickness give the width."
+            ax.set_title(f"{words}, {load / 1e3:.4g} kN\ndisplacements x {factor:g}")
+        if drawn is not None:
+            fig.colorbar(drawn, ax=list(axes), shrink=0.7, label="crack width [mm]")
+        return style.save(fig, folder, file)
 
 
 def _at_points(run: Stored, name: str, moved: np.ndarray) -> np.ndarray:
@@ -203,7 +292,9 @@ def _panels(span: np.ndarray, count: int):
     """Panels side by side for upright walls, one below the other for long ones."""
     if span[0] > 2.2 * span[1]:
         return style.figure(8.0, count * min(8.0 * span[1] / span[0] + 1.1, 5.0), rows=count)
-    return style.figure(4.8 * count, min(4.8 * span[1] / span[0], 9.0) + 0.6, columns=count)
+    columns = count if count <= MOST_BESIDE + 1 else MOST_BESIDE
+    rows = -(-count // columns)
+    return style.figure(4.8 * columns, rows * (min(4.8 * span[1] / span[0], 9.0) + 0.6), rows=rows, columns=columns)
 
 
 def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:

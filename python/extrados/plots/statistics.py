@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.plots import style
 from extrados.results.rocking import COLLAPSE, RECOVERY
-from extrados.results.statistics import OverDurations
+from extrados.results.statistics import Ensemble, OverDurations, OverLevels
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -15,7 +15,8 @@ FALLEN = 1.12  # where a figure draws the rotation ratio of what has come down
 
 
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Histogram (Fig. 6-7); over levels the curves with their stripes and the incremental picture; or Fig. 6-8."""
+    """Histogram (Fig. 6-7), single histories (Fig. 6-6) and cloud; over levels the curves with their stripes and the
+    incremental picture; the annual rate; or Fig. 6-8."""
     arrays = run.arrays[name]
     if isinstance(run[name], OverDurations):
         return _durations(run, name, folder)
@@ -24,6 +25,12 @@ def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]
         found += [_curve(run, name, folder), _incremental(run, name, folder)]
     if "bin_edge" in arrays:
         found.append(_histogram(run, name, folder))
+    if "intensity" in arrays and "grid" in arrays:
+        found.append(_cloud(run, name, folder))
+    if "contribution" in arrays:
+        found.append(_annual(run, name, folder))
+    if run.series(name, "history_time"):
+        found.append(_histories(run, name, folder))
     if "sensitivity_rotation_total" in arrays:
         found.append(_sensitivity(run, name, folder))
     return found
@@ -60,6 +67,123 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         return style.save(
             fig, folder, f"{name}-histogram"
         ), "Greatest rotation of all runs; the red bar holds those that collapse."
+
+
+def _axis(r: Ensemble | OverLevels) -> str:
+    """What an axis of intensities says."""
+    return f"{r.intensity} [{r.intensity_unit}]" if r.intensity_unit else r.intensity
+
+
+def _cloud(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """The motions at their own intensities; the curves over them."""
+    r = run[name]
+    x, ratio, outcome = (run.array(name, k) for k in ("intensity", "peak_ratio", "outcome"))
+    grid = run.array(name, "grid")
+    with style.figure(9.0, 4.2, columns=2, sharex=True) as (fig, (left, right)):
+        up, fell = outcome == RECOVERY, outcome == COLLAPSE
+        left.plot(
+            x[up], ratio[up], "o", color=style.HINGE, markersize=3, alpha=0.6, label=f"{int(up.sum())} rock and stay up"
+        )
+        left.plot(
+            x[fell],
+            np.full(int(fell.sum()), FALLEN),
+            "x",
+            color=style.THRUST,
+            markersize=4,
+            label=f"{int(fell.sum())} collapse",
+        )
+        rest = int((outcome == 0).sum())
+        left.set_xscale("log")
+        left.set_yscale("log")
+        left.set_ylim(max(1e-4, 0.5 * ratio[up].min()) if up.any() else 1e-3, 1.5)
+        left.axhline(1.0, color=style.THRUST, linewidth=0.8, linestyle=":")
+        left.set_ylabel("greatest rotation over the critical one")
+        left.set_title(f"{r.count} motions, {rest} leave it at rest" if rest else f"{r.count} motions")
+        left.legend(loc="center left", frameon=True)
+        share = np.where(fell, 1.0, 0.0)
+        right.plot(x, share, "|", color=style.EDGE, alpha=0.4, markersize=5)
+        if r.median is not None:
+            right.plot(grid, run.array(name, "curve"), color=style.THRUST,
+                       label=f"collapse: median {r.median:.3g}")  # fmt: skip
+            low, high = run.array(name, "curve_lower"), run.array(name, "curve_upper")
+            right.fill_between(grid, low, high, color=style.THRUST, alpha=0.15, linewidth=0)
+        limits = zip(
+            r.rotation_limits or [], *(run.series(name, f"limit{e}") for e in ("", "_lower", "_upper")), strict=True
+        )
+        for k, (limit, curve, low, high) in enumerate(limits):
+            line = right.plot(
+                grid,
+                curve.data,
+                ("--", "-.", ":")[k % 3],
+                label=f"rotation beyond {limit.rotation_ratio:g} of the critical: median {limit.median:.3g}",
+            )[0]
+            right.fill_between(grid, low.data, high.data, color=line.get_color(), alpha=0.12, linewidth=0)
+        right.set_xscale("log")
+        right.set_ylim(-0.02, 1.02)
+        right.set_ylabel("probability")
+        right.set_title("fitted curves")
+        style.legend_below(fig, right)
+        for ax in (left, right):
+            ax.set_xlabel(_axis(r))
+        return style.save(fig, folder, f"{name}-cloud"), (
+            "Motions as they are, each at its own intensity, and the curves fitted to them; bands of "
+            f"{100 * r.confidence:g} % by the profile of the likelihood."
+        )
+
+
+def _annual(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Hazard, curve of collapse, and what each intensity adds to the annual rate."""
+    r = run[name]
+    x, rate = run.array(name, "hazard_intensity"), run.array(name, "hazard_rate")
+    at, share = run.array(name, "contribution_intensity"), run.array(name, "contribution")
+    with style.figure(9.0, 3.8, columns=2) as (fig, (left, right)):
+        left.plot(x, rate, "o-", color=style.GROUND, markersize=4)
+        left.axhline(r.annual_collapse_rate, color=style.THRUST, linestyle="--",
+                     label=f"collapse, {r.annual_collapse_rate:.2g} a year")  # fmt: skip
+        low, high = (np.nan if v is None else v for v in r.annual_collapse_rate_interval)
+        if np.isfinite(low):
+            left.axhspan(low, high, color=style.THRUST, alpha=0.15, linewidth=0)
+        if r.acceptable_annual_rate is not None:
+            left.axhline(r.acceptable_annual_rate, color=style.EDGE, linestyle=":", label="accepted")
+        left.set_xscale("log")
+        left.set_yscale("log")
+        left.set_ylabel("annual rate of exceedance [1/year]")
+        left.set_title("hazard of the site")
+        left.legend()
+        right.fill_between(at, 0.0, share, color=style.THRUST, alpha=0.3, linewidth=0)
+        right.plot(at, share, color=style.THRUST)
+        right.axvline(r.median, color=style.HINGE, linestyle="--", label=f"median of collapse, {r.median:.3g}")
+        right.set_xscale("log")
+        right.set_ylim(bottom=0.0)
+        right.set_ylabel("rate of collapse by ln(intensity) [1/year]")
+        right.set_title("which intensities bring it down")
+        right.legend()
+        for ax in (left, right):
+            ax.set_xlabel(_axis(r))
+        return style.save(fig, folder, f"{name}-annual"), (
+            f"Hazard curve with the annual rate of collapse and its {100 * r.confidence:g} % band; the area on the right is that rate."
+        )
+
+
+def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Ground motions and the responses to them, side by side (Fig. 6-6)."""
+    series = [run.series(name, f"history_{what}") for what in ("motion_time", "motion", "time", "rotation")]
+    n = len(series[0])
+    with style.figure(9.0, 1.0 + 1.35 * n, rows=n, columns=2, sharex=True, sharey="col") as (fig, axes):
+        for (left, right), at, ground, time, rotation in zip(axes.reshape(n, 2), *series, strict=True):
+            left.plot(at.data, ground.data, color=style.GROUND, linewidth=0.8)
+            fell = rotation.about.endswith("collapse")
+            right.plot(time.data, np.clip(rotation.data, -FALLEN, FALLEN), color=style.THRUST if fell else style.HINGE)
+            left.set_title(f"{at.about}: ground [g]", fontsize=8, loc="left")
+            right.set_title(
+                f"rotation over the critical one: {'overturns' if fell else 'stays up'}", fontsize=8, loc="left"
+            )
+            right.set_ylim(-FALLEN, FALLEN)
+        for ax in axes[-2:]:
+            ax.set_xlabel("time [s]")
+        return style.save(fig, folder, f"{name}-histories"), (
+            f"The first {n} motions and the rotation under each, over the critical one (Fig. 6-6)."
+        )
 
 
 def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:

@@ -42,6 +42,14 @@ class Reaction(ResultModel):
     vertical_N: float = fact("upward", "N")
 
 
+class TieForce(ResultModel):
+    """What a state of the structure asks of a tie, strut or spring of the deck."""
+
+    name: str = fact("its name")
+    force_N: float = fact("force in it, tension positive", "N")
+    state: Literal["slack", "carries", "yields"] = fact("without force, below its yield force, or at it")
+
+
 class ChainThrust(ResultModel):
     """Horizontal thrust of an arch of the structure, upright."""
 
@@ -110,6 +118,8 @@ class Tilt(KindResults):
     weight_N: float = fact("weight of the structure with its fill", "N")
     depth_m: float = fact("depth out of plane", "m")
     reactions: list[Reaction] = fact("forces of the ground at collapse")
+    ties: list[TieForce] = maybe("forces of the ties at collapse")
+    ties_opposite: list[TieForce] = maybe("forces of the ties at collapse to -x")
     thrust_min_N: float = maybe("least horizontal thrust upright, of the first arch", "N")
     thrust_max_N: float = maybe("greatest horizontal thrust upright, of the first arch", "N")
     thrusts: dict[str, ChainThrust] = maybe("least and greatest thrust upright of each arch, by its name")
@@ -142,6 +152,7 @@ class ThrustLine(ResultModel):
     required_friction_joint: str = fact("the joint that needs it")
     greatest_eccentricity_ratio: float = fact("greatest distance from the middle of a joint over its length")
     reactions: list[Reaction] = fact("forces of the ground")
+    ties: list[TieForce] = maybe("forces of the ties")
 
 
 class Thrust(KindResults):
@@ -184,6 +195,7 @@ class MovingLoad(KindResults):
     sliding_joints: list[int] = fact("joints that slide or part in the mechanism there")
     greatest_compression_N: float = fact("greatest compression across a joint there at collapse", "N")
     places_without_limit: int = fact("places where no load of the kind brings it down")
+    ties: list[TieForce] = maybe("forces of the ties there at collapse")
     duality_gap: float = fact("greatest difference between the bounds, in multiples of the weight")
     load_N: float = maybe("the load that the deck gives", "N")
     safety_factor: float = maybe("collapse load over that load")
@@ -240,6 +252,7 @@ class Supports(KindResults):
     work_J: float = maybe("work of the weight in the movements of [[initial.movements]]", "J")
     work_gap_J: float = maybe("difference between that and the work on the supports, which should be none", "J")
     reactions: list[Reaction] = maybe("forces of the ground while its supports give way")
+    ties: list[TieForce] = maybe("forces of the ties while its supports give way")
 
     def judged(self, demand: Demand) -> Verdict:
         """The movement that the arch can follow [m]; the deck asks for none."""

@@ -76,6 +76,15 @@ class SlaCurve(ResultModel):
     bilinear: Bilinear = maybe("idealisation of the envelope, where it has a rising branch and passed its peak")
 
 
+class SlaStage(SlaCurve):
+    """One stage of several; loads are those in the direction of its own, with what stages before have left on."""
+
+    name: str = fact("its name, or its number")
+    prefix: str = fact("how the names of its arrays begin; empty of the stage that stands for the analysis")
+    start_load_N: float = fact("load at its start", "N")
+    end_load_N: float | None = fact("load at its end", "N")
+
+
 class Scatter(ResultModel):
     """Repetitions with other seeds of mesh and strength."""
 
@@ -112,6 +121,9 @@ class Sla(SlaCurve, KindResults):
     points: int = fact("integration points, those of bars too")
     makeup: Makeup = maybe("what resume_from compares")
     minus: SlaCurve = maybe("the curve of the second sense")
+    stages: list[SlaStage] = maybe(
+        "of a run in stages, each; without a name, the numbers are those of the last or main one"
+    )
     measured: Comparison = maybe("the measured curve of the deck beside the first sense's")
     scatter: Scatter = maybe("repetitions with other seeds")
     hinges: list[str] = maybe("of stones: joints that are open but for an edge at the peak")

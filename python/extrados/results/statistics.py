@@ -18,7 +18,53 @@ class Sensitivity(ResultModel):
     collapse_total_interval: list[float | None] = fact("its bootstrap interval")
 
 
-class Ensemble(KindResults):
+class Annual(KindResults):
+    """What a curve of collapse and the hazard of a site give."""
+
+    annual_collapse_rate: float = maybe(
+        "mean annual rate of collapse", "1/year", source="Cornell and Krawinkler 2000, PEER Center News 3(2)"
+    )
+    annual_collapse_rate_interval: list[float | None] = maybe(
+        "its interval by what the runs leave open of the curve", "1/year"
+    )
+    annual_collapse_rate_left_out: float = maybe(
+        "what intensities beyond the ends of the hazard curve may add", "1/year"
+    )
+    collapse_return_period_years: float | None = maybe("its inverse", "year")
+    years: float = maybe("time for which the next probability holds", "year")
+    collapse_probability_in_years: float = maybe("probability of collapse in that time, events being independent")
+    collapse_probability_in_years_interval: list[float | None] = maybe("its interval")
+    decisive_intensity: float = maybe("intensity whose surroundings add most to the rate, in intensity_unit")
+    acceptable_annual_rate: float | None = maybe("rate that the deck accepts", "1/year")
+
+    def judged_by_rate(self) -> Verdict | None:
+        """The annual rate against the accepted one; open where the interval holds both. None without a hazard."""
+        rate, accepted = self.annual_collapse_rate, self.acceptable_annual_rate
+        if rate is None:
+            return None
+        text = f"The annual rate of collapse is {rate:.3g}"
+        if accepted is None:
+            return judge(f"{text}; the deck accepts no rate to compare with.", rate, None, "1/year", "none")
+        low, high = self.annual_collapse_rate_interval
+        outcome: Outcome = "stands" if rate < accepted else "falls"
+        if low is not None and high is not None and low < accepted <= high:
+            outcome = "open"
+            text += f", between {low:.2g} and {high:.2g}"
+        return judge(f"{text}; {accepted:.3g} is accepted.", rate, accepted, "1/year", outcome)
+
+
+class RotationLimit(ResultModel):
+    """The curve of rotations beyond a limit."""
+
+    rotation_ratio: float = fact("the limit, over the critical rotation")
+    median: float = fact("median of its lognormal curve, in intensity_unit")
+    dispersion: float = fact("its dispersion, of the logarithm")
+    median_interval: list[float | None] = fact("profile-likelihood interval of that median")
+    annual_rate: float = maybe("mean annual rate at which it is passed", "1/year")
+    annual_rate_interval: list[float | None] = maybe("its profile-likelihood interval", "1/year")
+
+
+class Ensemble(Annual):
     """fragility: one structure under many motions, each as it is."""
 
     count: int = fact("runs with a result")
@@ -52,17 +98,29 @@ class Ensemble(KindResults):
         "Sobol indices by uncertain value; `motion` is the choice of the motion", source="Saltelli and others 2010"
     )
     sensitivity_runs: int = maybe("runs for these indices, apart from `count`")
+    intensity: str = maybe("of a cloud: the measure of its curves; medians are in its unit")
+    intensity_unit: str = maybe("unit of the intensities and medians")
+    median: float | None = maybe(
+        "median of the lognormal curve of collapse over the intensities of the motions",
+        source="Jalayer and others 2017",
+    )
+    dispersion: float | None = maybe("its dispersion, of the logarithm", source="Jalayer and others 2017")
+    median_interval: list[float | None] = maybe("profile-likelihood interval of that median")
+    dispersion_interval: list[float | None] = maybe("profile-likelihood interval of that dispersion")
+    rotation_limits: list[RotationLimit] = maybe("curves of rotations beyond limits")
 
     def judged(self, demand: Demand) -> Verdict:
         """The share of motions that bring it down; open unless all agree."""
         if self.collapse_probability is None:
             return judge("No motion could be run.", outcome="open")
+        if (by_rate := self.judged_by_rate()) is not None:
+            return by_rate
         outcome: Outcome = "stands" if not self.collapsed else "falls" if self.collapsed == self.count else "open"
         text = f"{100.0 * self.collapse_probability:.3g} % of {self.count} motions bring it down."
         return judge(text, self.collapse_probability, None, "probability", outcome)
 
 
-class OverLevels(KindResults):
+class OverLevels(Annual):
     """fragility: one structure under the same motions scaled to levels of an intensity; lists hold one value a level."""
 
     intensity: str = fact("the measure to which motions are scaled; levels and medians are in its unit")
@@ -140,6 +198,8 @@ class OverLevels(KindResults):
         """The fitted median is the capacity; levels are questions, not a demand."""
         if not any(self.count):
             return judge("No motion could be run.", outcome="open")
+        if (by_rate := self.judged_by_rate()) is not None:
+            return by_rate
         unit = f" {self.intensity_unit}" if self.intensity_unit else ""
         if self.median is None:
             share = [p for p in self.collapse_probability if p is not None]

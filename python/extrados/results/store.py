@@ -10,7 +10,7 @@ import logging
 import os
 import shutil
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -29,6 +29,7 @@ from extrados.schema.text import printable
 
 SUMMARY = "summary.json"
 STORE = "results.h5"
+CSV_ROWS = 10_000  # turned into text at a time
 REPORT = "report.html"
 #: What an array says of itself, in the order of Array's fields
 MARKS = ("unit", "about", "series")
@@ -191,7 +192,8 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
         for name, result in zip(names, results, strict=True):
             for title, table in result.tables.items():
                 suffix = name.removeprefix(result.kind)
-                (folder / f"{title}{suffix}.csv").write_text(csv_text(table), encoding="utf-8", newline="")
+                with open(folder / f"{title}{suffix}.csv", "w", encoding="utf-8", newline="") as file:
+                    file.writelines(csv_parts(table))
             for title, content in result.files.items():
                 # a second analysis of a kind keeps its files in a folder of its own, where they find each other
                 target = folder / title if name == result.kind else folder / name / title
@@ -211,13 +213,25 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
 
 def csv_text(table: TableData) -> str:
     """A table as CSV: the header carries the unit after the name; numbers round-trip."""
-    out = io.StringIO()
-    writer = csv.writer(out, lineterminator="\n")
+    return "".join(csv_parts(table))
+
+
+def csv_parts(table: TableData) -> Iterator[str]:
+    """The same, some rows at a time: the text of many takes more memory than their numbers."""
     names = list(table.columns)
     units = [table.units.get(name, "") for name in names]
-    writer.writerow([_cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)])
-    for row in zip(*(np.asarray(c).tolist() for c in table.columns.values()), strict=True):
-        writer.writerow([repr(v) if isinstance(v, float) else _cell(v) for v in row])
+    columns = [np.asarray(column) for column in table.columns.values()]
+    if len({len(column) for column in columns}) > 1:
+        raise ValueError(f"columns of unlike length: {', '.join(names)}")
+    yield _lines([[_cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]])
+    for first in range(0, len(columns[0]) if columns else 0, CSV_ROWS):
+        some = (column[first : first + CSV_ROWS].tolist() for column in columns)
+        yield _lines([repr(v) if isinstance(v, float) else _cell(v) for v in row] for row in zip(*some, strict=True))
+
+
+def _lines(rows: Iterable[list[Any]]) -> str:
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
     return out.getvalue()
 
 

@@ -7,14 +7,17 @@ import contextlib
 import hashlib
 import itertools
 import json
+import logging
 import os
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 from extrados.schema import files
 
 LIST = ".written.json"
+
+log = logging.getLogger(__name__)
 
 
 def sum_of(content: bytes) -> str:
@@ -99,6 +102,36 @@ def beside(path: Path) -> Path:
     """The first of NAME-2, NAME-3 ... beside a path that is not there."""
     numbered = (path.with_name(f"{path.stem}-{k}{path.suffix}") for k in itertools.count(2))
     return next(other for other in numbered if not os.path.lexists(other))
+
+
+def put(scratch: Path, folder: Path, belongs: Callable[[str], bool]) -> dict[str, str]:
+    """Move the files of a scratch folder into a folder; the name that each got there.
+
+    What is there and was not written by extrados, or was changed since, stays: the new file is put beside it, which is
+    logged. Older files of ours that `belongs` knows by their names and that have no successor are removed.
+    """
+    new = sums_of(scratch)
+    known = noted(folder)
+    others = {name: sums[-1] for name, sums in known.items() if not belongs(name)}
+    names = {}
+    for name in new:
+        taken = os.path.lexists(folder / name) and not is_ours(folder, name, known)
+        names[name] = beside(folder / name).relative_to(folder).as_posix() if taken else name
+        if taken:
+            log.warning(
+                "%s: was not written by extrados or changed since; the new one is %s", folder / name, names[name]
+            )
+    fresh = {names[name]: value for name, value in new.items()}
+    # noted before it is moved: whoever is killed in between leaves nothing that is taken for a stranger's
+    note(folder, {name: value for name, sums in known.items() for value in sums[:1]}, fresh)
+    for name in known:
+        if belongs(name) and name not in fresh and is_ours(folder, name, known):
+            (folder / name).unlink()
+    for name, target in names.items():
+        (folder / target).parent.mkdir(exist_ok=True)
+        (scratch / name).replace(folder / target)
+    note(folder, others, fresh)
+    return names
 
 
 @contextlib.contextmanager

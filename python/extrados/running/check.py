@@ -2,6 +2,8 @@
 
 import csv
 import io
+import os
+import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,6 +12,7 @@ import numpy as np
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.inspection import Inspection
 from extrados.decks.reader import Deck
+from extrados.results import written
 
 
 @dataclass(frozen=True)
@@ -75,10 +78,14 @@ def _places(inspection: Inspection) -> list[Place]:
 
 
 def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
-    """The picture and the list of a survey into a folder: geometry.png (and .svg), geometry.csv."""
+    """The picture and the list of a survey into a folder: geometry.png (and .svg), geometry.csv.
+
+    A file there that extrados did not write, or that was changed since, stays, and the new one is put beside it.
+    """
     from extrados.plots.geometry import Mark, draw_survey  # matplotlib takes a third of a second to load
 
     assert checked.inspection is not None
+    folder = Path(os.path.abspath(folder))
     folder.mkdir(parents=True, exist_ok=True)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -86,9 +93,13 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
     for row in checked.places:
         depth = "" if row.depth is None else f"{1e3 * row.depth:.4g}"
         writer.writerow([row.what, row.status, row.between, depth, *(f"{v:.4f}" for v in row.place), row.mended_by])
-    table = folder / "geometry.csv"
-    table.write_text(text.getvalue(), encoding="utf-8")
     inspection = checked.inspection
     joints = np.column_stack([inspection.contacts.p, inspection.contacts.q])
     marks = [Mark(row.place, row.depth, row.status, row.between) for row in checked.places]
-    return draw_survey(folder, "geometry", inspection.outlines, joints, inspection.ground, marks), table
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        scratch = Path(place)
+        (scratch / "geometry.csv").write_text(text.getvalue(), encoding="utf-8")
+        draw_survey(scratch, "geometry", inspection.outlines, joints, inspection.ground, marks)
+        with written.alone(folder.parent):
+            names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
+    return folder / names["geometry.png"], folder / names["geometry.csv"]

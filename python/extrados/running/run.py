@@ -95,11 +95,6 @@ def run_to(context: Context, out: str | Path, figures: bool = True) -> Run:
     return run
 
 
-def default_out(deck: Deck) -> Path:
-    """results/<deck name> below the current folder."""
-    return Path("results") / (Path(deck.path).stem or "deck")
-
-
 @contextlib.contextmanager
 def _after_writing() -> Iterator[None]:
     """Ctrl-C while results are written waits until they are: a long run is not lost in its last moment."""

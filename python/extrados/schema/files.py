@@ -1,6 +1,7 @@
 """The one door for files that a deck or a user names: opened once, and everything is asked of the open file."""
 
 import contextlib
+import contextvars
 import os
 import stat
 import tempfile
@@ -18,6 +19,10 @@ SHIPPED = {
 # Without O_NONBLOCK the opening of a FIFO waits for its writer, and without O_NOCTTY that of a terminal takes it.
 _FLAGS = os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC
 _FOLDER = getattr(os, "O_PATH", os.O_RDONLY) | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
+
+
+#: Whether absolute paths are refused, as where decks come from a browser; see `confine`
+_confined: contextvars.ContextVar[bool] = contextvars.ContextVar("confined", default=False)
 
 
 class BadFile(ValueError):
@@ -48,6 +53,12 @@ class File:
             yield copy
 
 
+def confine() -> None:
+    """From now on, in this context, decks name shipped files and those inside their folder alone: no absolute path is
+    followed."""
+    _confined.set(True)
+
+
 def locate(file: str, folder: Path) -> Path:
     """The place a deck means: shipped, absolute as the user wrote it, or inside the deck's folder; BadFile else."""
     if file.startswith("extrados:"):
@@ -59,6 +70,8 @@ def locate(file: str, folder: Path) -> Path:
         raise BadFile(f"{file!r}: a file name cannot hold a zero byte")
     path = Path(file)
     if path.is_absolute():
+        if _confined.get():
+            raise BadFile(f"{file}: is an absolute path; only files beside the deck are read here")
         return path
     try:
         inside, root = (folder / path).resolve(), folder.resolve()

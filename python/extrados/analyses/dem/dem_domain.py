@@ -8,6 +8,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task, answered
+from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import DemDomain
 from extrados.analyses.dem.trial import start
 from extrados.analyses.rocking.failure_domain import settling_time, shortest_durations, unit_pulse
@@ -39,6 +40,7 @@ class Search:
     def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[JointValues], rounds: float):
         self.context, self.options, self.model = context, options, model
         self.bodies = [model.bodies(values) for values in curves]
+        self.settlement = [farthest_settlement(model, values) for values in curves]
         self.settle = options.settle or dem_model.settle_time(model)
         self.limit = options.collapse_displacement or 0.2 * model.size
         self.shift = start(context, model)
@@ -65,7 +67,7 @@ class Search:
         motion = unit_pulse(self.options.pulse, duration)
         options = dem.Options(
             end_time=motion.end + self.settle, output_step=1e3, fraction=self.options.fraction, collapse=self.limit,
-            stop_at_rest=True, mass_damping=self.options.mass_damping,
+            stop_at_rest=True, mass_damping=self.options.mass_damping, settlement=self.settlement[curve],
         )  # fmt: skip
         return Task(curve, options, motion.ground, amplitude, self.shift)
 

@@ -5,6 +5,7 @@ import shutil
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem import motion, tilt
+from extrados.analyses.dem.standing import against_limit_analysis
 from extrados.analyses.dem.tables import Dem
 from extrados.core.calls import interruptible
 from extrados.results.model import Result
@@ -16,5 +17,12 @@ def run(context: Context, options: Dem) -> Result:
         raise Refused('animation = "mp4" needs the program ffmpeg, which is not here; "gif" needs nothing')
     model = dem_model.make_model(context, options, options.floor)
     context.warnings += dem_model.warnings(model, options)
-    with interruptible():  # Ctrl-C between two runs stops the next one
-        return (tilt if options.test == "tilt" else motion).run(context, options, model)
+    try:
+        with interruptible():  # Ctrl-C between two runs stops the next one
+            result = (tilt if options.test == "tilt" else motion).run(context, options, model)
+    except dem_model.Falls as error:
+        told = against_limit_analysis(context.building, stands=False)
+        raise Refused(f"{error}; {told}" if told else str(error)) from None
+    if told := against_limit_analysis(context.building, stands=True):
+        result.warnings.append(told)
+    return result

@@ -125,17 +125,22 @@ def make_model(context: Context, options: DemTable, floor: float | None = None) 
     return Model(assembly, building.rigid(groups, floor), joint_values(building))
 
 
+class Falls(Refused):
+    """The structure does not stand under its own weight."""
+
+
 def checked(run: dem.Run, model: Model, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")) -> dem.Run:
-    """The run where it ended in one of the ways of `keep`; Refused says what stopped it and which block."""
+    """The run where it ended in one of the ways of `keep`; Refused says what stopped it and which block, Falls where it
+    fell before it was shaken."""
     if run.interrupted or run.reason in keep:
         return run
     names = [model.rigid.names[k] for k in run.blamed]
     first = names[0] if names else "a block"
-    raise Refused(
+    raise (Falls if run.reason == "unsettled" else Refused)(
         {
             "step": f"the time step is above the critical one, {run.critical_step:.3g} s",
             "overlap": f"{' and '.join(names)} overlap at the start",
-            "unsettled": f"the structure does not come to rest under its own weight: {first} moves",
+            "unsettled": f"the structure does not stand under its own weight: {first} falls, or does not come to rest",
             "blow-up": f"the energy ledger does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
             f"{first}; a smaller fraction of the critical step may help",
         }.get(run.reason, f"stopped: {run.reason} ({first})")

@@ -9,6 +9,7 @@ from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.runs import Runs, Task, answered
+from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
 from extrados.analyses.dem.trial import core_options
 from extrados.analyses.dem.words import tilt_answer
@@ -43,7 +44,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         context.warnings.append(f"plays no part in a tilt test: {', '.join(unused)}")
     base = replace(
         core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
-        output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
+        settlement=farthest_settlement(model), output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
     )  # fmt: skip
     (collapse, last), (back, back_run) = _capacities(context, options, model, base)
     state, slip, at, found_hinges = _hinged(model, last)

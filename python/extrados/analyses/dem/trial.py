@@ -8,6 +8,7 @@ from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task
+from extrados.analyses.dem.settlement import farthest_settlement
 from extrados.analyses.dem.tables import Dem
 from extrados.building.errors import NoView
 from extrados.building.rockers.mechanism import MechanismModel
@@ -84,7 +85,7 @@ def start(context: Context, model: Model) -> np.ndarray | None:
 
 def _about_a_toe(block: BlockAssembly, side: int, ratio: float, bodies: int) -> np.ndarray:
     turn = -ratio * block.alpha[side]  # positive to +x is clockwise
-    toe = np.array([block.toe_right, 0.0]) if side == 0 else np.array([-block.toe_left, 0.0])
+    toe = block.q[0] if side == 0 else block.p[0]
     arm = block.centroid[0] - toe
     c, s = np.cos(turn), np.sin(turn)
     shift = np.zeros((bodies, 3))
@@ -112,5 +113,11 @@ class Trial:
     def job(self, values: list[JointValues], **change: object) -> Runs:
         """A run with each of these joint values; `change` replaces options of the core."""
         options = replace(self.options, **change)
-        tasks = [Task(k, options, self.ground, shift=self.shift, moves=self.moves) for k in range(len(values))]
+        tasks = [
+            Task(
+                k, replace(options, settlement=farthest_settlement(self.model, v)), self.ground, shift=self.shift,
+                moves=self.moves,
+            )
+            for k, v in enumerate(values)
+        ]  # fmt: skip
         return Runs([self.model.bodies(v) for v in values], tasks)

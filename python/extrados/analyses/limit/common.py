@@ -1,6 +1,7 @@
 """What the drivers of limit analysis share: loads, refusals, arrays of geometry, lines and polygons."""
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,19 +11,21 @@ from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
+from extrados.building.geometry.anchors import stones_at
 from extrados.building.geometry.assembly import Assembly
-from extrados.building.geometry.polygons import inside
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
 from extrados.limit.equilibrium import Disconnected
-from extrados.limit.fill import under_load
+from extrados.limit.fill import passive_pressure, under_load
 from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.places import place_of
 from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State
-from extrados.results.limit import Hinge, Reaction
+from extrados.limit.resistance import Resistance, together
+from extrados.limit.ties import pulls, tensions
+from extrados.results.limit import Hinge, Reaction, TieForce
 from extrados.results.model import Array
 
 #: Bounds and mechanism must agree this closely, relative to gamma, or the answer is not given.
@@ -31,6 +34,9 @@ GAP = 1e-8
 VERY_MANY, GAP_OF_MANY = 5000, 1e-7
 #: Length over which a point load on earth presses [m]
 CONTACT = 0.3
+#: Of its yield force, or of the weight: less in a tie is none
+SLACK = 1e-6
+MOST_TIES = 6  # told in words
 
 
 def chain_of(assembly: Assembly, name: str | None) -> str | None:
@@ -63,12 +69,8 @@ def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
 
 def _block_at(assembly: Assembly, x: float, y: float) -> int:
     """The block that holds a point, or has it on its face."""
-    hair = 1e-6 * assembly.size
-    around = np.array([[x, y], [x - hair, y], [x + hair, y], [x, y - hair], [x, y + hair]])
-    for point in around:
-        for i, outline in enumerate(assembly.outlines):
-            if inside(outline, point[None])[0]:
-                return i
+    if found := stones_at(assembly, np.array([x, y])):
+        return found[0]
     raise Refused(f"a load at x = {x:.4g}, y = {y:.4g} m acts on no block")
 
 
@@ -92,9 +94,17 @@ def _pieces(assembly: Assembly, load: AppliedLoad) -> list[tuple[int, np.ndarray
     return found
 
 
-def loads_of(assembly: Assembly, options: Any) -> Loads:
-    """Weight, fill and the loads of an analysis; what sways is the weight, the fill and the loads that say so."""
+def ties_of(building: Building, scale: float) -> Resistance | None:
+    """The pulls of the ties of a building; those that never yield have `scale` [N] for a whole. None without ties."""
+    ties = building.ties
+    return pulls(building.anchored(), [t.least for t in ties], [t.most for t in ties], scale) if ties else None
+
+
+def loads_of(assembly: Assembly, options: Any, building: Building) -> Loads:
+    """Weight, fill, the loads of an analysis and the ties of a building, on its stones, which `assembly` may vary; what
+    sways is the weight, the fill and the loads that say so."""
     loads = tilt_loads(assembly)
+    loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)))
     dead, live = np.zeros_like(loads.dead), np.zeros_like(loads.live)
     for load in getattr(options, "load", []):
         spreads = assembly.earth is not None and load.y is None and load.force != 0.0
@@ -121,7 +131,7 @@ def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bo
             building.friction(),
             strength=building.material.compressive_strength,
             associated=forces_only or options.friction_rule == "associated",
-            loads=loads_of(assembly, options),
+            loads=loads_of(assembly, options, building),
             starts=options.starts,
         )
     except Disconnected as error:
@@ -152,9 +162,14 @@ def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | N
         raise Refused("fracture needs a buttress that stands on the ground: a vault or an aisled vault")
     if building.material.compressive_strength is not None or options.friction_rule != "associated":
         raise Refused("fracture is computed without crushing and with associated friction")
+    leeward = assembly.buttresses[-1]
+    if building.ties and (building.anchored().block == leeward).any():
+        raise Refused(
+            f"fracture: a tie is anchored in {assembly.block_names[leeward]}; whether its wedge holds the anchor is not known"
+        )
     try:
         return fractured_collapse(
-            assembly, assembly.buttresses[-1], 1, building.friction(), lambda cracked: loads_of(cracked, options)
+            assembly, leeward, 1, building.friction(), lambda cracked: loads_of(cracked, options, building)
         )
     except NoCrack as error:
         raise Refused(f"fracture: {error}") from None
@@ -215,17 +230,86 @@ def earth_arrays(assembly: Assembly) -> dict[str, Array]:
     return made
 
 
+def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, Array]:
+    """The loads of an analysis at rest as figures show them, spread ones in pieces; nothing without them."""
+    point, force, whole = [], [], []
+    for k, load in enumerate(loads):
+        for _, at, share in _pieces(assembly, load):
+            point.append(at)
+            force.append((share * load.horizontal, -share * load.force))
+            whole.append(k)
+    if not point:
+        return {}
+    return {
+        "load_point": Array(
+            np.array(point), ("load_piece", "axis"), "m", "where loads at rest act, spread ones in pieces"
+        ),
+        "load_force": Array(np.array(force), ("load_piece", "axis"), "N", "their forces, to +x and upward"),
+        "load_number": Array(np.array(whole), ("load_piece",), "", "number of the load in the deck, from 0"),
+    }
+
+
 def push_arrays(assembly: Assembly, loads: Loads, state: State) -> dict[str, Array]:
     """The passive pressures that a state mobilises: where they act and how much; nothing where none counts."""
-    if loads.resistance is None or state.mobilised is None:
+    earth = assembly.earth
+    push = None if earth is None else passive_pressure(earth, assembly.depth, assembly.centroid)
+    if push is None:
         return {}
-    block, wrench = loads.resistance.block, loads.resistance.wrench
-    at = np.column_stack([assembly.centroid[block, 0], -wrench[:, 2] / wrench[:, 0]])
+    most = push.wrench[:, 0]
     return {
-        "push_point": Array(at, ("push", "axis"), "m", "where the fill pushes back"),
-        "push_force": Array(state.mobilised * wrench[:, 0], ("push",), "N", "its horizontal push, to +x"),
-        "push_most": Array(wrench[:, 0], ("push",), "N", "the most it can push, to +x"),
+        "push_point": Array(push.point, ("push", "axis"), "m", "where the fill pushes back"),
+        "push_force": Array(state.mobilised[: push.count] * most, ("push",), "N", "its horizontal push, to +x"),
+        "push_most": Array(most, ("push",), "N", "the most it can push, to +x"),
     }
+
+
+def tie_rows(building: Building, loads: Loads, state: State, key: str = "ties") -> dict[str, list[TieForce]]:
+    """What a state asks of the ties, under a key of results; nothing without ties."""
+    if not building.ties:
+        return {}
+    rows = []
+    for tie, force in zip(building.ties, _tensions(building, loads, state), strict=True):
+        least = SLACK * (tie.yield_force or loads.scale)
+        yields = tie.yield_force is not None and abs(force) > tie.yield_force - least
+        sort = "yields" if yields else "slack" if abs(force) < least else "carries"
+        rows.append(TieForce(name=tie.name or "", force_N=force, state=sort))
+    return {key: rows}
+
+
+def tie_arrays(building: Building, loads: Loads, states: dict[str, State]) -> dict[str, Array]:
+    """The ties as figures show them, with their forces in each of the states; nothing without ties."""
+    if not building.ties:
+        return {}
+    forces = {
+        f"{name}_tie_force": Array(
+            _tensions(building, loads, state), ("tie",), "N", f"tension of the ties, state '{name}'"
+        )
+        for name, state in states.items()
+    }
+    anchored = building.anchored()
+    return {
+        "tie_point": Array(anchored.point, ("tie", "tie_end", "axis"), "m", "both ends of the ties"),
+        "tie_block": Array(anchored.block, ("tie", "tie_end"), "", "blocks at both ends, -1 the ground"),
+        **forces,
+    }
+
+
+def _tensions(building: Building, loads: Loads, state: State) -> np.ndarray:
+    assert loads.resistance is not None
+    return tensions(loads.resistance, state.mobilised, len(building.ties))
+
+
+def spoken_ties(rows: list[TieForce] | None) -> str:
+    """The forces of the ties in a sentence, with a blank before; "" without ties."""
+    if not rows:
+        return ""
+    words = {"yields": "{name} yields at {force}", "slack": "{name} is slack", "carries": "{name} carries {force}"}
+    told = [
+        words[r.state].format(name=r.name, force=f"{abs(r.force_N) / 1e3:.4g} kN in {'tension' if r.force_N > 0.0 else 'compression'}")
+        for r in rows[:MOST_TIES]
+    ]  # fmt: skip
+    text = ", ".join(told) + (f" and {len(rows) - MOST_TIES} more" if len(rows) > MOST_TIES else "")
+    return f" {text[:1].upper()}{text[1:]}."
 
 
 def zone_arrays(assembly: Assembly, state: State, strength: float | None) -> dict[str, Array]:

@@ -8,6 +8,7 @@ from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import answer_of, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import Imperfections
+from extrados.building.building import Building
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.deviation import resurveyed
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
@@ -27,6 +28,7 @@ class Surveys:
     strength: float | None
     options: Imperfections
     deviation: float
+    building: Building
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         return stacked(self._member, first, count)
@@ -35,7 +37,7 @@ class Surveys:
         survey = resurveyed(self.assembly, self.deviation, np.random.default_rng([self.options.seed, k]))
         limit = LimitAnalysis(
             survey, self.friction, strength=self.strength, associated=self.options.friction_rule == "associated",
-            loads=loads_of(survey, self.options),
+            loads=loads_of(survey, self.options, self.building),
         )  # fmt: skip
         gamma, answered = np.full(2, np.nan), True
         try:
@@ -66,7 +68,7 @@ def run(context: Context, options: Imperfections) -> Result:
             f"'{assembly.joint_names[int(assembly.length.argmin())]}' ({1e3 * shortest:.3g} mm)"
         )
     nominal = answer_of(building, options)
-    job = Surveys(assembly, building.friction(), building.material.compressive_strength, options, deviation)
+    job = Surveys(assembly, building.friction(), building.material.compressive_strength, options, deviation, building)
     swept = sweep(context, "imperfections", job, options.count, "random surveys", slow=True).whole()
     gamma = swept["gamma"]
     lesser, given = gamma.min(axis=1), min(nominal.gamma, -nominal.back_state.gamma)

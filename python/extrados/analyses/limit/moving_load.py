@@ -12,8 +12,13 @@ from extrados.analyses.limit.common import (
     chain_of,
     geometry_arrays,
     limit_of,
+    line_arrays,
+    load_arrays,
     loads_of,
     push_arrays,
+    spoken_ties,
+    tie_arrays,
+    tie_rows,
     zone_arrays,
 )
 from extrados.analyses.limit.tables import MovingLoad, PartialFactors
@@ -24,6 +29,7 @@ from extrados.building.geometry.chains import is_stack
 from extrados.building.geometry.earth import skyline
 from extrados.building.structure import Structure
 from extrados.limit.fill import pressed, under_load
+from extrados.limit.lines import thrust_paths
 from extrados.limit.loads import Loads, forces_at
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium, State
@@ -37,9 +43,10 @@ FINE = 0.02  # of the way: pieces of the top on which even loads stand or do not
 
 @dataclass(frozen=True)
 class Collapse:
-    """State and mechanism of collapse, the multiple of the train that it takes, and the load then on it [N]."""
+    """State and mechanism of collapse under `loads`, the multiple of the train that it takes, and the load then on it [N]."""
 
     state: State
+    loads: Loads
     mechanism: Mechanism
     factor: float
     load: float
@@ -114,7 +121,7 @@ class Places:
             state, mechanism = limit.collapse(1)
         except NoEquilibrium:
             return None, limit
-        return Collapse(state, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing), limit
+        return Collapse(state, loads, mechanism, state.gamma * scale, state.gamma * self.dead.scale, standing), limit
 
     def at(self, k: int) -> np.ndarray:
         """Where the axles stand [m]."""
@@ -215,7 +222,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         raise Refused(
             f"width: {options.width:g} m is more than the depth of the {structure.word}, {assembly.depth:g} m"
         )
-    dead = factored(assembly, loads_of(assembly, options), factors)
+    dead = factored(assembly, loads_of(assembly, options, building), factors)
     # The whole depth stands for the strip that carries the load: as much heavier is the load on all of it.
     strip = assembly.depth / (options.width or assembly.depth)
     design = factors.live * factors.dynamic * strip if train.known else 1.0
@@ -239,6 +246,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     if worst is None:  # the sweep found it by the same steps
         raise Refused("the most dangerous place was not found again")
     state, mechanism = worst.state, worst.mechanism
+    heavier = replace(assembly, mass=factors.masonry * assembly.mass)
     result = Result("moving-load")
     asked: dict[str, object] = {}
     if options.force is not None:
@@ -260,6 +268,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         sliding_joints=mechanism.sliding,
         places_without_limit=int(np.isinf(factor).sum()),
         greatest_compression_N=float(np.nanmax(state.normal)),
+        **tie_rows(building, dead, state),
         duality_gap=gap,
         **asked,
     )
@@ -268,6 +277,8 @@ def run(context: Context, options: MovingLoad) -> Result:
     result.arrays = {
         **geometry_arrays(assembly),
         **push_arrays(assembly, dead, state),
+        **load_arrays(assembly, options.load),
+        **tie_arrays(building, dead, {"collapse": state}),
         **zone_arrays(assembly, state, job.strength),
         "place": Array(places, ("place",), "m", "x of the first axle"),
         "way": Array(ways, ("place",), "", "1 where the train heads to +x, -1 to -x"),
@@ -275,6 +286,7 @@ def run(context: Context, options: MovingLoad) -> Result:
         "axle": Array(job.at(k), ("axle",), "m", "axles at the worst place"),
         "even_load": Array(_standing(job, k, worst), ("stretch", "end"), "m", "where even loads stand at the worst place"),
         "collapse_point": Array(state.points(assembly), ("joint", "axis"), "m", "thrust line at collapse, worst place"),
+        **line_arrays("collapse", thrust_paths(heavier, worst.loads, state, sway=0.0), "at collapse, worst place"),
         "envelope_point": Array(swept["line"], ("place", "joint", "axis"), "m", "thrust lines at collapse, all places"),
         "envelope_normal": Array(swept["normal"], ("place", "joint"), "N", "compression at collapse, all places"),
         "mechanism_pose": Array(finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad", "the mechanism carried on"),
@@ -347,7 +359,7 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
     place = f"x = {r.worst_place_m:.2f} m ({100 * r.worst_place_over_span:.0f} % of the {way})"
     if r.adequacy_factor is not None and options.force is None:
         heading = f", heading to {r.worst_way}" if options.both_ways else ""
-        factors = "" if r.live_load_factor == 1.0 else f", already {r.live_load_factor:.4g} times itself,"
+        factors = "" if r.live_load_factor == 1.0 else f" with its load factor of {r.live_load_factor:.4g}"
         text = (
             f"The {what} bears {r.adequacy_factor:.3g} times {'the train' if r.train == 'train' else r.train}{factors} at "
             f"the most dangerous place, with its first axle at {place}{heading}: {r.collapse_load_N / 1e3:.4g} kN then stand on it."
@@ -361,4 +373,4 @@ def _words(options: MovingLoad, r: out.MovingLoad, structure: Structure) -> str:
         text += f" The given load of {options.force / 1e3:.4g} kN has a safety factor of {r.safety_factor:.2f}."
         if r.adequacy_factor is not None and abs(r.adequacy_factor / r.safety_factor - 1.0) > 1e-9:
             text += f" With its partial factors the adequacy factor is {r.adequacy_factor:.3g}."
-    return text
+    return text + spoken_ties(r.ties)

@@ -1,21 +1,27 @@
-"""supports: an arch whose right support spreads or settles, from rest until it falls."""
+"""supports: what opens where supports give way; an arch whose right support moves, from rest until it falls."""
+
+from dataclasses import replace
 
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.common import geometry_arrays, state_arrays
+from extrados.analyses.limit.common import geometry_arrays, spoken_ties, state_arrays, tie_arrays, tie_rows, ties_of
 from extrados.analyses.limit.tables import Supports
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import in_order, is_stack
+from extrados.limit.loads import tilt_loads
 from extrados.limit.places import place_of
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
+from extrados.limit.resistance import together
 from extrados.limit.settlement import settle
 from extrados.limit.supports import support_movement
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
 OPENS = 1e-7  # of the greatest opening: joints that move by less do not
+SMALL = 1e-3  # of the width: how far a support moves unless the deck says
+APART = 1e-3  # of the size: supports that are nearer are one
 LARGE = 0.05  # rad: beyond, motions of first order are coarse
 SHOWN = (0.0, 0.25, 0.5, 0.75, 1.0)  # of the movement at the fall
 
@@ -27,17 +33,18 @@ def _place(arch: Assembly, hinge: tuple[int, str]) -> str:
 
 
 def run(context: Context, options: Supports) -> Result:
-    """States on the way, the movement at the fall, how the thrust and the hinges change."""
+    """Joints that open; of an arch without ties the states on the way to its fall, how the thrust and the hinges change."""
+    assembly = context.building.blocks()
     if context.building.initial.movements:
-        return _any_structure(context)
-    try:
-        arch = in_order(context.building.blocks())
-    except BadGeometry as error:
-        raise Refused(
-            f"supports: {error}; of other structures say which supports give way by [[initial.movements]]"
-        ) from None
+        return _any_structure(context, _asked(context))
     if options.spread == 0.0 and options.settle == 0.0:
         raise Refused("supports: with spread = 0 and settle = 0 nothing moves")
+    try:
+        arch = None if context.building.ties else in_order(assembly)
+    except BadGeometry:
+        arch = None
+    if arch is None:
+        return _any_structure(context, _right_support(assembly, options))
     try:
         states = support_movement(arch, (options.spread, -options.settle), options.steps)
     except NoEquilibrium as error:
@@ -96,8 +103,30 @@ def run(context: Context, options: Supports) -> Result:
     return result
 
 
-def _any_structure(context: Context) -> Result:
-    """The joints that open under the movements of the deck, all at once and small."""
+def _right_support(assembly: Assembly, options: Supports) -> np.ndarray:
+    """The movement (joints, 3) of the right support: the rightmost joints on the ground, up to the first gap in plan.
+
+    Refused where there is one support only.
+    """
+    grounded = np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND))
+    ends = np.sort(np.stack([assembly.p[grounded, 0], assembly.q[grounded, 0]]), axis=0)
+    order = np.argsort(-ends[1], kind="stable")
+    apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
+    if not apart.any():
+        raise Refused(
+            "supports: it stands on one support, which carries all of it along; say by [[initial.movements]] which joints "
+            "on the ground give way"
+        )
+    right = grounded[order[: int(apart.argmax()) + 1]]
+    width = float(np.ptp(np.concatenate(assembly.outlines)[:, 0]))
+    along = np.array([options.spread, -options.settle])
+    movement = np.zeros((len(assembly.a), 3))
+    movement[right, :2] = along / np.hypot(*along) * (options.movement or SMALL * width)
+    return movement
+
+
+def _asked(context: Context) -> np.ndarray:
+    """The movements (joints, 3) of the deck: dx, dy [m] and turn [rad]."""
     building = context.building
     assembly = building.blocks()
     movement = np.zeros((len(assembly.a), 3))
@@ -113,7 +142,16 @@ def _any_structure(context: Context) -> Result:
         movement[j] += one.dx, one.dy, np.radians(one.turn)
     if not movement.any():
         raise Refused("initial.movements: nothing moves")
-    limit = LimitAnalysis(assembly, building.friction())
+    return movement
+
+
+def _any_structure(context: Context, movement: np.ndarray) -> Result:
+    """The joints that open under movements (joints, 3) of supports, all at once and small."""
+    building = context.building
+    assembly = building.blocks()
+    loads = tilt_loads(assembly)
+    loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)))
+    limit = LimitAnalysis(assembly, building.friction(), loads=loads)
     try:
         found = settle(limit, movement)
     except NoEquilibrium as error:
@@ -143,9 +181,11 @@ def _any_structure(context: Context) -> Result:
             for j, sign in enumerate(np.where(assembly.b == GROUND, 1.0, -1.0).tolist())
             if GROUND in (assembly.a[j], assembly.b[j])
         ],
+        **tie_rows(building, loads, found.state),
     )
     result.arrays = {
         **geometry_arrays(assembly),
+        **tie_arrays(building, loads, {"settled": found.state}),
         **state_arrays(assembly, "settled", found.state, "while supports give way"),
         "settled_pose": Array(found.pose, ("block", "component"), "m, m, rad", "places of the centroids, rotations"),
         "settled_opening": Array(motion, ("joint", "component"), "m", "opening at the first and second end, slip"),
@@ -163,12 +203,27 @@ def _any_structure(context: Context) -> Result:
             f"stones turn by up to {np.degrees(np.abs(found.pose[:, 2]).max()):.1f} degrees: the motion is of first order, "
             "smaller movements are meant"
         )
-    shown = "; ".join(f"{o.name} by {o.opening_mm:.3g} mm" for o in opened[:6] if o.opening_mm > 0.0)
+    wide_open = [o for o in opened if o.opening_mm > 1e-3 * abs(o.slip_mm)]
+    shown = "; ".join(f"{o.name} by {o.opening_mm:.3g} mm" for o in wide_open[:6])
     slid = [o.name for o in opened if abs(o.slip_mm) > 1e-3 * max(o.opening_mm, 1e-300)]
+    if slid:
+        result.warnings.append(
+            "joints that slide open by their friction times the slip too, since sliding dilates in this analysis; "
+            '`friction = "no-sliding"` shows what only opens'
+        )
+    most_moved = 1e3 * float(np.hypot(*movement[:, :2].T).max())
+    given = f" by up to {most_moved:.3g} mm" if most_moved > 0.0 else ""
     result.answer = (
-        f"Where its supports give way {len(opened)} joints of the {building.structure.word} move: {shown}"
-        + (f" and {len(opened) - 6} more" if len(opened) > 6 else "")
-        + (f"; {len(slid)} of them slide" if slid else "")
+        f"Where its supports give way{given} {_counted(len(wide_open), 'joint')} of the {building.structure.word} "
+        f"{'opens' if len(wide_open) == 1 else 'open'}"
+        + (f": {shown}" if shown else "")
+        + (f" and {len(wide_open) - 6} more" if len(wide_open) > 6 else "")
+        + (f"; {_counted(len(slid), 'joint')} {'slides' if len(slid) == 1 else 'slide'}" if slid else "")
         + f". Its weight does {found.work:.4g} J of work."
+        + spoken_ties(result.results.ties)
     )
     return result
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count or 'no'} {what}{'' if count == 1 else 's'}"

@@ -23,6 +23,7 @@ from extrados.analyses.limit.variation import (
 )
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
+from extrados.building.structure import Structure
 from extrados.limit.motion import finite_motion
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
@@ -38,19 +39,27 @@ GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 
 @dataclass(frozen=True)
 class Range:
-    """The question of a sweep, put at any value of the key: a key of `table`, whose data stand in the deck."""
+    """The question of a sweep, put at any value of the key: a key of `table`, whose data stand in the deck; of ties, tables
+    by their numbers."""
 
     building: Building
     table: str
     path: str
-    data: dict[str, Any]
+    data: dict[str, Any] | list[dict[str, Any]]
     options: Sweep
     whole: bool
 
     def at(self, value: float, *, beside: bool = False, explain: bool = False) -> Outcome:
         data = changed(self.data, self.path, round(value) if self.whole else float(value))
         try:
-            table = read_table(type(getattr(self.building, self.table)), data)
+            own = getattr(self.building, self.table)
+            if isinstance(own, tuple):
+                table = tuple(
+                    read_table(type(was), one).model_copy(update={"name": was.name})
+                    for was, one in zip(own, data, strict=True)
+                )
+            else:
+                table = read_table(type(own), data)
         except BadGeometry as error:
             return Outcome(reason=str(error))
         return evaluate(
@@ -73,22 +82,23 @@ class Values:
 def _placed(vary: str) -> tuple[str, str]:
     """Table and key that `vary` names; a key alone is one of [structure]."""
     table, _, path = vary.partition(".")
-    return (table, path) if table in ("structure", "material", "joints") and path else ("structure", vary)
+    return (table, path) if table in ("structure", "material", "joints", "ties") and path else ("structure", vary)
 
 
-def _is_whole(model: Table, table: str, path: str) -> bool:
+def _is_whole(model: Table | tuple[Table, ...], table: str, path: str) -> bool:
     """True where the key takes whole numbers; Refused where there is no such key, or it holds no number."""
     place: Any = type(model)
-    held: Any = model
+    held: Any = list(model) if isinstance(model, tuple) else model
     for part in path.split("."):
         if isinstance(held, list):
             if not part.isdigit() or int(part) >= len(held):
                 raise Refused(f"vary: '{path}': expected a number from 0 to {len(held) - 1} in place of '{part}'")
             held = held[int(part)]
+            place = type(held)
             continue
         known = getattr(place, "model_fields", {})
         if part not in known:
-            kind = f" of kind '{model.kind}'" if table == "structure" else ""
+            kind = f" of kind '{model.kind}'" if isinstance(model, Structure) else ""
             raise Refused(f"vary: [{table}]{kind} has no key '{path}'; it has {', '.join(known)}")
         annotation = known[part].annotation
         inner = [a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")]
@@ -127,14 +137,18 @@ def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
     table, path = _placed(options.vary)
     model = getattr(context.building, table)
+    if model == ():
+        raise Refused("vary: the deck has no [[ties]]")
     whole = _is_whole(model, table, path)
-    unit = _unit(type(model), path)
+    unit = _unit(type(model[0] if isinstance(model, tuple) else model), path)
     if options.values:
         values = np.array([_number(value, unit) for value in options.values])
     else:
         values = np.linspace(_number(options.start, unit), _number(options.stop, unit), options.count)
     values = np.unique(np.round(values)) if whole else np.sort(values)
-    data = {**context.deck.data.get(table, {}), **(options.model_dump(exclude_none=True).get(table) or {})}
+    data = context.deck.data.get(table, {})
+    if isinstance(data, dict):
+        data = {**data, **(options.model_dump(exclude_none=True).get(table) or {})}
     ask = Range(context.building, table, path, data, options, whole)
     swept = sweep(context, "sweep", Values(ask, values), len(values), f"sweep of {options.vary}", slow=True)
     outcomes = outcomes_of(swept.whole())

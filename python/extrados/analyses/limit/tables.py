@@ -37,6 +37,7 @@ class LimitAnalysisTable(BuildingAnalysis):
     """What all questions of limit analysis ask."""
 
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
+    bears: ClassVar = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
         "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
@@ -68,7 +69,7 @@ class Sweep(LimitAnalysisTable):
     starter: ClassVar = {"vary": '"thickness"', "start": "0.4", "stop": "1.2"}
     vary: str = key(
         about="key to vary: of [structure], for instance buttress_width, right.buttress_width or spans.0.rise, or of another table, for "
-        "instance joints.friction or material.compressive_strength"
+        "instance joints.friction, material.compressive_strength or ties.0.yield_force"
     )
     start: float | str | None = key(None, 'first value, in the unit of the key or as text such as "40 cm"')
     stop: float | str | None = key(None, "last value")
@@ -112,12 +113,21 @@ class Imperfections(LimitAnalysisTable):
 
 
 class Supports(BuildingAnalysis):
-    """Supports that give way: any structure under [[initial.movements]]; an arch through its three-hinge states to its fall."""
+    """Supports that give way: the joints that open in any structure; an arch through its three-hinge states to its fall.
+
+    What gives way is said by [[initial.movements]]; without them it is the right support.
+    """
 
     kind: Literal["supports"]
+    bears: ClassVar = ("[[ties]]",)
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
-    steps: int = key(200, "steps from rest to the fall", ge=10, le=5000)
+    movement: Length | None = key(
+        None,
+        "how far the right support moves where it is not followed to the fall; default a thousandth of the width",
+        gt=0,
+    )
+    steps: int = key(200, "of an arch: steps from rest to the fall", ge=10, le=5000)
 
 
 class UniformLoad(Table):

@@ -8,8 +8,12 @@ from extrados.analyses.limit.common import (
     geometry_arrays,
     graphic_arrays,
     limit_of,
+    load_arrays,
     reaction_rows,
+    spoken_ties,
     state_arrays,
+    tie_arrays,
+    tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Thrust
 from extrados.building.geometry.assembly import Assembly
@@ -50,6 +54,7 @@ def run(context: Context, options: Thrust) -> Result:
             required_friction_joint=assembly.joint_names[int(state.friction.argmax())],
             greatest_eccentricity_ratio=np.abs(state.position - 0.5).max(),
             reactions=reaction_rows(answer, state),
+            **tie_rows(context.building, answer.loads, state),
         )
         result.tables[f"thrust_{name}"] = _table(assembly, state)
     r = out.Thrust(
@@ -64,7 +69,8 @@ def run(context: Context, options: Thrust) -> Result:
         **lines,
     )
     result.results = r
-    result.arrays = geometry_arrays(assembly)
+    result.arrays = geometry_arrays(assembly) | tie_arrays(context.building, answer.loads, states)
+    result.arrays |= load_arrays(assembly, options.load)
     about = {"least": "of least thrust", "most": "of greatest thrust", "central": "that is most central"}
     for name, state in states.items():
         result.arrays.update(state_arrays(assembly, name, state, about[name]))
@@ -135,6 +141,8 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
                 "." if central is None else f"; the most central line ({central.horizontal_kN_per_m:.4g} kN/m) {needs}."
             )
     low, high = r.admissible_interval_g
+    shown = central or r.least
+    text += spoken_ties(None if shown is None else shown.ties)
     return f"{text} Lines are admissible from {low:.4f} to {high:.4f} g."
 
 

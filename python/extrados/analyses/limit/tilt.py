@@ -10,9 +10,13 @@ from extrados.analyses.limit.common import (
     graphic_arrays,
     hinge_rows,
     limit_of,
+    load_arrays,
     mended_capacity,
     reaction_rows,
+    spoken_ties,
     state_arrays,
+    tie_arrays,
+    tie_rows,
 )  # fmt: skip
 from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
@@ -42,12 +46,13 @@ def degrees(gamma: float) -> float:
 
 def run(context: Context, options: Tilt) -> Result:
     """Capacity both ways, hinges, mechanism, thrust line at collapse, least and greatest thrust upright."""
-    assembly: Assembly = context.building.blocks()
-    limit = limit_of(context.building, options)
-    answer = answer_of(context.building, options, limit)
+    building = context.building
+    assembly: Assembly = building.blocks()
+    limit = limit_of(building, options)
+    answer = answer_of(building, options, limit)
     state, mechanism = answer.collapse_state, answer.mechanism
     result = Result("tilt")
-    fracture = _fracture(context.building, options, answer, result) if options.fracture else {}
+    fracture = _fracture(building, options, answer, result) if options.fracture else {}
     sliding = _non_dilatant(limit, result)
     found = out.Tilt(
         collapse_acceleration_g=state.gamma,
@@ -66,6 +71,8 @@ def run(context: Context, options: Tilt) -> Result:
         weight_N=answer.loads.scale,
         depth_m=assembly.depth,
         reactions=reaction_rows(answer, state),
+        **tie_rows(building, answer.loads, state),
+        **tie_rows(building, answer.loads, answer.back_state, "ties_opposite"),
         **_thrusts(answer),
         **assembly.measures,
         duality_gap=answer.gap,
@@ -82,6 +89,8 @@ def run(context: Context, options: Tilt) -> Result:
             finite_motion(assembly, mechanism), ("block", "component"), "m, m, rad",
             "the mechanism carried on: places of the centroids, rotations",
         ),
+        **tie_arrays(building, answer.loads, {"collapse": state}),
+        **load_arrays(assembly, options.load),
     }  # fmt: skip
     if answer.least:
         first = next(iter(answer.least))
@@ -89,12 +98,13 @@ def run(context: Context, options: Tilt) -> Result:
             about = f"of {'least' if word == 'least' else 'greatest'} thrust of the {first}, upright"
             result.arrays.update(state_arrays(assembly, word, state_of, about))
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
-    result.answer = _words(context.building.structure.word, assembly, answer, found)
+            result.arrays.update(tie_arrays(building, answer.loads, {word: state_of}))
+    result.answer = _words(building.structure.word, assembly, answer, found)
     result.warnings += answer.warnings
-    if closed := mended_capacity(context.building, options, answer.gamma):
+    if closed := mended_capacity(building, options, answer.gamma):
         result.warnings.append(closed)
     needed = found.required_friction or 0.0
-    if context.building.joints.coefficient is None and needed > USUAL_FRICTION:
+    if building.joints.coefficient is None and needed > USUAL_FRICTION:
         result.warnings.append(
             f"a coefficient of friction of {needed:.2f} is needed, more than masonry has ({USUAL_FRICTION:g} or so): it slides "
             "before; give friction"
@@ -148,6 +158,12 @@ def _non_dilatant(limit: LimitAnalysis, result: Result) -> dict[str, out.NonDila
             equilibrium_residual=r.equilibrium, friction_residual=r.friction, tension_residual=r.tension,
             overlap_residual=r.overlap, complementarity_residual=r.complementarity, work_residual=r.work,
         )  # fmt: skip
+        if found.falling is not None:
+            stone = limit.assembly.block_names[found.falling]
+            result.warnings.append(
+                f"{stone} hangs between its neighbours by friction alone, and slides out of them at any load in a state without "
+                f"dilatancy: {'to +x' if direction > 0 else 'to -x'} nothing is borne that can be relied on"
+            )
         if r.worst > SETTLED:
             result.warnings.append(
                 f"the state without dilatancy {'to +x' if direction > 0 else 'to -x'} obeys the laws of the joints to {r.worst:.1e} only"
@@ -234,6 +250,7 @@ def _words(what: str, assembly: Assembly, answer: Answer, found: out.Tilt) -> st
     text += f"Friction of {needed:.2f} is needed" + (
         f"; upright the geometric safety factor is {answer.safety:.2f}." if np.isfinite(answer.safety) else "."
     )
+    text += spoken_ties(found.ties)
     fracture = found.fracture
     if fracture and fracture.cracks:
         text += (

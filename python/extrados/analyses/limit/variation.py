@@ -92,7 +92,7 @@ def spoken(found: Signature) -> str:
     return "; ".join(f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
 
 
-def changed(data: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
+def changed(data: Any, path: str, value: Any) -> Any:
     """A structure's table with one key, dotted for a table within it or one of a list, set to another value."""
     data = copy.deepcopy(data)
     place: Any = data
@@ -157,7 +157,7 @@ def _evaluate(
     """The section under load to +x."""
     try:
         state, mechanism = limit.collapse(1)
-        if state.gamma <= 0.0:
+        if state.gamma <= 0.0 or not limit.stands():  # or only when it is pushed
             raise NoEquilibrium
     except Immovable as error:
         return Outcome(

@@ -38,8 +38,10 @@ SPANS = {"step": ("t_p", 1.0), "sine": ("T_p", 2.4), "half-sine": ("T_p", 4.0), 
          "cosine": ("T_p", 2.4), "ricker": ("T_p", 2.4)}  # fmt: skip
 
 
-def unit_pulse(pulse: str, duration: float) -> Motion:
-    """The pulse of 1 m/s^2, first to -x, so that the structure first rocks to +x."""
+def unit_pulse(pulse: str, duration: float, cycles: int = 1) -> Motion:
+    """The pulse of 1 m/s^2, first to -x, so that the structure first rocks to +x; of a sine so many cycles."""
+    if cycles > 1:
+        return pulses.harmonic(-1.0, 1.0 / duration, cycles * duration)
     if pulse == "step":
         return pulses.step_pulse(-1.0, duration)
     if pulse == "sine":
@@ -80,10 +82,11 @@ class Mapper:
         threads: int,
         start_rotation: float = 0.0,
         context: Context | None = None,
+        cycles: int = 1,
     ):
         self.body = body
         self.context = context
-        self.motions = [unit_pulse(pulse, t) for t in durations]
+        self.motions = [unit_pulse(pulse, t, cycles) for t in durations]
         self.settle = settle
         self.threads = threads
         self.start_rotation = start_rotation
@@ -136,10 +139,14 @@ class LowestAmplitudes:
     amplitudes: np.ndarray
     settle: float
     accuracy: float
+    start_rotation: float = 0.0
+    cycles: int = 1
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
-        lengths = self.durations[first : first + count]
-        codes = Mapper(self.body, self.pulse, lengths.tolist(), self.settle, threads).codes
+        lengths = self.durations[first : first + count].tolist()
+        codes = Mapper(
+            self.body, self.pulse, lengths, self.settle, threads, self.start_rotation, cycles=self.cycles
+        ).codes  # fmt: skip
         scanned = np.zeros((count, len(self.amplitudes)), dtype=int)
         rows = np.arange(count)
         for begin in range(0, len(self.amplitudes), SCAN):

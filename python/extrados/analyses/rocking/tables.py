@@ -10,6 +10,9 @@ from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
 from extrados.schema.table import key
 
+#: What a rocking structure may be held by
+HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] wall")
+
 
 class RockingTable(BuildingAnalysis):
     """What all analyses by the single-degree-of-freedom mechanism ask."""
@@ -17,6 +20,7 @@ class RockingTable(BuildingAnalysis):
     view: ClassVar = "rocker"
     uses: ClassVar = ("material.density", "joints.restitution", "joints.friction", "initial.rotation_ratio")
     method: ClassVar = {"joints.friction": NO_SLIDING}
+    bears: ClassVar = HOLDS
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963"
     )
@@ -53,10 +57,47 @@ class FailureDomain(RockingTable):
     )
 
 
+class FailureCurves(RockingTable):
+    """Failure curves of several structures, or of trains of sines, in one picture with the primary impulses of the motions."""
+
+    kind: Literal["failure-curves"]
+    variants: list[dict[str, float | str]] = key(
+        [],
+        "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure as it is",
+        max_length=24,
+    )
+    pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
+        "sine", "shape of the pulses", source="thesis Figs 5-4, 5-5, 5-15"
+    )
+    cycles: list[Annotated[int, Field(ge=1, le=100)]] = key(
+        [1], "cycles of a train of sines, a curve for each number", min_length=1, max_length=12, source="thesis 5.3.4"
+    )
+    durations: list[Annotated[Time, Field(gt=0)]] | None = key(
+        None, "t_p or T_p; default `count` values scaled to each structure", min_length=2, max_length=2000
+    )
+    count: int = key(40, "durations of each curve where they are not given", ge=2, le=2000)
+    amplitudes: int = key(60, "amplitudes tried up to the cap before the lowest failing one is refined", ge=2, le=2000)
+    max_amplitude: Acceleration = key(1.5 * GRAVITY, "cap of the search", gt=0)
+    accuracy: float = key(1e-4, "accuracy of the curves, in g", ge=1e-9, le=0.1)
+    motions: int = key(12, "of a suite or a generated set at most so many are put into the picture", ge=1, le=200)
+    max_period: Time = key(4.0, "longest primary impulse sought", gt=0)
+
+    @model_validator(mode="after")
+    def _trains(self) -> "FailureCurves":
+        if self.pulse != "sine" and self.cycles != [1]:
+            raise ValueError(f"cycles make trains of sines; a pulse of shape '{self.pulse}' comes once")
+        if len(set(self.cycles)) < len(self.cycles):
+            raise ValueError("cycles holds a number twice")
+        if max(1, len(self.variants)) * len(self.cycles) > 24:
+            raise ValueError("variants times cycles are more than the 24 curves that a picture holds")
+        return self
+
+
 class Assessment(RockingTable):
     """Eq. 5.8: does the primary impulse of the motion fall above the failure curve of the arch?"""
 
     kind: Literal["assessment"]
+    bears: ClassVar = ()
     needs_motion: ClassVar = True
     impulses: int = key(3, "how many of the strongest impulses are tried", ge=1, le=20)
     min_period: Time | None = key(None, "shortest impulse sought; default 4 sampling steps", gt=0)

@@ -1,5 +1,6 @@
 """sla: sequentially linear analysis of a wall or of stones (thesis 4.2, 4.3)."""
 
+from dataclasses import replace
 from typing import Any
 
 from extrados.analyses.batches import Chain
@@ -10,6 +11,7 @@ from extrados.analyses.sla.measures import joint_openings, numbers_of, tooth_cou
 from extrados.analyses.sla.model import SlaModel, build, strength_factors
 from extrados.analyses.sla.repetitions import repeat
 from extrados.analyses.sla.resume import carry_on, makeup, start_of
+from extrados.analyses.sla.stages import run_stages
 from extrados.analyses.sla.stored import curve_arrays, field_files, mesh_arrays, sections
 from extrados.analyses.sla.tables import Sla
 from extrados.analyses.sla.words import answer_of_stones, answer_of_wall
@@ -33,16 +35,24 @@ def _run(context: Context, options: Sla) -> Result:
     context.warnings += mesh.warnings
     damage, earlier = start_of(context, options, model)
 
-    def chain(sign: int) -> Chain:
+    def chain(of: Any) -> Chain:
         mesh_of = [model.mesh.xy, [group.connect for group in model.mesh.groups], model.constant, model.reference]
-        return Chain(context, "sla", [options, sign, damage, model.freedoms, *mesh_of])
+        return Chain(context, "sla", [options, of, damage, model.freedoms, *mesh_of])
 
-    curves = run_curves(model, options, context.threads, context.progress, damage, chain)
-    for curve in curves:
-        carry_on(curve, earlier, model.unit)
-    numbers = _describe(result, model, options, curves)
+    if options.stages:
+        curves = run_stages(model, options, context.threads, context.progress, chain)
+        main = curves[min(options.main, len(curves) - 1)]
+        model = replace(model, unit=main.unit, acceleration=main.acceleration)
+        numbers = _describe(result, model, options, [main])
+        numbers["stages"] = _stages(result, model, options, curves, main)
+    else:
+        curves = run_curves(model, options, context.threads, context.progress, damage, chain)
+        main = curves[0]
+        for curve in curves:
+            carry_on(curve, earlier, model.unit)
+        numbers = _describe(result, model, options, curves)
     if measured is not None:
-        numbers["measured"] = compare(measured, *curves[0].envelope(model.unit))
+        numbers["measured"] = compare(measured, *main.envelope(model.unit))
         result.arrays |= arrays(measured)
     if options.seeds and not curves[-1].events.interrupted:
         numbers |= repeat(context, options, result)
@@ -51,6 +61,36 @@ def _run(context: Context, options: Sla) -> Result:
         again = "; --resume goes on from them" if context.checkpoint is not None else ""
         result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
     return result
+
+
+def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], main: Curve) -> list[dict[str, Any]]:
+    """Numbers of all stages; arrays, tables, files and warnings of those that do not stand for the analysis."""
+    found = []
+    for k, curve in enumerate(curves, 1):
+        own = replace(model, unit=curve.unit, acceleration=curve.acceleration)
+        prefix = "" if curve is main else f"stage_{k}_"
+        if prefix:
+            curve_arrays(result, own, curve, prefix)
+            field_files(result, own, [curve], [prefix])
+            result.warnings += curve.warnings
+        last = len(curve.events) - 1
+        found.append(
+            numbers_of(own, options.model_copy(update={"probes": []}), curve)
+            | {
+                "name": curve.name, "prefix": prefix, "start_load_N": curve.already,
+                "end_load_N": float(curve.force(own.unit)[last]) if last >= 0 else None,
+            }
+        )  # fmt: skip
+    if options.stages[options.main :] and main.name != options.stage_names[options.main]:
+        result.warnings.append(f"the numbers are those of stage {main.name}, the last that began")
+    ends = "; ".join(
+        f"{stage['name']} at {stage['end_load_N'] / 1e3:.4g} kN by: {stage['stop']}"
+        for stage in found
+        if stage["end_load_N"] is not None
+    )
+    if ends:
+        result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"
+    return found
 
 
 def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]) -> dict[str, Any]:
@@ -75,9 +115,9 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
         if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
             result.warnings.append(
                 f"the load{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; its "
-                f"greatest value, {events.load[curve.peak] * model.unit:.4g} N, is no capacity"
+                f"greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
             )
-        if len(events) and events.load[0] < 0.0:
+        if len(events) and events.load[0] < 0.0 and not curve.name:
             result.warnings.append(
                 f"the first event{sense} has a negative load, {events.load[0] * model.unit:.4g} N: the constant loads "
                 "alone are beyond the strength somewhere"
@@ -86,7 +126,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     for curve, prefix in zip(curves, PREFIXES, strict=False):
         curve_arrays(result, model, curve, prefix)
     sections(result, model, options, first)
-    field_files(result, model, curves)
+    field_files(result, model, curves, PREFIXES)
     if model.mesh.has_joints:
         numbers["hinges"] = joint_openings(result, model, first)
         result.answer = answer_of_stones(numbers, len(curves) > 1, model.slides)

@@ -6,7 +6,7 @@ same bits as one that was never interrupted.
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -54,32 +54,50 @@ class Curve:
     before: float = 0.0  # control displacement of the constant loads alone, in the sense of the load [m]
     most_compliance: float = np.inf  # beyond it only the floor of the stiffness carries
     stones: bool = False  # of joints that open without teeth
+    name: str = ""  # of a stage
+    unit: float = 0.0  # resultant of the reference load of a stage [N]
+    acceleration: float | None = None  # of the reference load of a stage
+    already: float = 0.0  # load in the direction of the reference load that was on before [N]
+    driven: bool = False  # the multiplier is a displacement of supports, the load their force
     residual: float | None = None  # measured at the end; None where the end is a mechanism without displacements
 
     @property
     def sense(self) -> str:
         return "+" if self.sign > 0 else "-"
 
+    def force(self, unit: float) -> np.ndarray:
+        """The load of each event [N]."""
+        return self.events.pull if self.driven else self.already + self.events.load * unit
+
     def envelope(self, unit: float) -> tuple[np.ndarray, np.ndarray]:
         """Displacements [m] and loads [N] of the envelope; it begins at the constant loads' displacement."""
         fine = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
-        return envelope(self.events.monitors[fine, 0], self.events.load[fine] * unit, self.before)
+        d, p = envelope(self.events.monitors[fine, 0], self.force(unit)[fine] - self.already, self.before)
+        return d, p + self.already
 
     @property
     def peak(self) -> int:
         """The event of the greatest load in equilibrium, passed or not; -1 where there is none."""
         carried = self.events.equilibrium & (self.events.compliance <= self.most_compliance)
-        load = np.where(carried, self.events.load, -np.inf)
+        load = np.where(carried, self.force(1.0), -np.inf)
         return int(load.argmax()) if len(load) and np.isfinite(load.max()) else -1
 
     def passed(self, unit: float) -> bool:
         """Was the greatest load a peak: did the load fall after it, or the wall become a mechanism under it?"""
-        if self.peak < 0:
-            return False
+        if self.peak < 0 or (self.name and not self.force(unit)[self.peak] > 0.0):
+            return False  # a stage may begin under a load of the opposite sense and never leave it
         ended = ("mechanism", FELL, "no point limits the load") if self.stones else ("mechanism", FELL)
         if self.events.reason in ended:
             return True
         return fallen(*self.envelope(unit))
+
+    @staticmethod
+    def stopped(core_model: core.Model, stage_a: core.Events) -> "Curve":
+        """No event of the reference load: the run was interrupted under the constant loads."""
+        none = core.Events.none()
+        none.interrupted = True
+        damage = core_model.damage()
+        return Curve(none, stage_a, [], damage, damage, 0.0, 1, [], core_model.equations, core_model.points)
 
 
 def run_curves(
@@ -95,9 +113,9 @@ def run_curves(
     chain: where the states of the curve of a sense, +1 or -1, are kept on its way, and of 0, of the constant loads;
     none are without it.
     """
-    if model.slides and (options.solution == "incremental" or options.without_equilibrium == "proportional"):
+    if model.slides and (options.solution == "incremental" or options.without_equilibrium != "load-unload"):
         raise Refused(
-            "joints that slide keep forces that neither an incremental solution nor loads that go down together can "
+            "joints that slide keep forces that neither an incremental solution nor other variants can "
             'follow: give them no friction coefficient (friction = "no-sliding"), or take events with load-unload'
         )
     curves = []
@@ -110,7 +128,7 @@ def run_curves(
                 )
             core_model.set_damage(damage)
         else:
-            stage_a, rubs = _start(core_model, model, options, progress, warnings, chain and chain(0))
+            stage_a, rubs = bring_on_constant_loads(core_model, model, options, progress, warnings, chain and chain(0))
         start = core_model.damage()
         ledger, events = _totals(stage_a)
         for number, sense in enumerate(options.directions):
@@ -125,9 +143,13 @@ def run_curves(
             if options.solution == "incremental":
                 curve = _incremental_stage(core_model, model, options, sign, progress)
             else:
-                curve = _reference_stage(
+                curve = run_reference_loads(
                     core_model, model, options, sign, progress,
                     bool(stage_a is None and damage is None and not rubs), chain and chain(sign),
+                    core.Stop(
+                        displacement=np.inf if options.target_displacement is None else options.target_displacement,
+                        fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
+                    ),
                 )  # fmt: skip
             curve.stage_a, curve.before = stage_a, before
             curve.damage_start = start
@@ -144,7 +166,7 @@ def _totals(stage: core.Events | None) -> tuple[tuple[float, float, float], int]
     return (float(stage.external[-1]), float(stage.dissipated[-1]), float(stage.crack[-1])), int(stage.number[-1])
 
 
-def _start(
+def bring_on_constant_loads(
     core_model: core.Model,
     model: SlaModel,
     options: Sla,
@@ -214,7 +236,7 @@ def _constant_stage(
     return events
 
 
-def _reference_stage(
+def run_reference_loads(
     core_model: core.Model,
     model: SlaModel,
     options: Sla,
@@ -222,14 +244,14 @@ def _reference_stage(
     progress: Callable[[float, float, str], None],
     fresh: bool,
     chain: Chain | None,
+    stop: core.Stop,
 ) -> Curve:
-    """Events under A + lambda B; states at the wanted events, at the peak and at the end."""
+    """Events under A + lambda B until `stop`; states at the wanted events, at the peak and at the end.
+
+    fresh: A was not brought on with damage before; it must be carried.
+    """
     begin = time.perf_counter()
-    target = np.inf if options.target_displacement is None else options.target_displacement
-    stop = core.Stop(
-        displacement=target, fraction=options.stop_fraction or -1.0, compliance=model.mechanism_ratio,
-        refuse_overload=fresh and bool(np.any(model.constant)),
-    )  # fmt: skip
+    stop = replace(stop, refuse_overload=fresh and bool(np.any(model.constant)))
     wanted = sorted({e - 1 for e in options.states if 1 <= e <= options.events})
     way = UnderWay((core_model.damage(), 0))
     if chain is not None and chain.state is not None:
@@ -237,11 +259,12 @@ def _reference_stage(
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
     before = way.seconds
-    proportional = options.without_equilibrium == "proportional"
+    variant = options.without_equilibrium
+    release = variant == "force-release"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     while (done := way.done) < options.events:
-        if done % KEPT == 0 and done:
+        if done % KEPT == 0 and done and not release:  # what is on its way from one point to others has no name
             damage, standing = core_model.damage(), core_model.standing()
             try:
                 core_model.renew(damage, standing)
@@ -260,7 +283,7 @@ def _reference_stage(
             room = min(room, ahead[0] + 1 - done)
         clock = time.perf_counter()
         try:
-            part = core_model.run(room, [model.control], stop, proportional=proportional)
+            part = core_model.run(room, [model.control], stop, variant=variant)
         except CoreError as error:
             if error.status != status_code("beyond_strength"):
                 raise
@@ -269,10 +292,14 @@ def _reference_stage(
                 "them: let constant_damage = true bring them on with damage, or lower them"
             ) from None
         spent = time.perf_counter() - clock
+        if model.driven:  # as of a force that moves them
+            part.compliance = 1.0 / np.maximum(part.compliance, np.finfo(float).tiny)
         way.parts.append(part)
         if len(part):
-            most = floor * way.parts[0].compliance[0]
-            load = np.where(part.equilibrium & (part.compliance <= most), part.load, -np.inf)
+            most = np.inf if model.driven else floor * way.parts[0].compliance[0]
+            load = np.where(
+                part.equilibrium & (part.compliance <= most), part.pull if model.driven else part.load, -np.inf
+            )
             if part.reason == "mechanism" and model.mesh.has_joints:
                 load[-1] = -np.inf  # on the way of the mechanism
             if load.max() > way.best:
@@ -280,20 +307,23 @@ def _reference_stage(
         done += len(part)
         if done and done - 1 in wanted:
             way.states.append(_state(core_model, done - 1, part))
-        progress(done, options.events, f"event {done}, load {part.load[-1] * model.unit:.4g} N" if len(part) else "")
+        load = (part.pull if model.driven else model.already + part.load * model.unit)[-1:]
+        progress(done, options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")
         if part.reason or part.interrupted or not len(part):
             break
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, states = core.Events.join(way.parts), way.states
     events.monitors *= sign  # positive in the sense of the load
     collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
+    if events.reason == "mechanism" and len(events) and model.driven:
+        events.equilibrium[-1] = False  # the constant loads carry it away
     if collapsed and model.mesh.has_joints:
         # Found on the way of the mechanism, which carries no more than the event before: it shows how the stones move
         events.equilibrium[-1] = False
     damage_end = core_model.damage()
     curve = Curve(events, None, states, NOTHING, damage_end, 0.0, sign, [], core_model.equations, core_model.points)
-    curve.stones = model.mesh.has_joints
-    if len(events):
+    curve.stones, curve.already, curve.driven = model.mesh.has_joints, model.already, model.driven
+    if len(events) and not model.driven:
         curve.most_compliance = floor * float(events.compliance[0])
     if len(events):
         # A mechanism found while its event is applied leaves the displacements of the event before
@@ -302,8 +332,8 @@ def _reference_stage(
         if not (done - 1 in wanted and states):
             states.append(_state(core_model, len(events) - 1, events))
         peak = curve.peak
-        if peak >= 0 and peak not in {s.event for s in states} and not events.interrupted:
-            state = _replay(core_model, model, sign, events, peak, way.before_best, proportional)
+        if peak >= 0 and peak not in {s.event for s in states} and not (events.interrupted or release):
+            state = _replay(core_model, model, sign, events, peak, way.before_best, variant)
             if state is None:
                 curve.warnings.append("the state at the peak could not be reproduced from the batch before it")
             else:
@@ -351,7 +381,7 @@ def _replay(
     events: core.Events,
     event: int,
     before: tuple[np.ndarray, int],
-    proportional: bool,
+    variant: str,
 ) -> State | None:
     """The state of an event that has passed, run again from the damage kept before it."""
     damage, first = before
@@ -363,7 +393,7 @@ def _replay(
             core_model.renew(damage, core_model.standing_at(float(events.load[first - 1])))
 
     begin()
-    again = core_model.run(event - first + 1, [model.control], core.Stop(), proportional=proportional)
+    again = core_model.run(event - first + 1, [model.control], core.Stop(), variant=variant)
     # Near a mechanism of stiff stones the last digits of the load, and so the order of events, depend on the way there
     tolerance = 1e-4 if model.mesh.has_joints else 1e-6
     away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
@@ -371,13 +401,13 @@ def _replay(
         return None
     if away[-1]:
         begin()
-        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop(), proportional=proportional)
+        again = core_model.run(event - first + 1 + MORE, [model.control], core.Stop(), variant=variant)
         away = np.abs(again.load - events.load[event]) > tolerance * abs(events.load[event])
         near = np.flatnonzero(~away & again.equilibrium)
         if not len(near):
             return None
         begin()
-        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop(), proportional=proportional)
+        again = core_model.run(int(near[-1]) + 1, [model.control], core.Stop(), variant=variant)
     return _state(core_model, event, again)
 
 

@@ -128,7 +128,7 @@ def _events(rows: list[tuple[float, ...]], reason: str, interrupted: bool) -> co
     n = len(load)
     none = np.full(n, np.finfo(float).max)
     return core.Events(
-        load, none, -none, stored, external, dissipated, crack, soft, np.zeros(n), np.ones(n),
+        load, none, -none, stored, external, dissipated, crack, soft, np.zeros(n), np.ones(n), np.zeros(n),
         point=np.full(n, -1), code=np.zeros(n, dtype=int), number=np.arange(1, n + 1), equilibrium=np.ones(n, dtype=bool),
         monitors=moved[:, None], reason=reason, interrupted=interrupted, crack_total=float(crack[-1]) if n else 0.0,
     )  # fmt: skip

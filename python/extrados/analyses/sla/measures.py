@@ -21,6 +21,7 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     """Results of one curve; keys end in their unit."""
     events, greatest, unit = curve.events, curve.peak, model.unit
     peak = greatest if curve.passed(unit) else -1
+    load = curve.force(unit)
     lost = np.flatnonzero(~events.equilibrium)
 
     def kinds(*names: str) -> np.ndarray:
@@ -28,15 +29,15 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
 
     numbers: dict[str, Any] = {
         "sense": curve.sense,
-        "peak_load_N": float(events.load[peak] * unit) if peak >= 0 else None,
-        "greatest_load_N": float(events.load[greatest] * unit) if greatest >= 0 else None,
+        "peak_load_N": float(load[peak]) if peak >= 0 else None,
+        "greatest_load_N": float(load[greatest]) if greatest >= 0 else None,
         "greatest_load_displacement_m": float(events.monitors[greatest, 0]) if greatest >= 0 else None,
         "greatest_load_event": greatest + 1 if greatest >= 0 else None,
         **_acceleration(model, *(float(events.load[k]) if k >= 0 else None for k in (peak, greatest))),
         "peak_displacement_m": float(events.monitors[peak, 0]) if peak >= 0 else None,
         "displacement_of_constant_loads_m": curve.before,
         "peak_event": peak + 1 if peak >= 0 else None,
-        "first_event_load_N": float(events.load[0] * unit) if len(events) else None,
+        "first_event_load_N": float(load[0]) if len(events) else None,
         "events": len(events),
         "events_before_resume": curve.events_before,
         "events_without_equilibrium": len(lost),
@@ -46,7 +47,7 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         "damaged_points": len(np.unique(events.point[kinds("tension", "tension_s")])),
         "closings": int(kinds("close", "close_s").sum()),
         "crushing_events": int(kinds("compression", "compression_s").sum()),
-        "last_load_N": float(events.load[-1] * unit) if len(events) else None,
+        "last_load_N": float(load[-1]) if len(events) else None,
         "last_displacement_m": float(events.monitors[-1, 0]) if len(events) else None,
         "energy_residual_ratio": events.ledger_error,
         "external_work_J": float(events.external[-1]) if len(events) else None,
@@ -66,7 +67,7 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
         numbers["probe_loads_N"] = reached
     if len(events):
         numbers["initial_stiffness_N_m"] = float(unit**2 / events.compliance[0])
-    idea = bilinear(d - d[0], p) if peak >= 0 else None  # from the state under the constant loads
+    idea = bilinear(d - d[0], p) if peak >= 0 and p[0] == 0.0 else None  # from the state under the constant loads
     if idea is not None:
         numbers["bilinear"] = {
             "stiffness_N_m": idea.stiffness, "yield_load_N": idea.yield_load,

@@ -1,7 +1,7 @@
 """A wall and the options of its deck made into a model of the core: freedoms, groups, nodal loads."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -42,6 +42,13 @@ class SlaModel:
     point_xy: np.ndarray  # (points, 2) of the plane groups [m]
     mechanism_ratio: float  # growth of the compliance that ends a run
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
+    moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
+    already: float = 0.0  # reference load that stages before have left on [N]
+
+    @property
+    def driven(self) -> bool:
+        """True where supports move with the multiplier, which then is a displacement [m]."""
+        return bool(self.moved[:, 1].any())
 
     @property
     def planes(self) -> list[core.Plane | core.Joints]:
@@ -169,11 +176,8 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         reference[node, direction] = 1.0 / share  # unit force on the common displacement
         unit = 1.0
     else:
-        total = float(np.hypot(*reference.sum(axis=0)))
-        unit = total if total > 1e-9 * np.abs(reference).sum() else 0.5 * float(np.abs(reference).sum())
-    if not unit > 0.0:
-        raise BadGeometry("the reference load is zero")
-    if (freedoms.equation[np.abs(reference) > 0] < 0).all():
+        unit = resultant(reference) if not options.stages else 1.0  # each stage has its own
+    if not options.stages and (freedoms.equation[np.abs(reference) > 0] < 0).all():
         raise BadGeometry("the reference load acts on held nodes only")
     closure = mesh.has_joints if options.crack_closure is None else options.crack_closure
     if mesh.has_joints and not closure:
@@ -185,9 +189,11 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
             f"mechanism_ratio: {ratio:g} is beyond what cracks that keep {floor:g} of their stiffness can show: what they "
             f"keep would carry the load; at most {MOST_OF_FLOOR / floor:g}"
         )
-    acceleration = None
-    if all(load.kind == "gravity" for load in reference_loads):
-        acceleration = float(np.hypot(*np.sum([[load.ax, load.ay] for load in reference_loads], axis=0)))
+    # Of stages, of which each has its own, that while the constant loads come on
+    growing = reference if not options.stages else constant
+    control = (
+        control_of(mesh, options, growing, 1.0 if options.stages else unit) if growing.any() else core.Monitor.of(0, 0)
+    )
     return SlaModel(
         mesh, freedoms, groups,
         core.Behaviour(
@@ -195,14 +201,33 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
             MOST_CHANGES_OF_JOINTS if mesh.has_joints else core.Behaviour.most_changes,
             floor,
         ),
-        constant, reference, unit, _control(mesh, options, reference, unit), bands, np.concatenate(points),
-        ratio, acceleration,
+        constant, reference, unit, control, bands, np.concatenate(points),
+        ratio, acceleration_of(reference_loads),
     )  # fmt: skip
+
+
+def resultant(reference: np.ndarray) -> float:
+    """The resultant of nodal forces [N]; of those without one, half of the sum of their sizes."""
+    total = float(np.hypot(*reference.sum(axis=0)))
+    unit = total if total > 1e-9 * np.abs(reference).sum() else 0.5 * float(np.abs(reference).sum())
+    if not unit > 0.0:
+        raise BadGeometry("the reference load is zero")
+    return unit
+
+
+def acceleration_of(loads: list[Load]) -> float | None:
+    """The acceleration of loads that are masses alone [m/s^2]."""
+    if not loads or any(load.kind != "gravity" for load in loads):
+        return None
+    return float(np.hypot(*np.sum([[load.ax, load.ay] for load in loads], axis=0)))
 
 
 def loads_of(mesh: Mesh, options: Sla) -> tuple[list[Load], list[Load]]:
     """The constant and the reference loads, with the defaults of the tables for those not given."""
     constant, reference = options.constant, options.reference
+    if options.stages:
+        heavy = mesh.mass is not None or any(material.density > 0.0 for material in mesh.materials)
+        return [Load(kind="gravity")] * heavy if constant is None else constant, []
     if constant is None:
         constant = [Load(kind="gravity")] if reference is None or mesh.has_joints else []
     return constant, [Load(kind="gravity", ax="1 g", ay="0 g")] if reference is None else reference
@@ -469,7 +494,7 @@ def _covered(mesh: Mesh, load: Load, edges: np.ndarray) -> tuple[np.ndarray, np.
     return begin, end
 
 
-def _control(mesh: Mesh, options: Sla, reference: np.ndarray, unit: float) -> core.Monitor:
+def control_of(mesh: Mesh, options: Sla, reference: np.ndarray, unit: float) -> core.Monitor:
     """The control displacement; by default the one on which the reference load does its work."""
     if not options.control:
         node, direction = np.nonzero(reference)

@@ -101,8 +101,12 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         apart = float(np.abs(there - here).max())
         if apart > 1e-6 * model.mesh.size:
             raise Refused(f"resume_from: the points of that wall lie up to {apart:.3g} m away from those of this one")
-        if len(get["event_point"]) and get["event_point"].min() < 0:
+        if len(get["event_point"]) and get["event_point"].max() < 0:
             raise Refused("resume_from: that run was incremental and has no events to go on from")
+        if stored["sla"].get("stages"):
+            raise Refused(
+                "resume_from: that run was in stages, whose supports and loads are not kept: write one more stage"
+            )
         _refuse_other(stored["sla"].get("makeup"), makeup(model))
         event = len(get["event_point"]) if options.resume_event is None else options.resume_event
         if event > len(get["event_point"]):

@@ -1,5 +1,7 @@
 """What is stored of a run: mesh, events, states and sections as arrays and tables, fields as VTU."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from extrados.analyses.sla.events import Curve
@@ -42,9 +44,10 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
     """Events, envelope and kept states of a curve into `result`; names of the opposite sense begin with `prefix`."""
     e, unit = curve.events, model.unit
     dim = (f"{prefix}events",)
-    limits = [_bounded(x) * unit for x in (e.limit_t, e.limit_c)]
+    # Limits of a displacement are no loads
+    limits = [_bounded(x) * (np.nan if curve.driven else unit) + curve.already for x in (e.limit_t, e.limit_c)]
     columns = {
-        "load": (e.load * unit, "N", "load in the chosen sense"),
+        "load": (curve.force(unit), "N", "load in the chosen sense"),
         "displacement": (e.monitors[:, 0], "m", "control displacement"),
         "limit_t": (limits[0], "N", "least upper limit of the load"),
         "limit_c": (limits[1], "N", "greatest lower limit of the load"),
@@ -68,19 +71,18 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
     d, p = curve.envelope(unit)
     result.arrays[f"{prefix}envelope_displacement"] = Array(d, (f"{prefix}envelope",), "m", "monotone envelope")
     result.arrays[f"{prefix}envelope_load"] = Array(p, (f"{prefix}envelope",), "N", "monotone envelope")
-    name = "load_displacement" + ("_minus" if prefix else "")
+    of = f"_{prefix}".rstrip("_")
+    name = "load_displacement" + of
     result.tables[name] = TableData(
         {
-            "event": np.arange(1, len(e) + 1), "load": e.load * unit, "displacement": e.monitors[:, 0],
+            "event": np.arange(1, len(e) + 1), "load": curve.force(unit), "displacement": e.monitors[:, 0],
             "equilibrium": e.equilibrium.astype(int), "point": e.point + 1,
             "kind": [EVENTS.get(int(c), "end" if p >= 0 else "step") for c, p in zip(e.code, e.point, strict=True)],
             "external": e.external, "stored": e.stored, "dissipated": e.dissipated,
         },
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},
     )  # fmt: skip
-    result.tables["envelope" + ("_minus" if prefix else "")] = TableData(
-        {"displacement": d, "load": p}, {"displacement": "m", "load": "N"}
-    )
+    result.tables["envelope" + of] = TableData({"displacement": d, "load": p}, {"displacement": "m", "load": "N"})
     if curve.states:
         states = curve.states
         dims = (f"{prefix}states",)
@@ -92,7 +94,7 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
                 np.stack([s.damage.T for s in states]), (*dims, "all_points", "damage_row"), "",
                 "damage before the event, to go on from",
             )  # fmt: skip
-        result.arrays[f"{prefix}state_load"] = Array(np.array([s.load for s in states]) * unit, dims, "N", "load")
+        result.arrays[f"{prefix}state_load"] = Array(curve.force(unit)[[s.event for s in states]], dims, "N", "load")
         result.arrays[f"{prefix}state_displacement"] = Array(
             np.stack([s.displacement for s in states]), (*dims, "nodes", "axis"), "m", "displacements of the nodes"
         )
@@ -166,10 +168,11 @@ def sections(result: Result, model: SlaModel, options: Sla, curve: Curve) -> Non
             )
 
 
-def field_files(result: Result, model: SlaModel, curves: list[Curve]) -> None:
+def field_files(result: Result, model: SlaModel, curves: list[Curve], prefixes: Sequence[str]) -> None:
     """The states as VTU, their series as PVD."""
     cells = [(b.kind, b.connect) for b in model.mesh.groups]
-    for curve, name in zip(curves, ("fields", "fields_minus"), strict=False):
+    for curve, prefix in zip(curves, prefixes, strict=False):
+        name = f"fields_{prefix}".rstrip("_")
         series = []
         for state in curve.states:
             fields = point_fields(model, state)

@@ -77,6 +77,63 @@ class Watch(Placed):
         return weight
 
 
+class Hold(Placed):
+    """Nodes of a stage that are held or let go."""
+
+    fix: Literal["x", "y", "xy"] = key("xy", "directions")
+
+
+class Stage(Table):
+    """One stage of several: what changes of the supports, and the loads that grow. It starts in the state in which the one
+    before it ended: its displacements, its loads and its damage."""
+
+    name: str | None = key(
+        None, "of the stage, in figures and results; default its number", min_length=1, max_length=40
+    )
+    hold: list[Hold] = key([], "places held from this stage on, where they are at its start", max_length=100)
+    free: list[Hold] = key(
+        [],
+        "supports taken away, of any stage or of the building: their forces are the loads of this stage, and go to nothing",
+        max_length=100,
+    )
+    reference: list[Load] = key(
+        [],
+        "loads B of this stage, multiplied by lambda; or one displacement, by which places (supports too) move on from "
+        "where they are, and where they stay held",
+        max_length=100,
+    )
+    control: list[Watch] = key(
+        [],
+        "displacement of the curve, a sum of terms; default the analysis', or the mean displacement under B",
+        max_length=50,
+    )
+    target_multiplier: Annotated[float, Field(gt=0)] | None = key(
+        None, "the stage ends where lambda reaches it, and these loads stay on; 1 where supports are let go"
+    )
+    target_displacement: Length | None = key(
+        None, "the stage ends exactly where the control displacement, counted from the unloaded wall, has this value"
+    )
+    stop_fraction: float = key(0.0, "stop where the load falls below this part of the stage's peak", ge=0, lt=1)
+    events: int | None = key(None, "most events of the stage; default the analysis'", ge=1, le=10_000_000)
+
+    @model_validator(mode="after")
+    def _one_cause(self) -> "Stage":
+        if self.free and self.reference:
+            raise ValueError(
+                "free and reference: supports that are let go are the load of their stage; take two stages"
+            )
+        if not (self.free or self.reference):
+            raise ValueError("a stage needs what grows: expected reference, or free")
+        if sum(load.kind == "displacement" for load in self.reference) and len(self.reference) > 1:
+            raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
+        return self
+
+    @property
+    def moves(self) -> bool:
+        """Whether it moves places, rather than loading them."""
+        return any(load.kind == "displacement" for load in self.reference)
+
+
 class Sla(BuildingAnalysis):
     """Sequentially linear analysis: cracks event by event under constant loads A and growing loads lambda B."""
 
@@ -114,6 +171,15 @@ class Sla(BuildingAnalysis):
     )
     directions: list[Literal["+", "-"]] = key(
         ["+"], "senses of B, each from the same start", min_length=1, max_length=2
+    )
+    stages: list[Stage] = key(
+        [],
+        "stages one after the other, [[analysis.stages]], in place of `reference`: each has its supports, loads and end, and "
+        "inherits the damage; `constant` comes first",
+        max_length=50,
+    )
+    main_stage: str | None = key(
+        None, "name of the stage whose numbers and figures stand for the analysis; default the last"
     )
     control: list[Watch] = key(
         [], "displacement of the curve, a sum of terms; default the mean displacement under B", max_length=50
@@ -163,11 +229,12 @@ class Sla(BuildingAnalysis):
         "one point after the other; or, to compare, steps of arc length with a secant iteration in which all overloaded "
         "points lose teeth at once: `events` counts its steps then",
     )
-    without_equilibrium: Literal["load-unload", "proportional"] = key(
+    without_equilibrium: Literal["load-unload", "proportional", "force-release"] = key(
         "load-unload",
         "where no multiplier of B suits all points: A stays and the greatest lower limit decides, or all loads of the "
-        "last state in equilibrium go down together (intermittent proportional loading)",
-        source="thesis 4.3.1; Pari, Hendriks and Rots 2020",
+        "last state in equilibrium go down together (intermittent proportional loading); or the load never comes back: "
+        "what a tooth sets free goes onto the other points before the load grows again (force release)",
+        source="thesis 4.3.1; Pari, Hendriks and Rots 2020; Elias, Frantik and Vorechovsky 2010",
     )
     algorithm: Literal["update", "refactor"] = key("update", "change the factor at each event, or make it anew")
     states: list[Annotated[int, Field(ge=1)]] = key(
@@ -201,6 +268,10 @@ class Sla(BuildingAnalysis):
         if any(load.kind == "displacement" for load in self.constant or []):
             raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
         reference = self.reference or []
+        if self.stages:
+            self._consistent_stages()
+        elif self.main_stage is not None:
+            raise ValueError("main_stage names one of `stages`, and there are none")
         if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
             raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
         if len(set(self.seeds)) < len(self.seeds):
@@ -210,3 +281,29 @@ class Sla(BuildingAnalysis):
         if self.solution == "incremental" and (self.without_equilibrium != "load-unload" or self.states):
             raise ValueError("an incremental solution has no events: without_equilibrium and states belong to events")
         return self
+
+    @property
+    def stage_names(self) -> list[str]:
+        """The names of the stages, their numbers where they have none."""
+        return [stage.name or str(k) for k, stage in enumerate(self.stages, 1)]
+
+    @property
+    def main(self) -> int:
+        """The stage that stands for the analysis, from 0."""
+        return self.stage_names.index(self.main_stage) if self.main_stage is not None else len(self.stages) - 1
+
+    def _consistent_stages(self) -> None:
+        names = self.stage_names
+        if len(set(names)) < len(names):
+            raise ValueError(f"stages: a name stands twice among {', '.join(names)}")
+        if self.main_stage is not None and self.main_stage not in names:
+            raise ValueError(f"main_stage: there is no stage '{self.main_stage}'; there are {', '.join(names)}")
+        alone = {
+            "reference": self.reference is not None, "directions": self.directions != ["+"], "seeds": bool(self.seeds),
+            "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
+            "resume_from": self.resume_from is not None, 'solution = "incremental"': self.solution == "incremental",
+            'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
+            "constant_damage = false": not self.constant_damage,
+        }  # fmt: skip
+        if clash := [name for name, given in alone.items() if given]:
+            raise ValueError(f"{', '.join(clash)} cannot stand beside stages: say it in a stage, or run without stages")

@@ -4,37 +4,43 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import norm, qmc
 
 from extrados.analyses.batches import Swept, Unfinished, sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.statistics import cloud
+from extrados.analyses.statistics.annual import hazard_curve
 from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe
 from extrados.analyses.statistics.sensitivity import sensitivity, spoken
 from extrados.analyses.statistics.summaries import shares
-from extrados.analyses.statistics.tables import UNCERTAIN, Fragility
-from extrados.building.rockers.rocker import Rocker, make_rocker
+from extrados.analyses.statistics.tables import Fragility
+from extrados.analyses.statistics.uncertain import Bodies, bodies_at, sampled
+from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.rocking import FAILED, Body, Ground
 from extrados.motions.from_deck import is_set
+from extrados.motions.motion import Motion
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
+
+#: Histories are drawn in so many points, and until so many time units of the building after the motion
+POINTS, AFTER = 3000, 5.0
 
 
 @dataclass(frozen=True)
 class EnsembleJob:
     """Member k is motion k // L at level k % L, L the number of levels; without levels motions stay as they are.
 
-    measure: what is scaled to the level, in SI; a level 1 means `unit` of it. bodies and starts hold one entry,
-    or one for each motion.
+    measure: what is scaled to the level or, without levels, told as the intensity of a motion, in SI; an intensity of 1
+    means `unit` of it. bodies and starts hold one entry, or one for each motion; a text is why a building is none.
     """
 
     source: Source
-    bodies: list[Body]
+    bodies: list[Body | str]
     starts: np.ndarray
     measure: str
     unit: float
@@ -56,11 +62,16 @@ class EnsembleJob:
         reason = np.array([ground if isinstance(ground, str) else "" for ground in found])[motion]
         rows = {
             "outcome": np.full(count, FAILED, np.int8), "half_cycles": np.zeros(count, np.int32),
-            **{n: np.full(count, np.nan) for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias")},
+            **{n: np.full(count, np.nan)
+               for n in ("peak", "peak_ratio", "stop_time", "scale", "pga", "pgv", "arias", "intensity")},
         }  # fmt: skip
-        if grounds:
+        whose = member // per_motion if len(self.bodies) > 1 else np.zeros(count, int)
+        without = np.array([self.bodies[b] if isinstance(self.bodies[b], str) else "" for b in whose])
+        reason = np.where(reason == "", without, reason)
+        usable_run = (place[motion] >= 0) & (without == "")
+        if usable_run.any():
             own = measures(grounds, self.sa, threads)
-            good = np.flatnonzero(place[motion] >= 0)
+            good = np.flatnonzero(usable_run)
             index = place[motion[good]]
             scale = np.ones(len(good))
             if self.levels is not None:
@@ -74,8 +85,9 @@ class EnsembleJob:
                 np.isin(np.arange(count), good[~level_ok]), "the motion is zero: it cannot be scaled", reason
             )
             good, index, scale = good[level_ok], index[level_ok], scale[level_ok]
-            body = member[good] // per_motion if len(self.bodies) > 1 else np.zeros(len(good), int)
-            used, body = np.unique(body, return_inverse=True)
+            if not len(good):
+                return {**rows, "reason": reason}
+            used, body = np.unique(whose[good], return_inverse=True)
             e = core_rocking.ensemble(
                 [self.bodies[b] for b in used], grounds, body, index, scale,
                 np.array([g.end for g in grounds])[index] + self.settle,
@@ -90,45 +102,14 @@ class EnsembleJob:
             rows["scale"][good] = scale
             for name, power in (("pga", 1), ("pgv", 1), ("arias", 2)):
                 rows[name][good] = own[name][index] * np.abs(scale) ** power
+            if self.measure in own:
+                rows["intensity"][good] = own[self.measure][index] / self.unit
+                rows["intensity"][good] *= np.abs(scale) ** (2 if self.measure == "arias" else 1)
             if e.failed:
                 texts = np.full(count, "", dtype=object)
                 texts[good[list(e.failed)]] = list(e.failed.values())
                 reason = np.where(texts == "", reason, texts.astype(str))
         return {**rows, "reason": reason}
-
-
-def sampled_models(context: Context, options: Fragility, base: Rocker, count: int) -> list[Rocker]:
-    """One model for each motion with uncertain values drawn by a scrambled Sobol sequence."""
-    draws = qmc.Sobol(len(options.uncertain), scramble=True, seed=options.seed or 0).random_base2(
-        max(1, int(np.ceil(np.log2(count))))
-    )[:count]
-    return models_at(context, options, base, draws)
-
-
-def models_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> list[Rocker]:
-    """One model for each row of draws from the unit cube: lognormal factors of mean 1 on the uncertain keys, by name."""
-    structure = context.deck.structure
-    known = UNCERTAIN.get(base.what, ())
-    for name in options.uncertain:
-        if name not in known or (name != "restitution" and getattr(structure, name) is None):
-            raise Refused(f"uncertain.{name} does not belong to this {base.word}; it has {', '.join(known) or 'none'}")
-    names = sorted(options.uncertain)
-    spread = np.sqrt(np.log1p(np.array([options.uncertain[n] for n in names]) ** 2))
-    factors = np.exp(spread * norm.ppf(np.clip(draws, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
-    made = []
-    linear = options.form == "linear"
-    for row in factors:
-        update: dict[str, Any] = {}
-        for name, factor in zip(names, row, strict=True):
-            if name != "restitution":
-                update[name] = getattr(structure, name) * float(factor)
-        changed = context.building.having(structure=structure.model_copy(update=update))
-        if "restitution" in names:
-            c_v = make_rocker(changed, linear).restitution * float(row[names.index("restitution")])
-            joints = changed.joints.model_copy(update={"restitution": min(1.0, c_v), "energy_ratio": None})
-            changed = changed.having(joints=joints)
-        made.append(make_rocker(changed, linear))
-    return made
 
 
 def run(context: Context, options: Fragility) -> Result:
@@ -158,19 +139,20 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
         raise Refused(
             f"count is {motions}, but the deck has {available} motion{'s' if available > 1 else ''}: expected at most {available}"
         )
-    models = sampled_models(context, options, base, motions) if options.uncertain else [base]
+    made = (
+        sampled(context, options, base, motions)
+        if options.uncertain
+        else Bodies([base.body], np.array([base.start_rotation]))
+    )
     levels = np.array(options.levels) if options.levels else None
     measure, unit = options.intensity, INTENSITIES[options.intensity][1]
     if measure == "pga-ratio":
         measure, unit = "pga", base.uplift * GRAVITY
     elif measure == "pgv-ratio":
         measure, unit = "pgv", base.uplift * GRAVITY * base.time_unit
-    sa = (options.sa_period, options.sa_damping) if options.levels and options.sa_period else None
+    sa = (options.sa_period, options.sa_damping) if options.sa_period and (options.levels or options.cloud) else None
     settle = 40.0 * base.time_unit if options.settle is None else options.settle
-    job = EnsembleJob(
-        source, [m.body for m in models], np.array([m.start_rotation for m in models]), measure, unit, levels, sa, settle,
-        options.tolerance,
-    )  # fmt: skip
+    job = EnsembleJob(source, made.bodies, made.starts, measure, unit, levels, sa, settle, options.tolerance)
     return job, motions * (1 if levels is None else len(levels)), motions
 
 
@@ -201,6 +183,7 @@ def _describe(
     }
     _tell_failures(job, swept, per_motion, result)
     _tables(job, swept, per_motion, options, result)
+    hazard = None if options.hazard is None else (hazard_curve(options.hazard, context.deck.folder), options.hazard)
     if job.levels is not None:
         seen = arranged(job.levels, swept.members, motions, swept.arrays)
         r |= describe(
@@ -208,6 +191,7 @@ def _describe(
             options.intensity,
             base.word,
             initial,
+            hazard,
             options.confidence,
             options.bootstrap,
             options.seed or 0,
@@ -245,10 +229,18 @@ def _describe(
         f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
         f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
     ) if p is not None else "No motion could be run."  # fmt: skip
+    if options.cloud:
+        name, _, unit = INTENSITIES[options.intensity]
+        r |= cloud.describe(
+            swept["intensity"], swept["outcome"], swept["peak_ratio"], name, unit, options.rotation_limits, hazard,
+            options.confidence, result,
+        )  # fmt: skip
+    if options.histories and swept.complete:
+        _histories(job, base, min(options.histories, motions), result)
     if options.sensitivity is not None and swept.complete:
         try:
             r |= sensitivity(
-                context, sorted(options.uncertain), lambda draws: models_at(context, options, base, draws), job.source,
+                context, sorted(options.uncertain), lambda draws: bodies_at(context, options, base, draws), job.source,
                 motions if context.deck.motion is None or is_set(context.deck.motion) else 1, job.settle,
                 options.sensitivity, options.seed or 0, options.bootstrap, options.confidence, options.tolerance, result,
             )  # fmt: skip
@@ -256,6 +248,32 @@ def _describe(
         except Unfinished as stop:
             result.status, result.reason = ("interrupted" if stop.interrupted else "failed"), str(stop)
     result.results = out.Ensemble(**r)
+
+
+def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> None:
+    """The first motions and what the building does under each, as series of arrays (Fig. 6-6)."""
+    for k in range(count):
+        (ground,) = job.source.grounds(k, 1, 1)
+        body = job.bodies[k % len(job.bodies)]
+        if isinstance(ground, str) or isinstance(body, str):
+            continue
+        start, end = float(job.starts[k % len(job.starts)]), ground.end + AFTER * base.time_unit
+        h = core_rocking.history(
+            body, ground, end, end / POINTS, tolerance=job.tolerance, start_side=1 if start >= 0.0 else -1,
+            start_rotation=abs(start),
+        )  # fmt: skip
+        at, ground_acceleration = Motion("", ground).series()  # whole, where the response ends with collapse
+        thin = slice(None, None, max(1, len(at) // POINTS))
+        critical = base.critical[0]
+        for what, axis, data, unit, about in (
+            ("motion_time", "motion_time", at[thin], "s", f"motion {k + 1}"),
+            ("motion", "motion_time", ground_acceleration[thin] / GRAVITY, "g", "ground acceleration"),
+            ("time", "history_time", h.time, "s", ""),
+            ("rotation", "history_time", h.rotation / critical, "", f"rotation over the critical one: {h.outcome}"),
+        ):
+            result.arrays[f"history_{what}_{k + 1}"] = Array(
+                data, (f"{axis}_{k + 1}",), unit, about, series=f"history_{what}"
+            )
 
 
 def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Result) -> None:
@@ -287,6 +305,9 @@ def _stopped(swept: Swept, result: Result) -> None:
 def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility, result: Result) -> None:
     columns: dict[str, Any] = {"member": swept.members + 1, "motion": swept.members // per_motion + 1}
     units = {"pga": "g", "pgv": "m/s", "arias": "m/s", "peak_rotation": "rad", "stop_time": "s"}
+    if options.cloud:
+        columns["intensity"] = swept["intensity"]
+        units["intensity"] = INTENSITIES[options.intensity][2]
     if job.levels is not None:
         columns["level"] = job.levels[swept.members % per_motion]
         units["level"] = INTENSITIES[options.intensity][2]

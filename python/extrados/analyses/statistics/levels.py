@@ -6,9 +6,12 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.statistics import likelihood
+from extrados.analyses.statistics.annual import annual_collapse, spoken
 from extrados.analyses.statistics.likelihood import Lognormal, NoFit
 from extrados.analyses.statistics.summaries import shares
+from extrados.analyses.statistics.tables import Hazard
 from extrados.core.rocking import FAILED
+from extrados.motions.hazard import HazardCurve
 from extrados.results.model import Array, Result, TableData
 from extrados.results.rocking import COLLAPSE, RECOVERY
 from extrados.schema.constants import GRAVITY
@@ -69,12 +72,20 @@ def arranged(levels: np.ndarray, members: np.ndarray, motions: int, rows: dict[s
 
 
 def describe(
-    seen: Stripes, intensity: str, word: str, initial: float, confidence: float, repeats: int, seed: int, result: Result
+    seen: Stripes,
+    intensity: str,
+    word: str,
+    initial: float,
+    hazard: tuple[HazardCurve, Hazard] | None,
+    confidence: float,
+    repeats: int,
+    seed: int,
+    result: Result,
 ) -> dict[str, Any]:
     """Tables, arrays, warnings and answer of the levels into `result`; returns the results of levels alone.
 
-    word: what the building is called; initial: rotation at the start over the critical one; repeats: draws of the
-    bootstrap.
+    word: what the building is called; initial: rotation at the start over the critical one; hazard: that of the site
+    in the measure of the levels; repeats: draws of the bootstrap.
     """
     name, _, unit = INTENSITIES[intensity]
     n = len(seen.levels)
@@ -85,17 +96,22 @@ def describe(
     with np.errstate(invalid="ignore"):
         r["median_pga_g"] = [float(np.median(v[ok])) / GRAVITY if ok.any() else None
                              for v, ok in zip(seen.pga.T, seen.valid.T, strict=True)]  # fmt: skip
-    fits = _curves(seen, confidence, repeats, seed, name, unit, r, result)
+    fits, draws = _curves(seen, confidence, repeats, seed, name, unit, r, result)
     _incremental(seen, unit, r, result)
     _table(seen, unit, r, result)
     result.answer = _answer(seen, fits, name, unit, word, confidence, r)
+    if hazard is not None and "" in fits:
+        others = (np.empty(0),) * 2 if draws is None else draws.curves
+        tails = (0.5 - 0.5 * confidence, 0.5 + 0.5 * confidence)
+        r |= annual_collapse(*hazard, fits[""], others, tails, unit, name, result)
+        result.answer += f" {spoken(r, name, unit, confidence)}"
     return r
 
 
 def _curves(
     seen: Stripes, confidence: float, repeats: int, seed: int, name: str, unit: str, r: dict[str, Any], result: Result
-) -> dict[str, Lognormal]:
-    """The lognormal curves that the runs determine, by stage, with their intervals and bands."""
+) -> tuple[dict[str, Lognormal], likelihood.Draws | None]:
+    """The lognormal curves that the runs determine, by stage, with their intervals and bands; the draws of the bootstrap."""
     levels, valid, over = seen.levels, seen.valid, seen.over
     count, hits, lifted = valid.sum(axis=0), over.sum(axis=0), (seen.outcome >= RECOVERY).sum(axis=0)
     first = likelihood.first_collapses(levels, over, valid)
@@ -125,6 +141,7 @@ def _curves(
     if "uplift_" in fits and "overturning_given_uplift_" in fits:
         product = fits["uplift_"].probability(grid) * fits["overturning_given_uplift_"].probability(grid)
         curves["two_stage_curve"] = Array(product, ("grid",), "", "P(uplift) P(collapse | uplift)")
+    draws = None
     if "" in fits and repeats:
         draws = likelihood.bootstrap(levels, over, valid, repeats, confidence, seed)
         r |= {"median_interval": draws.interval(draws.median), "dispersion_interval": draws.interval(draws.dispersion)}
@@ -138,7 +155,7 @@ def _curves(
         curves |= {"first_collapse_lower": Array(low, ("grid",), "", "profile-likelihood band of the first collapse"),
                    "first_collapse_upper": Array(high, ("grid",))}  # fmt: skip
     result.arrays |= curves
-    return fits
+    return fits, draws
 
 
 def _incremental(seen: Stripes, unit: str, r: dict[str, Any], result: Result) -> None:

@@ -15,7 +15,7 @@ from scipy.special import log_ndtr, ndtr
 from scipy.stats import chi2
 
 MOST_STEPS = 200  # of Newton's method
-DIRECTIONS = 360  # on which the border of a confidence region is found
+DIRECTIONS = 120  # on which the border of a confidence region is found
 
 
 class NoFit(ValueError):
@@ -71,6 +71,13 @@ class Region:
     def dispersion(self) -> np.ndarray:
         """Profile-likelihood interval of the dispersion."""
         return self._interval(1.0 / self.b) if self.b.min() > 0.0 else np.array([1.0 / self.b.max(), np.nan])
+
+    @property
+    def curves(self) -> tuple[np.ndarray, np.ndarray]:
+        """Medians and dispersions on the border; none where a curve on it does not grow."""
+        if self.b.min() <= 0.0:
+            return np.empty(0), np.empty(0)
+        return np.exp(self.a / self.b), 1.0 / self.b
 
     def band(self, x: np.ndarray) -> np.ndarray:
         """Profile-likelihood band of the probability at each x, shape (2, x): z is linear in (a, b)."""
@@ -169,20 +176,25 @@ def region(seen: Capacities, found: Lognormal, confidence: float) -> Region:
     ray = np.linalg.solve(np.linalg.cholesky(information[0]).T, np.stack([np.cos(angle), np.sin(angle)]))
     drop = 0.5 * chi2.ppf(confidence, 1)
 
-    def inside(t: np.ndarray) -> np.ndarray:
-        return best - _likelihood(t * ray[0], b + t * ray[1], below, above, weight)[0] < drop
+    def beyond(t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What the likelihood at t loses beyond the drop, and its slope: convex along a ray."""
+        now, score, _ = _likelihood(t * ray[0], b + t * ray[1], below, above, weight)
+        return best - now - drop, -(score * ray.T).sum(axis=1)
 
-    near, far = np.zeros(DIRECTIONS), np.full(DIRECTIONS, np.sqrt(2.0 * drop))
-    for _ in range(60):
-        if not (within := inside(far)).any():
+    # Newton's method comes from outside; where it leaves what is known of the border the middle is taken
+    near, far = np.zeros(DIRECTIONS), np.full(DIRECTIONS, np.inf)
+    t = np.full(DIRECTIONS, np.sqrt(2.0 * drop))
+    for _ in range(MOST_STEPS):
+        loss, slope = beyond(t)
+        near, far = np.where(loss < 0.0, t, near), np.where(loss < 0.0, far, t)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = t - loss / slope
+        step = np.where((step > near) & (step < far), step, np.where(np.isfinite(far), 0.5 * (near + far), 2.0 * t))
+        if np.all(np.abs(step - t) <= 1e-10 * t):
             break
-        near, far = np.where(within, far, near), np.where(within, 2.0 * far, far)
-    for _ in range(50):
-        middle = 0.5 * (near + far)
-        within = inside(middle)
-        near, far = np.where(within, middle, near), np.where(within, far, middle)
-    b = b + near * ray[1]
-    return Region(near * ray[0] + b * centre, b)
+        t = step
+    b = b + t * ray[1]
+    return Region(t * ray[0] + b * centre, b)
 
 
 @dataclass(frozen=True)
@@ -193,6 +205,11 @@ class Draws:
     dispersion: np.ndarray
     share: float
     confidence: float
+
+    @property
+    def curves(self) -> tuple[np.ndarray, np.ndarray]:
+        """Medians and dispersions; none where fewer than half of the draws have a curve."""
+        return (self.median, self.dispersion) if self.share >= 0.5 else (np.empty(0), np.empty(0))
 
     def interval(self, values: np.ndarray) -> np.ndarray:
         """Quantiles (2, ...) of a quantity over the draws; NaN where fewer than half of them have a curve."""

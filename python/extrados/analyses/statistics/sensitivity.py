@@ -10,7 +10,7 @@ from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import Source
 from extrados.analyses.runs import runs_job
-from extrados.building.rockers.rocker import Rocker
+from extrados.analyses.statistics.uncertain import Bodies
 from extrados.core.rocking import FAILED
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
@@ -23,7 +23,7 @@ MOST_MOTIONS = 4096  # held in memory
 def sensitivity(
     context: Context,
     names: list[str],
-    models: Callable[[np.ndarray], list[Rocker]],
+    models: Callable[[np.ndarray], Bodies],
     source: Source,
     motions: int,
     settle: float,
@@ -37,7 +37,7 @@ def sensitivity(
     """First-order and total Sobol indices (Saltelli and others 2010) of the peak rotation ratio, collapse counted as 1,
     and of the collapse itself.
 
-    models: rockers at points (n, names) of the unit cube; the motion is one more value, each of `motions` as likely.
+    models: structures at points (n, names) of the unit cube; the motion is one more value, each of `motions` as likely.
     settle: time after a motion [s].
     samples: a power of 2; samples times (values + 2) runs. The intervals come from drawing samples anew.
     """  # fmt: skip
@@ -54,12 +54,19 @@ def sensitivity(
     points = np.concatenate([a, b, mixed.reshape(-1, d)])
     # The points at which only the motion differs share their structures
     structures, body = np.unique(points[:, : len(names)], axis=0, return_inverse=True)
-    rockers = models(structures)
+    made = models(structures)
+    without = [body for body in made.bodies if isinstance(body, str)]
+    if without:
+        raise Refused(
+            f"{len(without)} of {len(made.bodies)} buildings of the sample do not rock ({without[0]}): the indices of the "
+            "sensitivity need all of them; smaller scatters may help"
+        )
+    bodies = [body for body in made.bodies if not isinstance(body, str)]
     chosen = np.minimum((points[:, -1] * len(usable)).astype(int), len(usable) - 1) if len(usable) > 1 else 0
     body = body.ravel()
     end = np.array([g.end for g in usable])[chosen] + settle
-    start = np.array([r.start_rotation for r in rockers])[body]
-    job = runs_job([r.body for r in rockers], usable, body, chosen, 1.0, end, start, tolerance=tolerance, strict=False)
+    start = made.starts[body]
+    job = runs_job(bodies, usable, body, chosen, 1.0, end, start, tolerance=tolerance, strict=False)
     swept = sweep(context, "sensitivity", job, len(points), "sensitivity").whole()
     if (failed := int((swept["outcome"] == FAILED).sum())) > 0:
         raise Refused(f"{failed} of {len(points)} runs of the sensitivity fail: its indices need all of them")

@@ -1,24 +1,64 @@
 """Analysis kinds of the rocking statistics: fragility, resonance, spectra, code checks."""
 
+from itertools import pairwise
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from extrados.analyses.rocking.tables import RockingTable
 from extrados.schema.quantities import Acceleration, Angle, Frequency, OrText, Time, factor, parse
-from extrados.schema.table import key
+from extrados.schema.table import Table, key
 
 #: Measures of levels that have a dimension: SI unit, and the unit of a bare number
 LEVELS = {"pga": ("m/s^2", "g"), "sa": ("m/s^2", "g"), "arias": ("m/s", "m/s")}
 Level = Annotated[float, OrText()]
+#: Uncertain values by the kind of structure; others that rock by a mechanism know those of STONES
 UNCERTAIN = {
     "block": ("width", "height", "centre_height", "toe_right", "toe_left", "restitution"),
-    "arch": ("radius", "thickness", "restitution"),
+    "column": ("width", "top_width", "height", "density", "restitution"),
+    "arch": ("radius", "thickness", "corners", "density", "imperfection", "restitution"),
 }
+STONES = ("density", "imperfection", "restitution")
+Rate = Annotated[float, Field(gt=0, le=100)]
+
+
+class Hazard(Table):
+    """Seismic hazard of the site: how often a year each intensity is exceeded, in the measure of the levels."""
+
+    intensities: list[Level] | None = key(
+        None, "ascending intensities, numbers in the unit of the measure or text", min_length=2, max_length=1000
+    )
+    annual_rates: list[Rate] | None = key(
+        None, "mean annual rates at which they are exceeded, descending; lines between the logarithms", min_length=2,
+        max_length=1000,
+    )  # fmt: skip
+    file: str | None = key(None, "CSV with both as columns, instead of the lists; lines that begin with # are skipped")
+    years: float = key(50.0, "time for which the probability of collapse is told", gt=0, le=1e5)
+    acceptable_rate: Rate | None = key(None, "annual rate of collapse that is accepted: the demand of the verdict")
+
+    @model_validator(mode="after")
+    def _curve(self) -> "Hazard":
+        lists = (self.intensities, self.annual_rates)
+        if (self.file is None) == (None in lists) or (self.file is not None and lists != (None, None)):
+            raise ValueError("give intensities and annual_rates, or a file, one of the two")
+        if self.file is None:
+            check_hazard(*lists)
+        return self
+
+
+def check_hazard(intensities: list[float], rates: list[float]) -> None:
+    """ValueError where these are no hazard curve."""
+    if len(intensities) != len(rates):
+        raise ValueError(f"{len(intensities)} intensities and {len(rates)} annual_rates; expected as many")
+    if min(intensities) <= 0.0 or any(b <= a for a, b in pairwise(intensities)):
+        raise ValueError("intensities must be above zero and ascend")
+    if min(rates) <= 0.0 or any(b >= a for a, b in pairwise(rates)):
+        raise ValueError("annual_rates must be above zero and descend: a stronger motion is rarer")
 
 
 class Fragility(RockingTable):
-    """Probability of uplift and collapse over many motions; with `levels` also over an intensity measure."""
+    """Probability of uplift and collapse over many motions; with `levels` or as a `cloud` over an intensity measure, and
+    with a `hazard` curve the annual rate of collapse."""
 
     kind: Literal["fragility"]
     needs_motion: ClassVar = True
@@ -29,18 +69,30 @@ class Fragility(RockingTable):
         None, "repeat for these t_d of a generated set", source="thesis Fig. 6-8", min_length=1, max_length=100
     )
     intensity: Literal["pga", "pga-ratio", "pgv-ratio", "sa", "arias", "scale"] = key(
-        "pga", "measure of the levels: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) [g], Arias intensity "
+        "pga", "measure of levels, cloud and hazard: PGA [g], PGA/(g tan alpha), p PGV/(g tan alpha), SA(sa_period) [g], Arias intensity "
         "[m/s], or the factor itself", source="Dimitrakopoulos and Paraskeva 2015",
     )  # fmt: skip
     levels: list[Level] | None = key(
         None, 'intensities to which every motion is scaled, numbers in the unit of the measure or text such as "0.1 g"',
         min_length=1, max_length=500,
     )  # fmt: skip
+    cloud: bool = key(
+        False,
+        "fit curves over the intensities that the motions have of themselves, unscaled",
+        source="Jalayer and others 2017",
+    )
+    rotation_limits: list[Annotated[float, Field(gt=0, le=1)]] = key(
+        [], "of a cloud: also the curves of a rotation beyond these shares of the critical one", max_length=20
+    )
+    hazard: Hazard | None = key(None, "hazard curve of the site, for the annual rate of collapse")
+    histories: int = key(0, "draw the first so many motions with the responses", ge=0, le=12, source="thesis Fig. 6-6")
     sa_period: Time | None = key(None, "period of SA", gt=0)
     sa_damping: float = key(0.05, "damping ratio of SA", ge=0, lt=1)
     uncertain: dict[str, float] = key(
-        {}, "coefficients of variation of width, height, thickness, restitution, ..., sampled by a Sobol sequence"
-    )
+        {}, "coefficients of variation of width, height, thickness, restitution, of the thickness lost at worn `corners`, of "
+        "the `density` from stone to stone; `imperfection`: how far corners and joints of stones stray, over the shortest "
+        "joint; sampled by a Sobol sequence"
+    )  # fmt: skip
     sensitivity: int | None = key(
         None, "samples, a power of 2, for Sobol indices of `uncertain` and of the motion: samples times (values + 2) runs",
         ge=16, le=2**20, source="Saltelli and others 2010",
@@ -54,15 +106,17 @@ class Fragility(RockingTable):
     @model_validator(mode="before")
     @classmethod
     def _units(cls, data: Any) -> Any:
-        """Levels given as text, in the unit of their measure."""
-        levels = data.get("levels") if isinstance(data, dict) else None
-        if not isinstance(levels, list) or not any(isinstance(level, str) for level in levels):
+        """Levels and intensities given as text, in the unit of their measure."""
+        if not isinstance(data, dict):
             return data
-        intensity = data.get("intensity", "pga")
-        if intensity not in LEVELS:
-            raise ValueError(f"levels of intensity = {intensity!r} are numbers without a unit")
-        si, unit = LEVELS[intensity]
-        return {**data, "levels": [parse(v, si) / factor(unit, si) if isinstance(v, str) else v for v in levels]}
+        hazard = data.get("hazard")
+        found = (
+            {**data, "levels": _numbers(data.get("levels"), data.get("intensity", "pga"))} if "levels" in data else data
+        )
+        if isinstance(hazard, dict) and "intensities" in hazard:
+            numbers = _numbers(hazard["intensities"], data.get("intensity", "pga"))
+            found = {**found, "hazard": {**hazard, "intensities": numbers}}
+        return found
 
     @model_validator(mode="after")
     def _sensible(self) -> "Fragility":
@@ -70,14 +124,24 @@ class Fragility(RockingTable):
             raise ValueError("levels must be above zero")
         if self.levels is not None and self.durations is not None:
             raise ValueError("give levels or durations, not both")
-        if self.levels is not None and (self.intensity == "sa") != (self.sa_period is not None):
+        if (self.levels is not None or self.cloud) and (self.intensity == "sa") != (self.sa_period is not None):
             raise ValueError('intensity = "sa" and sa_period go together')
+        if self.cloud and (self.levels is not None or self.durations is not None):
+            raise ValueError("a cloud takes the motions as they are: without levels and durations")
+        if self.cloud and self.intensity == "scale":
+            raise ValueError('the motions of a cloud are not scaled: intensity = "scale" is the same for all')
+        if self.rotation_limits and not self.cloud:
+            raise ValueError("rotation_limits belong to a cloud")
+        if self.histories and (self.levels is not None or self.durations is not None):
+            raise ValueError("histories show the motions as they are: without levels and durations")
+        if self.hazard is not None and (self.intensity == "scale" or not (self.cloud or self.levels)):
+            raise ValueError("a hazard curve needs levels or a cloud of an intensity measure")
         if self.sensitivity is not None:
             if not self.uncertain or self.levels is not None or self.durations is not None:
                 raise ValueError("sensitivity needs uncertain values, and neither levels nor durations")
             if self.sensitivity & (self.sensitivity - 1):
                 raise ValueError(f"sensitivity is {self.sensitivity}, expected a power of 2")
-        known = sorted({name for names in UNCERTAIN.values() for name in names})
+        known = sorted({name for names in (*UNCERTAIN.values(), STONES) for name in names})
         for name, value in self.uncertain.items():
             if name not in known:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(known)}")
@@ -88,10 +152,21 @@ class Fragility(RockingTable):
         return self
 
 
+def _numbers(values: Any, intensity: str) -> Any:
+    """Numbers in the unit of a measure for those given as text with a unit; anything else stays for pydantic to judge."""
+    if not isinstance(values, list) or not any(isinstance(v, str) for v in values):
+        return values
+    if intensity not in LEVELS:
+        raise ValueError(f"levels of intensity = {intensity!r} are numbers without a unit")
+    si, unit = LEVELS[intensity]
+    return [parse(v, si) / factor(unit, si) if isinstance(v, str) else v for v in values]
+
+
 class Resonance(RockingTable):
     """The motion under a cap that feeds most energy to a block, and the least cap that can overturn it."""
 
     kind: Literal["resonance"]
+    bears: ClassVar = ()
     cap: Acceleration | None = key(
         None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5"
     )
@@ -105,6 +180,7 @@ class RockingSpectrum(RockingTable):
     """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha, or of the deck's arch in all sizes."""
 
     kind: Literal["rocking-spectrum"]
+    bears: ClassVar = ()
     view: ClassVar = ""
     needs_motion: ClassVar = True
     periods: list[Time] | None = key(

@@ -17,6 +17,9 @@ ROUNDING = 1e-3
 #: Cosine of the angle by which stretches of one face may differ.
 SAME_WAY = 0.7
 PAIRS_AT_ONCE = 5000
+PAIRS_OF_BOXES = 5_000_000
+#: Pairs of neighbours that are looked at: so many, or so many times the blocks; in masonry a block has about eight.
+MOST_PAIRS, MOST_NEIGHBOURS = 100_000, 50
 
 
 class Overlap(BadGeometry):
@@ -147,7 +150,7 @@ def _edge_pairs(outlines: list[np.ndarray], start: np.ndarray, reach: float) -> 
     """Edge numbers of all pairs of blocks whose boxes come within `reach`, the lower block first."""
     low = np.array([o.min(axis=0) for o in outlines]) - 0.5 * reach
     high = np.array([o.max(axis=0) for o in outlines]) + 0.5 * reach
-    i, j = box_pairs(low, high)
+    i, j = box_pairs(low, high, max(MOST_PAIRS, MOST_NEIGHBOURS * len(outlines)))
     edges_i, edges_j = np.diff(start)[i], np.diff(start)[j]
     total = edges_i * edges_j
     within = np.arange(total.sum()) - np.repeat(np.cumsum(total) - total, total)
@@ -155,16 +158,28 @@ def _edge_pairs(outlines: list[np.ndarray], start: np.ndarray, reach: float) -> 
     return np.repeat(start[i], total) + within // per, np.repeat(start[j], total) + within % per
 
 
-def box_pairs(low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs i < j of boxes (k, 2) low .. high that meet, by a sweep along x."""
+def box_pairs(low: np.ndarray, high: np.ndarray, most: int) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs i < j of boxes (k, 2) low .. high that meet, by a sweep along x; BadGeometry where there are more than
+    `most`."""
     order = np.argsort(low[:, 0])
     reach_to = np.searchsorted(low[order, 0], high[order, 0], side="right")
     count = np.maximum(reach_to - np.arange(len(order)) - 1, 0)
-    i = np.repeat(np.arange(len(order)), count)
-    j = i + 1 + np.arange(len(i)) - np.repeat(np.cumsum(count) - count, count)
-    i, j = order[i], order[j]
-    meet = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
-    return np.minimum(i, j)[meet], np.maximum(i, j)[meet]
+    found, total = [], 0
+    # As many boxes at a time as are near some millions of others, so that the memory is bounded
+    parts = np.searchsorted(np.cumsum(count), np.arange(PAIRS_OF_BOXES, int(count.sum()), PAIRS_OF_BOXES), side="right")
+    for some in np.split(np.arange(len(order)), parts):
+        i = np.repeat(some, count[some])
+        j = i + 1 + np.arange(len(i)) - np.repeat(np.cumsum(count[some]) - count[some], count[some])
+        i, j = order[i], order[j]
+        meet = (low[i, 1] <= high[j, 1]) & (low[j, 1] <= high[i, 1])
+        found.append(np.stack([np.minimum(i, j)[meet], np.maximum(i, j)[meet]]))
+        total += int(meet.sum())
+        if total > most:
+            raise BadGeometry(
+                f"the boxes around {len(order)} outlines or lines meet in more than {most:,} pairs, the most that are "
+                f"looked at: much of it lies over itself"
+            )
+    return tuple(np.concatenate(found, axis=1))
 
 
 def _shared(
@@ -246,12 +261,10 @@ def _overlaps(
     rounding: float,
 ) -> list[Flaw]:  # fmt: skip
     """Where two blocks lie in each other by more than `rounding`: their edges cross, or one holds a place of the other."""
-    found: dict[tuple[int, int], Flaw] = {}
+    rows: list[np.ndarray] = []  # block i, block j, depth, x, y
 
-    def add(i: int, j: int, depth: float, place: np.ndarray) -> None:
-        pair = (min(i, j), max(i, j))
-        if pair not in found or depth > found[pair].depth:
-            found[pair] = Flaw("overlap", *pair, float(depth), _xy(place))
+    def add(i: np.ndarray, j: np.ndarray, depth: np.ndarray, place: np.ndarray) -> None:
+        rows.append(np.column_stack([np.minimum(i, j), np.maximum(i, j), depth, place]))
 
     def offsets(a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         t = last[a] - first[a]
@@ -263,9 +276,9 @@ def _overlaps(
     crossing = np.minimum.reduce([
         -np.minimum(b0, b1), np.maximum(b0, b1), -np.minimum(a0, a1), np.maximum(a0, a1)
     ])  # fmt: skip
-    for k in np.flatnonzero(crossing > rounding).tolist():
-        where = first[two[k]] + b0[k] / (b0[k] - b1[k]) * (last[two[k]] - first[two[k]])
-        add(int(owner[one[k]]), int(owner[two[k]]), crossing[k], where)
+    k = np.flatnonzero(crossing > rounding)
+    where = first[two[k]] + (b0[k] / (b0[k] - b1[k]))[:, None] * (last[two[k]] - first[two[k]])
+    add(owner[one[k]], owner[two[k]], crossing[k], where)
     # Where no edges cross, one lies in the other only with all of it. Corners, middles of edges and a place
     # inside tell, among them those that lie on the other's outline.
     start = np.searchsorted(owner, np.arange(len(outlines) + 1))
@@ -285,9 +298,13 @@ def _overlaps(
         at = np.repeat(np.arange(len(pair)), edges)
         edge = start[some[pair[at], 1]] + np.arange(len(at)) - group[at]
         deep = _depth(points[probe[at]], first[edge], last[edge], group)
-        for k in np.flatnonzero(deep > rounding).tolist():
-            add(int(some[pair[k], 0]), int(some[pair[k], 1]), deep[k], points[probe[k]])
-    return list(found.values())
+        k = np.flatnonzero(deep > rounding)
+        add(some[pair[k], 0], some[pair[k], 1], deep[k], points[probe[k]])
+    table = np.concatenate(rows)
+    table = table[np.lexsort((-table[:, 2], table[:, 1], table[:, 0]))]
+    deepest = np.ones(len(table), dtype=bool)
+    deepest[1:] = (table[1:, :2] != table[:-1, :2]).any(axis=1)
+    return [Flaw("overlap", int(i), int(j), depth, (x, y)) for i, j, depth, x, y in table[deepest].tolist()]
 
 
 def _within(outline: np.ndarray) -> np.ndarray:

@@ -8,6 +8,8 @@ from extrados.building.geometry.contacts import box_pairs
 from extrados.building.geometry.polygons import inside, properties, signed_area
 
 YIELDS = 1e-9  # weight of a line beside a firm one
+#: Pairs of lines that are looked at: so many, or so many times the lines
+MOST_PAIRS, MOST_NEIGHBOURS = 2_000_000, 50
 
 
 @dataclass(frozen=True)
@@ -37,10 +39,22 @@ def net_of(lines: np.ndarray, tolerance: float, near: float, firm: np.ndarray | 
     """
     lines = np.asarray(lines, dtype=float).reshape(-1, 4)
     weight = np.ones(len(lines)) if firm is None else np.where(firm, 1.0, YIELDS)
+    lines, weight, of = _once(lines, weight)
     ends, edges, source = _knotted(lines, weight, tolerance)
     kept, loose = _pruned(ends, edges, tolerance, near)
     faces, sides = _faces(ends, edges[kept])
-    return Net(faces, [source[kept][side] for side in sides], loose)
+    return Net(faces, [of[source[kept][side]] for side in sides], loose)
+
+
+def _once(lines: np.ndarray, weight: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Lines that are drawn several times, either way round, taken once: the first, as firm as the firmest."""
+    turned = (lines[:, 0] > lines[:, 2]) | ((lines[:, 0] == lines[:, 2]) & (lines[:, 1] > lines[:, 3]))
+    way = np.where(turned[:, None], lines[:, [2, 3, 0, 1]], lines)
+    _, first, number = np.unique(way, axis=0, return_index=True, return_inverse=True)
+    firmest = np.zeros(len(first))
+    np.maximum.at(firmest, number.reshape(-1), weight)
+    order = np.argsort(first)
+    return lines[first[order]], firmest[order], first[order]
 
 
 def _knotted(lines: np.ndarray, weight: np.ndarray, tolerance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -52,7 +66,7 @@ def _knotted(lines: np.ndarray, weight: np.ndarray, tolerance: float) -> tuple[n
     index = np.flatnonzero(keep)
     begin, end, along, length = begin[keep], end[keep], along[keep], length[keep]
     low, high = np.minimum(begin, end) - tolerance, np.maximum(begin, end) + tolerance
-    i, j = box_pairs(low, high)
+    i, j = box_pairs(low, high, max(MOST_PAIRS, MOST_NEIGHBOURS * len(begin)))
     cuts: list[tuple[np.ndarray, np.ndarray]] = [
         (np.arange(len(begin)), np.zeros(len(begin))), (np.arange(len(begin)), np.ones(len(begin)))
     ]  # fmt: skip

@@ -172,4 +172,8 @@ class ArchModel:
 
     @cached_property
     def body(self) -> Body:
-        return arch_body(self.four_hinge, self.restitution)
+        return self.rebounding(1.0)
+
+    def rebounding(self, factor: float) -> Body:
+        """The structure with c_v times a factor, at most 1."""
+        return arch_body(self.four_hinge, min(1.0, factor * self.restitution))

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from extrados.building.geometry.assembly import Assembly
 from extrados.building.templates.block import BlockAssembly, monolith
 from extrados.core.rocking import Body, block_body
 from extrados.schema.constants import GRAVITY
@@ -71,19 +72,30 @@ class BlockModel:
 
     @cached_property
     def body(self) -> Body:
-        b, (right, left) = self.block, self.restitution
+        return self.rebounding(1.0)
+
+    def rebounding(self, factor: float) -> Body:
+        """The structure with c_v times a factor, at most 1."""
+        b, (right, left) = self.block, np.minimum(1.0, factor * self.restitution)
         return block_body(
-            float(b.mass[0]), float(b.inertia[0]), b.centre_height, b.toe_right, b.toe_left, (right, left), self.linear
+            float(b.mass[0]),
+            float(b.inertia[0]),
+            b.centre_height,
+            b.toe_right,
+            b.toe_left,
+            (right, left),
+            self.linear,
+            b.slope,
         )
 
 
-def block_model(building: "Building", linear: bool = False) -> BlockModel:
+def block_model(building: "Building", linear: bool = False, stones: Assembly | None = None) -> BlockModel:
     """A `block`, or a `column` or a wall taken as one body, with the impact that [joints] asks for.
 
-    A wall is its only pier: one that openings divide rocks by a mechanism.
+    A wall is its only pier: one that openings divide rocks by a mechanism. stones: instead of the building's own.
     """
     piers = building.structure is not None and building.structure.rocks_as == "piers"
-    made = building.pier_blocks() if piers else building.blocks()
+    made = stones or (building.pier_blocks() if piers else building.blocks())
     block = made if isinstance(made, BlockAssembly) else monolith(made)
     rule = building.joints.restitution
     # The energy-safe projection of a block that lands on both toes is Housner's balance.

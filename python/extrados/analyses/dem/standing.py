@@ -1,0 +1,40 @@
+"""Whether limit analysis agrees with elements on what stands under its own weight."""
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.limit.common import loads_of
+from extrados.building.building import Building
+from extrados.limit.answer import why_not
+from extrados.limit.equilibrium import Disconnected
+from extrados.limit.errors import NoAnswer
+from extrados.limit.programme import LimitAnalysis
+
+WEDGED = (
+    "limit analysis finds forces by which it could stand, as friction holds a stone that is wedged in; elements begin "
+    "without such forces"
+)
+#: Walls of more joints are not held against limit analysis, which would take as long as the elements.
+MOST_JOINTS = 3000
+
+
+def against_limit_analysis(building: Building, stands: bool) -> str:
+    """What is to be said of elements that found that a building stands, or that it falls; empty where limit analysis
+    finds that it stands too, or has no answer."""
+    try:
+        if len(building.blocks().a) > MOST_JOINTS:
+            return ""
+        limit = LimitAnalysis(building.blocks(), building.friction(), loads=loads_of(building.blocks(), None, building))
+        admissible = limit.stands()
+        reason = "" if admissible else why_not(limit)
+    except (NoAnswer, Disconnected, Refused):
+        return ""
+    if admissible:
+        return "" if stands else WEDGED
+    if not stands:
+        return f"limit analysis agrees: {reason}"
+    glued = any(np.nanmax(building.joint_property(name), initial=0.0) > 0.0 for name in ("cohesion", "tension"))
+    held = (
+        "by the cohesion and tension of its joints, which limit analysis leaves out" if glued else "for no reason known"
+    )
+    return f"elements stand {held}, but limit analysis finds that it cannot stand under its own weight: {reason}"

@@ -1,0 +1,271 @@
+"""failure-curves: several structures, or trains of sines, and the primary impulses of motions (thesis Figs 5-4, 5-5, 5-15)."""
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.batches import computed
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.variation import changed, read_table
+from extrados.analyses.motion_source import source_of
+from extrados.analyses.rocking.failure_domain import LowestAmplitudes, natural_durations
+from extrados.analyses.rocking.tables import FailureCurves
+from extrados.building.errors import BadGeometry, NoView
+from extrados.building.rockers.rocker import Rocker
+from extrados.core.rocking import FAILED, OUTCOMES, ensemble
+from extrados.motions.impulse import Impulse, primary_impulses
+from extrados.motions.motion import Motion
+from extrados.results import rocking as out
+from extrados.results.model import Array, Result, TableData
+from extrados.schema.constants import GRAVITY
+from extrados.schema.quantities import unit_of
+from extrados.schema.table import Table
+
+#: After a motion a structure rocks itself to rest within this many of its natural times.
+SETTLE = 40.0
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A structure with its name in the picture, and how many cycles its pulses have."""
+
+    label: str
+    rocker: Rocker
+    cycles: int
+
+    @property
+    def natural(self) -> float:
+        """Time by which durations scale [s]: sqrt(R/g) of an arch, 2.5/p of a block."""
+        return float(np.sqrt(self.rocker.scale / GRAVITY))
+
+    @property
+    def settle(self) -> float:
+        return SETTLE * self.natural
+
+
+@dataclass(frozen=True)
+class Shaken:
+    """A motion of the deck and its primary impulse."""
+
+    name: str
+    motion: Motion
+    impulse: Impulse
+
+
+def run(context: Context, options: FailureCurves) -> Result:
+    """The curve of each variant, the verdicts it gives on the motions, and what the motions do."""
+    variants = _variants(context, options)
+    curves = [_curve(context, options, variant) for variant in variants]
+    # The curves are those of single pulses: only single sines stand for the impulses of motions.
+    shaken = _motions(context, options) if context.deck.motion is not None and options.pulse == "sine" else []
+    rows = [_row(variant, *curve, shaken) for variant, curve in zip(variants, curves, strict=True)]
+    pairs = [
+        (by_curve == "fails") == (by_run == "collapse")
+        for row in rows
+        for by_curve, by_run in zip(row.curve_verdicts, row.run_outcomes, strict=True)
+        if by_curve is not None and by_run is not None
+    ]
+    result = Result("failure-curves")
+    r = result.results = out.FailureCurves(
+        pulse=options.pulse,
+        curves=rows,
+        impulses=[
+            out.MotionImpulse(
+                name=s.name, amplitude_g=s.impulse.amplitude / GRAVITY, period_s=s.impulse.period, start_s=s.impulse.start,
+                goodness_of_fit=s.impulse.goodness, peak_ground_acceleration_g=s.motion.peak / GRAVITY,
+            )
+            for s in shaken
+        ],
+        agreement=float(np.mean(pairs)) if pairs else None,
+        scaling_misfit=_misfit(variants, curves),
+    )  # fmt: skip
+    if r.agreement is not None and r.agreement < 1.0:
+        result.warnings.append(
+            f"{pairs.count(False)} of {len(pairs)} verdicts by the curves are not what the whole motion does: a curve knows "
+            "single impulses without what comes before and after them; the runs are the better witness"
+        )
+    longest = max(len(d) for d, _ in curves)
+    padded = [np.array([np.append(c[k], np.full(longest - len(c[k]), np.nan)) for c in curves]) for k in (0, 1)]
+    result.arrays = {
+        "duration": Array(padded[0], ("curve", "point"), "s", "t_p of step and rectangular pulses, else the period T_p"),
+        "amplitude": Array(padded[1], ("curve", "point"), "g", "lowest amplitude that brings it down"),
+        "natural_time": Array(np.array([v.rocker.time_unit if _slender(v) else v.natural for v in variants]), ("curve",), "s"),
+        "slender": Array(np.array([_slender(v) for v in variants]), ("curve",), "", "true of a block"),
+    }  # fmt: skip
+    result.tables["failure_curves"] = TableData(
+        {
+            "curve": np.repeat([v.label for v in variants], [len(d) for d, _ in curves]),
+            "duration": np.concatenate([d for d, _ in curves]),
+            "amplitude": np.concatenate([a for _, a in curves]),
+        },
+        {"duration": "s", "amplitude": "g"},
+    )
+    if shaken:
+        result.tables["impulses"] = TableData(
+            {
+                "motion": [s.name for s in shaken for _ in rows],
+                "curve": [row.label for _ in shaken for row in rows],
+                "amplitude": [abs(s.impulse.amplitude) / GRAVITY for s in shaken for _ in rows],
+                "period": [s.impulse.period for s in shaken for _ in rows],
+                **{
+                    name: [getattr(row, name)[k] or "" for k in range(len(shaken)) for row in rows]
+                    for name in ("static_verdicts", "curve_verdicts", "run_outcomes")
+                },
+            },
+            {"amplitude": "g", "period": "s"},
+        )
+    result.answer = _answer(r)
+    return result
+
+
+def _slender(variant: Variant) -> bool:
+    return variant.rocker.what in ("block", "column")
+
+
+def _variants(context: Context, options: FailureCurves) -> list[Variant]:
+    """One for each change of the structure and number of cycles."""
+    building, data = context.building, context.deck.data["structure"]
+    linear = options.form == "linear"
+    found = []
+    names = list(dict.fromkeys(name for change in options.variants for name in change))
+    for number, change in enumerate(options.variants or [{}]):
+        table = data
+        for name, value in change.items():
+            if name == "kind":
+                raise Refused(
+                    f"variants[{number}]: a variant changes keys of a {building.structure.kind}, not its kind"
+                )
+            table = changed(table, name, value)
+        try:
+            structure = read_table(type(building.structure), table)
+            rocker = building.apart().having(structure=structure).rocker(linear)
+        except (BadGeometry, NoView, ValueError) as error:
+            raise Refused(f"variants[{number}]: {error}") from None
+        parts = [_said(structure, name) for name in names]
+        told = f"{', '.join(parts)}: " if parts else ""
+        context.warnings += [told + warning for warning in rocker.warnings]
+        for cycles in options.cycles:
+            of_train = [f"{cycles} cycle{'s' if cycles > 1 else ''}"] if len(options.cycles) > 1 else []
+            found.append(Variant(", ".join(parts + of_train) or rocker.word, rocker, cycles))
+    return found
+
+
+def _said(structure: Table, path: str) -> str:
+    """A key of a structure, dotted for one of a table within it, with its value and unit."""
+    place: Any = structure
+    *way, last = path.split(".")
+    for part in way:
+        place = place[int(part)] if isinstance(place, list) else getattr(place, part)
+    value = getattr(place, last)
+    number = f"{value:g}" if isinstance(value, float) else str(value)
+    return f"{last.replace('_', ' ')} {number} {unit_of(type(place), last)}".rstrip()
+
+
+def _curve(context: Context, options: FailureCurves, variant: Variant) -> tuple[np.ndarray, np.ndarray]:
+    """Durations [s], ascending, and the lowest failing amplitudes [g]; NaN: none below the cap."""
+    given = options.durations
+    durations = np.sort(given) if given else natural_durations(variant.natural, options.pulse, options.count)
+    amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
+    rocker = variant.rocker
+    job = LowestAmplitudes(
+        rocker.body, options.pulse, durations, amplitudes, variant.settle, options.accuracy * GRAVITY,
+        rocker.start_rotation, variant.cycles,
+    )  # fmt: skip
+    found = computed(
+        context, "failure-curves", job, len(durations), f"failure curve of {variant.label}", context.threads
+    )
+    return durations, found["amplitude"] / GRAVITY
+
+
+def _motions(context: Context, options: FailureCurves) -> list[Shaken]:
+    """The motions of the deck with their primary impulses; what cannot be read or holds no impulse is told."""
+    source, known = source_of(context, None)
+    grounds = source.grounds(0, min(options.motions, known or options.motions), context.threads)
+    names = getattr(source, "names", None) or [f"motion {k + 1}" for k in range(len(grounds))]
+    found = []
+    for name, ground in zip(names, grounds, strict=False):
+        if isinstance(ground, str):
+            context.warnings.append(f"{name} is left out: {ground}")
+            continue
+        motion = Motion(name, ground)
+        impulses = primary_impulses(*motion.series(), 1, None, options.max_period)
+        if impulses:
+            found.append(Shaken(name, motion, impulses[0]))
+        else:
+            context.warnings.append(f"{name} is left out: it holds no impulse")
+    return found
+
+
+def _row(variant: Variant, durations: np.ndarray, amplitudes: np.ndarray, shaken: list[Shaken]) -> out.FailureCurve:
+    rocker = variant.rocker
+    outcomes: list[str | None] = []
+    if shaken:
+        each = np.arange(len(shaken))
+        ends = np.array([s.motion.end for s in shaken]) + variant.settle
+        e = ensemble(
+            [rocker.body], [s.motion.ground for s in shaken], 0 * each, each, 1.0, ends, start_rotation=rocker.start_rotation
+        )  # fmt: skip
+        outcomes = [None if place == FAILED else OUTCOMES[place] for place in e.outcome]
+    return out.FailureCurve(
+        label=variant.label,
+        durations_s=durations,
+        amplitudes_g=amplitudes,
+        uplift_acceleration_g=rocker.uplift,
+        restitution=rocker.restitution,
+        natural_time_s=rocker.time_unit if _slender(variant) else variant.natural,
+        cycles=variant.cycles,
+        static_verdicts=["fails" if s.motion.peak > rocker.uplift * GRAVITY else "stands" for s in shaken],
+        curve_verdicts=[_against(durations, amplitudes, s.impulse) for s in shaken],
+        run_outcomes=outcomes,
+    )
+
+
+def _against(durations: np.ndarray, amplitudes: np.ndarray, impulse: Impulse) -> str | None:
+    """Verdict of a curve on an impulse; None where its period lies outside. Above the cap of the curve nothing fails."""
+    if not durations[0] <= impulse.period <= durations[-1]:
+        return None
+    needed = float(np.interp(impulse.period, durations, np.where(np.isfinite(amplitudes), amplitudes, np.inf)))
+    return "fails" if abs(impulse.amplitude) / GRAVITY >= needed else "stands"
+
+
+def _misfit(variants: list[Variant], curves: list[tuple[np.ndarray, np.ndarray]]) -> float | None:
+    """Greatest relative difference of two curves over natural times and uplift; None where trains differ.
+
+    Curves are compared where both have an amplitude, on the durations of the first.
+    """
+    if len(variants) < 2 or len({v.cycles for v in variants}) > 1:
+        return None
+    scaled = [
+        (d / v.natural, a / v.rocker.uplift) for v, (d, a) in zip(variants, curves, strict=True)
+    ]  # fmt: skip
+    worst = 0.0
+    for (d0, a0), (d1, a1) in itertools.combinations(scaled, 2):
+        inside = (d0 >= d1[0] * (1 - 1e-9)) & (d0 <= d1[-1] * (1 + 1e-9))
+        other = np.interp(d0[inside], d1, a1)
+        both = np.isfinite(a0[inside]) & np.isfinite(other)
+        worst = max(worst, float(np.abs(other / a0[inside] - 1.0)[both].max(initial=0.0)))
+    return worst
+
+
+def _answer(r: out.FailureCurves) -> str:
+    parts = []
+    for c in r.curves:
+        failing = [a for a in c.amplitudes_g if a is not None]
+        low = f"comes down from {min(failing):.3f} g on" if failing else "is not brought down below the cap"
+        parts.append(f"{c.label}: rocks from {c.uplift_acceleration_g:.3f} g, {low}")
+    text = f"Failure curves of {r.pulse} pulses. {'; '.join(parts)}."
+    if r.scaling_misfit is not None:
+        text += f" Over natural time and uplift the curves differ by at most {100.0 * r.scaling_misfit:.2f} %."
+    if r.impulses:
+        told = []
+        for c in r.curves:
+            falls = sum(o == "collapse" for o in c.run_outcomes)
+            above = sum(v == "fails" for v in c.curve_verdicts)
+            static = sum(v == "fails" for v in c.static_verdicts)
+            told.append(
+                f"{c.label}: {static} by a static check, {above} by the curve, {falls} run through"
+            )  # fmt: skip
+        text += f" Of {len(r.impulses)} motions these bring it down: {'; '.join(told)}."
+    return text

@@ -1,0 +1,86 @@
+"""What a rocking structure looks like at chosen times: places of its stones, and the line of thrust or of the ground's force."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from extrados.building.rockers.arch import ArchModel
+from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.rockers.rocker import Rocker
+from extrados.core import arch as core_arch
+from extrados.results.model import Array, Result
+
+#: Pictures of a film in a second of real time, and the most that are kept
+RATE, MOST = 30.0, 900
+
+
+class States(NamedTuple):
+    """States of a rocking structure (n each): rotation [rad], rate, acceleration, ground and vertical [m/s^2]."""
+
+    rotation: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
+    ground: np.ndarray
+    vertical: np.ndarray
+
+
+class Shapes(NamedTuple):
+    """Poses (n, blocks, 3) [m, m, rad]; the line (n, points, 2) [m], NaN where there is none, None where statics tells
+    none; friction needed at the joints (n, joints), None likewise."""
+
+    pose: np.ndarray
+    line: np.ndarray | None
+    friction: np.ndarray | None
+
+
+def shapes(rocker: Rocker, states: States) -> Shapes:
+    """The structure in given states."""
+    from extrados.analyses.rocking import block, driver
+
+    model, rotation = rocker.model, states.rotation
+    if isinstance(model, ArchModel):
+        thrust = driver._thrust(model, states)
+        placed = core_arch.pose(model.four_hinge, model.arch.centroid, np.abs(rotation))
+        left = rotation < 0.0
+        placed[left] = placed[left, ::-1] * np.array([-1.0, 1.0, -1.0])
+        return Shapes(placed, thrust.point, thrust.friction)
+    if isinstance(model, BlockModel):
+        tangential, normal = block.toe_forces(model, states)
+        lines = block._snapshots(
+            model, _Timed(*states, np.zeros(len(rotation))), tangential, normal, np.arange(len(rotation))
+        )
+        friction = np.abs(tangential) / np.where(normal > 0.0, normal, np.nan)
+        return Shapes(lines["snapshot_pose"].data, lines["snapshot_thrust"].data, friction[:, None])
+    assert isinstance(model, MechanismModel)
+    forces = model.hinge_forces(rotation, states.rate, states.acceleration, states.ground, states.vertical)
+    return Shapes(model.pose(rotation), None, np.where(np.isnan(forces.normal), np.nan, forces.friction))
+
+
+class _Timed(NamedTuple):
+    rotation: np.ndarray
+    rate: np.ndarray
+    acceleration: np.ndarray
+    ground: np.ndarray
+    vertical: np.ndarray
+    time: np.ndarray
+
+
+def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
+    """The shapes of a stored history at the pictures of a film."""
+    get = {name: array.data for name, array in result.arrays.items()}
+    time = get["time"]
+    if not len(time):
+        return {}
+    step = max(1.0 / RATE, (time[-1] - time[0]) / MOST)
+    index = np.unique(np.searchsorted(time, np.arange(time[0], time[-1] + 0.5 * step, step)).clip(max=len(time) - 1))
+    made = shapes(rocker, States(*(get[k][index] for k in ("rotation", "rate", "acceleration", "ground", "vertical"))))
+    arrays = {
+        "film_time": Array(time[index], ("film",), "s", "times of the pictures of the animation"),
+        "film_pose": Array(made.pose, ("film", "block", "component"), "m, m, rad", "x, y, rotation of the stones"),
+    }
+    if made.line is not None:
+        arrays["film_line"] = Array(
+            made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force"
+        )
+    return arrays

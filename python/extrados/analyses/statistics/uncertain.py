@@ -1,0 +1,142 @@
+"""Buildings whose sizes, corners, stones and impacts are not known exactly: rockers at points of the unit cube."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.stats import norm, qmc
+
+from extrados.analyses.batches import computed, stacked
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.statistics.tables import STONES, UNCERTAIN, Fragility
+from extrados.building.building import Building
+from extrados.building.errors import NoView
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.deviation import resurveyed
+from extrados.building.rockers.rocker import Rocker, make_rocker
+from extrados.core.rocking import Body
+
+#: What is drawn stone by stone, by a generator that the point of the cube seeds
+BY_STONE = ("density", "imperfection")
+
+
+@dataclass(frozen=True)
+class Sample:
+    """Member k is the rocker of a building at the point draws[k] of the unit cube, by the names of `uncertain` in order.
+
+    Sizes, restitution and the thickness lost at corners have lognormal factors of mean 1. `density` gives each stone
+    such a factor on its mass; `imperfection` moves each corner and each end of a joint evenly within a circle, whose
+    radius is that share of the shortest joint: the draw seeds the generator of its stones. width: numbers by which the
+    core knows each.
+    """
+
+    building: Building
+    options: Fragility
+    draws: np.ndarray
+    width: int = 0
+
+    def rocker(self, k: int) -> Rocker:
+        """NoView where that building does not rock, as one that cannot stand."""
+        names = sorted(self.options.uncertain)
+        spread = np.sqrt(np.log1p(np.array([self.options.uncertain[n] for n in names]) ** 2))
+        draw = self.draws[k]
+        row = np.exp(spread * norm.ppf(np.clip(draw, 1e-12, 1.0 - 1e-12)) - 0.5 * spread**2)
+        factor = dict(zip(names, row.tolist(), strict=True))
+        seeds = {name: int(draw[i] * 2.0**53) for i, name in enumerate(names) if name in BY_STONE}
+        return _model(self.building, self.options, factor, seeds)
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        """Parameters of the structures for the core, NaN with a reason where there is none."""
+        return stacked(self._member, first, count)
+
+    def _member(self, k: int) -> dict[str, np.ndarray]:
+        kind, values, start, reason = -1, np.full(self.width, np.nan), 0.0, ""
+        try:
+            rocker = self.rocker(k)
+            kind, values, start = rocker.body.kind, rocker.body.parameters, rocker.start_rotation
+        except NoView as error:
+            reason = str(error)
+        return {"kind": np.array(kind), "body": values, "start": np.array(start), "reason": np.array(reason)}
+
+    def wide(self, base: Rocker) -> "Sample":
+        """The same with the width of the first that rocks; stones of their own make another structure than the base."""
+        for k in range(len(self.draws)):
+            try:
+                return replace(self, width=len(self.rocker(k).body.parameters))
+            except NoView:
+                continue
+        return replace(self, width=len(base.body.parameters))
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Structures of a sample, or the texts why one is none; rotations from which they start [rad]."""
+
+    bodies: list[Body | str]
+    starts: np.ndarray
+
+
+def sampled(context: Context, options: Fragility, base: Rocker, count: int) -> Bodies:
+    """One structure for each motion with uncertain values drawn by a scrambled Sobol sequence."""
+    power = max(1, int(np.ceil(np.log2(count))))
+    draws = qmc.Sobol(len(options.uncertain), scramble=True, seed=options.seed or 0).random_base2(power)[:count]
+    return bodies_at(context, options, base, draws)
+
+
+def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> Bodies:
+    """One structure for each row of draws from the unit cube, see `Sample`; Unfinished where some are missing."""
+    _refuse_unknown(context.building, sorted(options.uncertain), base)
+    job = Sample(context.building, options, draws).wide(base)
+    rows = computed(context, "sample", job, len(draws), "buildings of the sample")
+    bodies: list[Body | str] = [
+        str(reason) if kind < 0 else Body(int(kind), values)
+        for kind, values, reason in zip(rows["kind"], rows["body"], rows["reason"], strict=True)
+    ]
+    return Bodies(bodies, rows["start"])
+
+
+def _refuse_unknown(building: Building, names: list[str], base: Rocker) -> None:
+    structure = building.structure
+    known = UNCERTAIN.get(base.what, ("restitution",) if structure.rocks_as == "piers" else STONES)
+    for name in names:
+        if name == "density" and base.what == "block":
+            raise Refused("uncertain.density: the rocking of one rigid block does not depend on it")
+        sized = name not in (*STONES, "corners")
+        if name not in known or (sized and getattr(structure, name) is None):
+            raise Refused(f"uncertain.{name} does not belong to this {base.word}; it has {', '.join(known) or 'none'}")
+    if base.what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
+        raise Refused(
+            "uncertain stones make an arch unsymmetric, where the balance of the thesis says nothing: give another "
+            "joints.restitution"
+        )
+    if "corners" in names and structure.thickness_factor == 1.0:
+        raise Refused("uncertain.corners: thickness_factor is 1, so no thickness is lost that could vary")
+
+
+def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> Rocker:
+    structure = building.structure
+    update: dict[str, Any] = {
+        name: getattr(structure, name) * value for name, value in factor.items() if name not in (*STONES, "corners")
+    }
+    if "corners" in factor:
+        left = 1.0 - (1.0 - structure.thickness_factor) * factor["corners"]
+        if left <= 0.0:
+            raise NoView("its corners are worn away")
+        update["thickness_factor"] = left
+    changed = building.having(structure=structure.model_copy(update=update)).apart()
+    stones = _stones(changed.blocks(), options, seeds) if seeds else None
+    rocker = make_rocker(changed, options.form == "linear", stones)
+    return rocker.rebounding(factor["restitution"]) if "restitution" in factor else rocker
+
+
+def _stones(assembly: Assembly, options: Fragility, seeds: dict[str, int]) -> Assembly:
+    """The assembly with the masses and the places of its stones drawn anew."""
+    if "imperfection" in seeds:
+        deviation = options.uncertain["imperfection"] * float(assembly.length.min())
+        assembly = resurveyed(assembly, deviation, np.random.default_rng([0, seeds["imperfection"]]))
+    if "density" in seeds:
+        spread = np.sqrt(np.log1p(options.uncertain["density"] ** 2))
+        random = np.random.default_rng([1, seeds["density"]])
+        share = np.exp(spread * random.standard_normal(len(assembly.mass)) - 0.5 * spread**2)
+        assembly = replace(assembly, mass=assembly.mass * share, inertia=assembly.inertia * share)
+    return assembly

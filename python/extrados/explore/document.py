@@ -1,0 +1,91 @@
+"""The text of a deck that a hand changes: values are put in their places, all else stays as its author wrote it."""
+
+import re
+from typing import Any
+
+import tomlkit
+from tomlkit.items import AoT, Item
+
+from extrados.schema.quantities import factor
+
+QUANTITY = re.compile(r"\s*([-+0-9.eE]+)\s*([^\d\s].*?)\s*")
+
+
+class Document:
+    """The text of a deck, read when it is first changed and written when it is asked for."""
+
+    def __init__(self, text: str):
+        self._text: str | None = text
+        self._made: tomlkit.TOMLDocument | None = None
+
+    @property
+    def text(self) -> str:
+        """The deck as TOML."""
+        if self._text is None:
+            assert self._made is not None
+            self._text = tomlkit.dumps(self._made)
+        return self._text
+
+    def put(self, path: list[str], value: Any) -> None:
+        """Give the key at a path another value; None takes it out. Elements of arrays are called by their number."""
+        if self._made is None:
+            self._made = tomlkit.parse(self.text)
+        self._text = None
+        place: Any = self._made
+        *way, last = path
+        for k, part in enumerate(way):
+            if isinstance(place, list):
+                place = place[int(part)]
+            else:
+                if part not in place:
+                    place[part] = tomlkit.array() if (way[k + 1 : k + 2] or [last])[0].isdecimal() else tomlkit.table()
+                place = place[part]
+        if isinstance(place, list):
+            place[int(last)] = _item(value)
+        elif value is None:
+            place.pop(last, None)
+        elif last in place:
+            kept = place[last]
+            place[last] = made = _item(value)
+            if isinstance(kept, Item) and isinstance(made, Item) and not isinstance(made, AoT):
+                made.trivia.comment, made.trivia.comment_ws = kept.trivia.comment, kept.trivia.comment_ws
+                made.trivia.trail = kept.trivia.trail
+        else:
+            place[last] = _item(value)
+
+
+def _item(value: Any) -> Any:
+    """A value of TOML; floats as a reader writes them, tables within arrays in one line."""
+    if isinstance(value, list) and value and isinstance(value[0], dict):
+        made = tomlkit.array()
+        for row in value:
+            table = tomlkit.inline_table()
+            table.update({k: _item(v) for k, v in row.items()})
+            made.append(table)
+        return made
+    if isinstance(value, dict):
+        table = tomlkit.table()
+        for key, inner in value.items():
+            table[key] = _item(inner)
+        return table
+    return tomlkit.item(value)
+
+
+def as_written(value: Any, before: Any, si: str, bare: bool = True) -> Any:
+    """A number in `si` as it stands in the deck beside what stood there: in the unit that its author took."""
+    if isinstance(before, str) and isinstance(value, int | float):
+        found = QUANTITY.fullmatch(before)
+        if found:
+            try:
+                return f"{tidy(value / factor(found[2], si))} {found[2]}"
+            except ValueError:
+                pass
+    if not bare:
+        return f"{tidy(value)} {si}"
+    return float(tidy(value)) if isinstance(value, float) else value
+
+
+def tidy(value: float) -> str:
+    """A number with six digits and no more zeros than it needs."""
+    text = f"{value:.6g}"
+    return text if "e" in text or "." in text or "n" in text else text + ".0" if abs(value) < 1e6 else text

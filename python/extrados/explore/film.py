@@ -1,0 +1,105 @@
+"""Films of pictures that the page has drawn: GIF, and MP4 where ffmpeg is at hand."""
+
+import io
+import struct
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from extrados.plots.animation import ffmpeg
+
+MOST_PICTURES, LARGEST_SIDE = 1200, 2560
+TYPES = {"gif": "image/gif", "mp4": "video/mp4"}
+JPEG = b"\xff\xd8\xff"
+
+
+class BadFilm(ValueError):
+    """What was sent is no film, or it cannot be made; the text says why."""
+
+
+@dataclass(frozen=True)
+class Film:
+    """A film and its media type."""
+
+    content: bytes
+    type: str
+
+
+def film(body: bytes) -> Film:
+    """The film of a body: kind (3 bytes, gif or mp4), pictures a second (1 byte), then length (4 bytes, big endian) and
+    JPEG of each picture."""
+    if len(body) < 4 or (kind := body[:3].decode("latin-1")) not in TYPES or not 1 <= body[3] <= 60:
+        raise BadFilm("expected gif or mp4, and 1 to 60 pictures a second")
+    pictures, at = [], 4
+    while at < len(body):
+        (length,) = struct.unpack_from(">I", body, at) if at + 4 <= len(body) else (0,)
+        picture = body[at + 4 : at + 4 + length]
+        if not length or len(picture) < length or not picture.startswith(JPEG):
+            raise BadFilm("a picture is cut off, or no JPEG")
+        pictures.append(picture)
+        at += 4 + length
+    if not 1 <= len(pictures) <= MOST_PICTURES:
+        raise BadFilm(f"{len(pictures)} pictures; expected 1 to {MOST_PICTURES}")
+    return Film(_gif(pictures, body[3]) if kind == "gif" else _mp4(pictures, body[3]), TYPES[kind])
+
+
+def _size(picture: bytes) -> tuple[int, int]:
+    from PIL import Image, UnidentifiedImageError
+
+    try:
+        with Image.open(io.BytesIO(picture), formats=["JPEG"]) as image:
+            width, height = image.size
+    except (UnidentifiedImageError, OSError, ValueError):
+        raise BadFilm("a picture cannot be read") from None
+    if max(width, height) > LARGEST_SIDE:
+        raise BadFilm(f"pictures of {width} x {height} are too large; at most {LARGEST_SIDE}")
+    return width, height
+
+
+def _gif(pictures: list[bytes], rate: int) -> bytes:
+    from PIL import Image
+
+    first, *_ = {_size(p) for p in pictures}
+
+    def drawn(picture: bytes) -> Image.Image:
+        try:
+            with Image.open(io.BytesIO(picture), formats=["JPEG"]) as image:
+                return image.convert("RGB").resize(first)
+        except OSError:
+            raise BadFilm("a picture cannot be read") from None
+
+    # One palette for all pictures, or their colours would flicker: that of a few of them side by side
+    some = pictures[:: max(1, len(pictures) // 6)]
+    strip = Image.new("RGB", (first[0] // 2 + 1, (first[1] // 2 + 1) * len(some)))
+    for k, picture in enumerate(some):
+        strip.paste(drawn(picture).reduce(2), (0, k * (first[1] // 2 + 1)))
+    palette = strip.quantize(128)
+    frames = [drawn(picture).quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
+    out = io.BytesIO()
+    frames[0].save(
+        out, "GIF", save_all=True, append_images=frames[1:], duration=max(20, round(1000 / rate)), loop=0, optimize=False
+    )
+    return out.getvalue()
+
+
+def _mp4(pictures: list[bytes], rate: int) -> bytes:
+    program = ffmpeg()
+    if program is None:
+        raise BadFilm("mp4 needs the program ffmpeg, which is not here (pip install imageio-ffmpeg brings one); gif needs nothing")
+    for size in {_size(p) for p in pictures}:
+        if min(size) < 2:
+            raise BadFilm("pictures are too small")
+    with tempfile.TemporaryDirectory(prefix="extrados-") as folder:
+        target = Path(folder) / "film.mp4"
+        done = subprocess.run(
+            [
+                program, "-y", "-loglevel", "error", "-f", "image2pipe", "-c:v", "mjpeg", "-framerate", str(rate), "-i", "-",
+                "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-c:v", "libx264", "-pix_fmt", "yuv420p", "-crf", "20",
+                "-movflags", "+faststart", str(target),
+            ],
+            input=b"".join(pictures), capture_output=True, timeout=300, check=False,
+        )  # fmt: skip
+        if done.returncode or not target.exists():
+            raise BadFilm(f"ffmpeg could not make it: {done.stderr.decode(errors='replace')[-300:]}")
+        return target.read_bytes()

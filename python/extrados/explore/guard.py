@@ -1,0 +1,135 @@
+"""Who may talk to the server: this machine's own page, by its token, in requests of a decent size and rate.
+
+A page of any other site that the same browser shows can send requests to 127.0.0.1, and a name that its owner points
+at 127.0.0.1 makes them look its own. Hence all three are asked for: the name in Host, the site in Origin, and a token
+that only the address holds which the program has printed.
+"""
+
+import hmac
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any
+
+#: Bytes of an address, of a message of a page, and of what may be sent to be filmed
+LONGEST_PATH, LARGEST_MESSAGE, LARGEST_BODY = 1024, 16_000_000, 64_000_000
+#: Pages at a time
+MOST_PAGES = 12
+#: Messages a page may send in a burst, and in a second from then on: a hand moves 120 times a second at most
+BURST, RATE = 600, 300.0
+#: Bytes likewise
+BURST_BYTES, RATE_BYTES = 64_000_000, 8_000_000.0
+#: Requests of all pages in a burst and a second
+BURST_REQUESTS, RATE_REQUESTS = 400, 100.0
+
+HEADERS = [
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"cache-control", b"no-store"),
+    (
+        b"content-security-policy",
+        b"default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; connect-src 'self'; "
+        b"base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ),
+]
+
+
+@dataclass
+class Bucket:
+    """Lets `most` pass at once and `rate` a second from then on."""
+
+    most: float
+    rate: float
+    left: float = field(init=False)
+    last: float = field(default_factory=time.monotonic)
+
+    def __post_init__(self) -> None:
+        self.left = self.most
+
+    def take(self, amount: float = 1.0) -> bool:
+        """Whether `amount` may pass now."""
+        now = time.monotonic()
+        self.left = min(self.most, self.left + (now - self.last) * self.rate)
+        self.last = now
+        if self.left < amount:
+            return False
+        self.left -= amount
+        return True
+
+
+class Guard:
+    """ASGI: passes on to `app` what comes from the page itself, with the path behind the token; answers the rest.
+
+    `hosts`: what Host may read, such as 127.0.0.1:8737.
+    """
+
+    def __init__(self, app: Callable[..., Any], token: str, hosts: list[str]):
+        self.app, self.token = app, token.encode()
+        self.hosts = {host.lower().encode() for host in hosts}
+        self.origins = {b"http://" + host for host in self.hosts}
+        self.requests = Bucket(BURST_REQUESTS, RATE_REQUESTS)
+
+    async def __call__(self, scope: dict[str, Any], receive: Callable[..., Any], send: Callable[..., Any]) -> None:
+        if scope["type"] == "lifespan":
+            await self.app(scope, receive, send)
+            return
+        reason = self.objection(scope)
+        if reason:
+            await _refuse(scope, receive, send, *reason)
+            return
+        path = "/" + scope["path"].split("/", 2)[2]
+        scope = {**scope, "path": path, "raw_path": path.encode(), "root_path": ""}
+        await self.app(scope, receive, _with_headers(send))
+
+    def objection(self, scope: dict[str, Any]) -> tuple[int, str] | None:
+        """Status and reason why a request is not passed on, None where it is."""
+        socket = scope["type"] == "websocket"
+        heads: dict[bytes, list[bytes]] = {}
+        for name, value in scope["headers"]:
+            heads.setdefault(name.lower(), []).append(value.strip().lower())
+        if not self.requests.take():
+            return 429, "too many requests"
+        if len(heads.get(b"host", [])) != 1 or heads[b"host"][0] not in self.hosts:
+            return 421, "this server answers to its own address only"
+        origin = heads.get(b"origin", [])
+        if len(origin) > 1 or (origin and origin[0] not in self.origins):
+            return 403, "requests of other sites are not answered"
+        if not origin and (socket or scope["method"] not in ("GET", "HEAD")):
+            return 403, "a request that does not say its origin is not answered"
+        if heads.get(b"sec-fetch-site", [b"none"])[0] not in (b"none", b"same-origin"):
+            return 403, "requests of other sites are not answered"
+        if not socket and scope["method"] not in ("GET", "HEAD", "POST"):
+            return 405, "only GET and POST are known"
+        if len(scope.get("raw_path") or b"") + len(scope.get("query_string") or b"") > LONGEST_PATH:
+            return 414, "the address is too long"
+        lengths = heads.get(b"content-length", [b"0"])
+        if len(lengths) != 1 or not lengths[0].isdigit() or int(lengths[0]) > LARGEST_BODY:
+            return 413, "too much is sent"
+        parts = scope["path"].split("/", 2)
+        if len(parts) != 3 or not hmac.compare_digest(parts[1].encode("utf-8", "replace"), self.token):
+            return 403, "the address lacks its token: take the whole address that `extrados explore` has printed"
+        return None
+
+
+async def _refuse(
+    scope: dict[str, Any], receive: Callable[..., Any], send: Callable[..., Any], status: int, why: str
+) -> None:
+    if scope["type"] == "websocket":
+        await receive()
+        await send({"type": "websocket.close", "code": 1008, "reason": why[:120]})
+        return
+    body = why.encode() + b"\n"
+    heads = [(b"content-type", b"text/plain; charset=utf-8"), (b"content-length", str(len(body)).encode()), *HEADERS]
+    await send({"type": "http.response.start", "status": status, "headers": [*heads, (b"connection", b"close")]})
+    await send({"type": "http.response.body", "body": b"" if scope["method"] == "HEAD" else body})
+
+
+def _with_headers(send: Callable[..., Any]) -> Callable[..., Any]:
+    async def sends(message: dict[str, Any]) -> None:
+        if message["type"] == "http.response.start":
+            message = {**message, "headers": [*message.get("headers", []), *HEADERS]}
+        await send(message)
+
+    return sends

@@ -1,0 +1,128 @@
+"""What the page shows of rocking: the history with its shapes, the map of pulses that bring it down, the primary impulse."""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.context import Context
+from extrados.analyses.rocking.failure_domain import MODE_I, Mapper, natural_durations
+from extrados.analyses.rocking.history import answer, rest_time, run_history
+from extrados.analyses.rocking.shapes import States, shapes
+from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
+from extrados.analyses.run import run_one
+from extrados.building.building import Building
+from extrados.motions.motion import Motion
+from extrados.schema.constants import GRAVITY
+
+#: Pictures of a history, and points of its curves
+MOST_PICTURES, MOST_POINTS = 600, 1600
+#: Times at which a history is known
+MOST_OUTPUTS = 20_000
+#: What each round of the map adds: every 4th, every 2nd, every cell
+STRIDES = (4, 2, 1)
+#: Shares of the sampling at which a motion is drawn
+CURVE = 1200
+
+
+def history(
+    context: Context, building: Building, options: Rocking, anchor: np.ndarray, still: bool
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """Words and arrays of a response; `still`: without shapes, as where a hand only looks for an amplitude."""
+    rocker = building.rocker(options.form == "linear")
+    motion = context.motion
+    end = options.end_time or motion.end + rest_time(rocker)
+    fine = options.model_copy(update={"output_step": max(options.output_step, end / MOST_OUTPUTS)})
+    response = run_history(context, fine, rocker.body, end, 12, rocker.start_rotation)
+    words: dict[str, Any] = {
+        "outcome": response.outcome, "settled": response.settled, "half_cycles": response.half_cycles,
+        "impacts": response.impacts, "impact_times_s": [t for kind, t, _ in response.events if kind == "impact"][:400],
+        "peak_rotation_rad": response.peak, "peak_rotation_ratio": response.peak_ratio,
+        "critical_rad": list(rocker.critical), "uplift_g": rocker.uplift, "restitution": rocker.restitution,
+        "peak_ground_g": motion.peak / GRAVITY, "stop_time_s": response.stop_time, "end_time_s": end, "word": rocker.word,
+        "answer": answer(context, response, f"The {rocker.word}", "comes down", rocker.uplift),
+        "warnings": [*rocker.warnings, *motion.notes],
+    }  # fmt: skip
+    moving = np.flatnonzero(response.rotation)
+    last = float(response.time[moving[-1]]) if len(moving) else 0.0
+    words["active_s"] = min(max(1.05 * last, 1.2 * min(motion.end, end)), float(response.time[-1]) if len(response.time) else end)
+    shown = min(int(np.searchsorted(response.time, words["active_s"])) + 1, len(response.time))
+    keep = slice(0, shown, max(1, -(-shown // MOST_POINTS)))
+    arrays = {
+        "time": response.time[keep], "rotation": response.rotation[keep], "ground": response.ground[keep] / GRAVITY,
+        "kinetic": response.kinetic[keep], "potential": response.potential[keep], "ledger": response.ledger[keep],
+    }  # fmt: skip
+    if still or not len(response.time):
+        return words, arrays
+    index = np.arange(0, shown, max(1, -(-shown // MOST_PICTURES)))
+    states = States(*(getattr(response, k)[index] for k in ("rotation", "rate", "acceleration", "ground", "vertical")))
+    made = shapes(rocker, states)
+    arrays["picture_time"] = response.time[index]
+    arrays["pose"] = made.pose - np.append(anchor, 0.0)
+    if made.line is not None:
+        arrays["line"] = made.line - anchor
+    if made.friction is not None:
+        arrays["friction"] = made.friction
+    return words, arrays
+
+
+def curve(motion: Motion) -> dict[str, np.ndarray]:
+    """A motion as it is drawn: time [s] and acceleration [g]."""
+    time = np.linspace(0.0, motion.end * 1.02, CURVE)
+    return {"motion_time": time, "motion": motion.sample(time) / GRAVITY}
+
+
+def impulse(context: Context, building: Building) -> dict[str, Any]:
+    """The primary impulse of the motion, and whether Eq. 5.8 takes it for strong enough."""
+    options = Assessment(kind="assessment")
+    result = run_one(context, options, building)
+    if result.status != "ok":
+        return {"refused": result.reason}
+    found: dict[str, Any] = result.results.as_json()
+    return {"answer": result.answer, "numbers": {k: v for k, v in found.items() if not isinstance(v, dict | list)},
+            "impulses": found.get("impulses", [])}  # fmt: skip
+
+
+def domain(
+    context: Context, building: Building, options: FailureDomain
+) -> Iterator[tuple[dict[str, Any], dict[str, np.ndarray]]]:
+    """The map of pulses, coarse first: codes (durations, amplitudes), 255 where nothing has been run yet."""
+    rocker = building.rocker(options.form == "linear")
+    unit = float(np.sqrt(rocker.scale / GRAVITY))
+    durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
+    amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
+    mapper = Mapper(rocker.body, options.pulse, durations.tolist(), 40.0 * unit, context.threads, rocker.start_rotation)
+    codes = np.full((len(durations), len(amplitudes)), 255, dtype=np.uint8)
+    words = {
+        "pulse": options.pulse, "uplift_g": rocker.uplift, "mode_I": MODE_I, "word": rocker.word,
+        "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses at once (Mode II)"],
+    }  # fmt: skip
+    for stride in STRIDES:
+        half = stride // 2
+        chosen = np.zeros(codes.shape, dtype=bool)
+        chosen[half::stride, half::stride] = True
+        i, k = np.nonzero(chosen & (codes == 255))
+        if len(i):
+            codes[i, k] = mapper.codes(i, amplitudes[k])
+        yield (
+            {**words, "stride": stride, "whole": stride == 1},
+            {"duration": durations, "amplitude": amplitudes / GRAVITY, "codes": codes.copy()},
+        )
+
+
+def pulse_of(motion: Any) -> dict[str, float] | None:
+    """Duration [s] and amplitude [g] of a motion table that is a pulse of the map, as a dot on it."""
+    if motion is None or motion.kind not in ("step-pulse", "sine-pulse"):
+        return None
+    length = motion.duration if motion.kind == "step-pulse" else motion.period
+    return {"duration_s": length, "amplitude_g": abs(motion.amplitude) / GRAVITY}
+
+
+def domain_options(kind: str | None, asked: FailureDomain | None, uplift: float) -> FailureDomain:
+    """The map that is drawn: the deck's, else 40 by 40 cells of the motion's sort of pulse, high enough to show it fall."""
+    if asked is not None:
+        return asked
+    pulse = "sine" if kind == "sine-pulse" else "step"
+    return FailureDomain(kind="failure-domain", pulse=pulse, max_amplitude=f"{max(1.5, 6.0 * uplift):.4g} g")
+
+

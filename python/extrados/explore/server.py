@@ -1,0 +1,256 @@
+"""The server of the page: files of the page itself, a socket per page, films.
+
+Every socket has a session of its own, whose work is done by one thread; the loop that serves never computes. What a
+page asks for while its session still works waits in an inbox where newer movements of a hand replace older ones.
+"""
+
+import asyncio
+import contextlib
+import contextvars
+import json
+import logging
+import os
+import secrets
+import socket
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from extrados.explore.film import BadFilm, film
+from extrados.explore.frames import Reply
+from extrados.explore.guard import (
+    BURST,
+    BURST_BYTES,
+    LARGEST_BODY,
+    LARGEST_MESSAGE,
+    MOST_PAGES,
+    RATE,
+    RATE_BYTES,
+    Bucket,
+    Guard,
+)
+from extrados.explore.session import Session
+from extrados.schema.files import confine
+
+if TYPE_CHECKING:
+    import uvicorn
+
+log = logging.getLogger(__name__)
+STATIC = Path(__file__).parent / "static"
+TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
+#: Messages that wait; a page that sends more without waiting for answers is cut off
+MOST_WAITING = 200
+
+
+class Inbox:
+    """What a page has asked for and its session has not begun; `lane` of a message: what it may replace there."""
+
+    def __init__(self) -> None:
+        self.waiting: list[dict[str, Any]] = []
+        self.there = asyncio.Event()
+
+    def put(self, message: dict[str, Any]) -> None:
+        """Add a message; in the place of the last one where both move the same thing."""
+        lane = message.get("lane")
+        if lane and self.waiting and self.waiting[-1].get("lane") == lane:
+            self.waiting[-1] = message
+        else:
+            self.waiting.append(message)
+        self.there.set()
+
+    async def take(self) -> dict[str, Any]:
+        """The oldest message, waited for."""
+        while not self.waiting:
+            self.there.clear()
+            await self.there.wait()
+        return self.waiting.pop(0)
+
+
+def _words(raw: str) -> dict[str, Any] | None:
+    """A message of a page; None where it is none."""
+    try:
+        message = json.loads(raw)
+    except (ValueError, RecursionError):
+        return None
+    return message if isinstance(message, dict) and isinstance(message.get("do"), str) else None
+
+
+async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
+    """Answer the messages of a page, oldest first; long work goes on, step by step, while nothing waits."""
+    loop = asyncio.get_running_loop()
+    context = contextvars.copy_context()
+    context.run(confine)
+    going: dict[str, Iterator[Reply]] = {}
+    with ThreadPoolExecutor(1, "session") as thread:
+
+        async def step(work: Iterator[Reply]) -> bool:
+            reply = await loop.run_in_executor(thread, context.run, next, work, None)
+            if reply is not None:
+                await page.send_bytes(reply.pack())
+            return reply is not None
+
+        while True:
+            if going and not inbox.waiting:
+                lane, work = next(iter(going.items()))
+                if not await step(work):
+                    del going[lane]
+                await asyncio.sleep(0)  # what has come meanwhile is read
+                continue
+            message = await inbox.take()
+            lane, work = str(message.get("lane") or message["do"]), session.answer(message)
+            if await step(work):
+                going.pop(lane, None)
+                going[lane] = work
+
+
+async def _page(page: WebSocket) -> None:
+    state = page.app.state
+    if state.pages >= MOST_PAGES:
+        await page.close(1013, "too many pages are open")
+        return
+    await page.accept()
+    state.pages += 1
+    session, inbox = state.new_session(), Inbox()
+    serving = asyncio.create_task(_serve(page, session, inbox))
+    messages, volume = Bucket(BURST, RATE), Bucket(BURST_BYTES, RATE_BYTES)
+    try:
+        while True:
+            received = asyncio.ensure_future(page.receive())
+            await asyncio.wait({received, serving}, return_when=asyncio.FIRST_COMPLETED)
+            if serving.done():
+                received.cancel()
+                serving.result()
+            message = await received
+            if message["type"] == "websocket.disconnect":
+                break
+            text = message.get("text")
+            words = None if text is None else _words(text)
+            if words is None:
+                await page.close(1003, "expected a JSON object with a word 'do'")
+                break
+            if not (messages.take() and volume.take(len(text))) or len(inbox.waiting) > MOST_WAITING:
+                await page.close(1008, "too many messages")
+                break
+            inbox.put(words)
+    except WebSocketDisconnect:
+        pass
+    finally:
+        state.pages -= 1
+        serving.cancel()
+        with contextlib.suppress(asyncio.CancelledError, Exception):
+            await serving
+        session.close()
+
+
+async def _file(request: Request) -> Response:
+    name = request.path_params.get("name") or "index.html"
+    found = request.app.state.files.get(name)
+    if found is None:
+        return PlainTextResponse("there is no such file\n", 404)
+    return Response(found[0], media_type=found[1])
+
+
+async def _film(request: Request) -> Response:
+    """Pictures of what is seen, one after the other, as a film."""
+    state = request.app.state
+    if state.filming:
+        return PlainTextResponse("another film is being made\n", 429)
+    state.filming = True
+    try:
+        body = bytearray()
+        async for part in request.stream():
+            body += part
+            if len(body) > LARGEST_BODY:
+                return PlainTextResponse("too much is sent\n", 413)
+        made = await asyncio.get_running_loop().run_in_executor(None, film, bytes(body))
+    except BadFilm as error:
+        return PlainTextResponse(f"{error}\n", 422)
+    finally:
+        state.filming = False
+    return Response(made.content, media_type=made.type)
+
+
+def application(token: str, hosts: list[str], folder: Path, deck: str | None = None) -> Guard:
+    """The ASGI application for a working folder; `deck`: the path, within the folder, of what pages open first."""
+    files = {
+        path.relative_to(STATIC).as_posix(): (path.read_bytes(), TYPES[path.suffix])
+        for path in STATIC.rglob("*")
+        if path.suffix in TYPES
+    }
+
+    routes = [
+        Route("/film", _film, methods=["POST"]),
+        WebSocketRoute("/live", _page),
+        Route("/", _file),
+        Route("/{name:path}", _file),
+    ]
+    app = Starlette(routes=routes)
+    app.state.files, app.state.pages, app.state.filming = files, 0, False
+    app.state.new_session = lambda: Session(folder, deck)
+    return Guard(app, token, hosts)
+
+
+def hosts_of(port: int) -> list[str]:
+    """What Host may read on a port of this machine."""
+    return [f"{name}:{port}" for name in ("127.0.0.1", "localhost", "[::1]")]
+
+
+def listen(port: int = 0) -> socket.socket:
+    """A socket that listens on loopback; at any free port where that one is taken or none is asked for."""
+    for wanted in dict.fromkeys((port, 0)):
+        found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            found.bind(("127.0.0.1", wanted))
+        except OSError:
+            found.close()
+            if wanted == 0:
+                raise
+            continue
+        found.listen(64)
+        return found
+    raise OSError("no port is free")
+
+
+def new_token() -> str:
+    """A word that nobody guesses."""
+    return secrets.token_urlsafe(24)
+
+
+def configured(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> "uvicorn.Config":
+    """How uvicorn serves pages on a listening socket: bounded in all that a stranger could send."""
+    import uvicorn
+
+    port = sock.getsockname()[1]
+    return uvicorn.Config(
+        application(token, hosts_of(port), folder, deck), log_level="warning", access_log=False, server_header=False,
+        ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, ws_ping_interval=20.0,
+        ws_ping_timeout=60.0, limit_concurrency=64, timeout_keep_alive=10, timeout_graceful_shutdown=1,
+        h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http="h11", loop="asyncio",
+    )  # fmt: skip
+
+
+def serve(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> None:
+    """Serve pages on a listening socket until a signal ends it."""
+    import uvicorn
+
+    with contextlib.suppress(KeyboardInterrupt):
+        uvicorn.Server(configured(sock, token, folder, deck)).run(sockets=[sock])
+
+
+def main() -> None:
+    """The process that serves, started by `supervisor` with the socket and what else it needs in its environment."""
+    given = json.loads(os.environ.pop("EXTRADOS_EXPLORE"))
+    with socket.socket(fileno=given["socket"]) as sock:
+        serve(sock, given["token"], Path(given["folder"]), given["deck"])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,384 @@
+// The page: what is open, what is asked of the session, what is shown where.
+import { h, number, quantity } from "./dom.js";
+import { stage } from "./stage.js";
+import { structurePanel } from "./structure.js";
+import { motionPanel } from "./motion.js";
+import { resultsPanel } from "./results.js";
+import { outMenu } from "./out.js";
+import { sidebar } from "./sidebar.js";
+
+const REST = 130; // ms without a change, after which the hand rests
+const KEPT = "extrados-kept";
+const TABS = [["structure", "Structure"], ["motion", "Motion"], ["results", "Results"]];
+
+export function mount(root, transport, film, { embedded = false } = {}) {
+  const app = {
+    root, transport, film, embedded, words: {}, scene: null, arrays: {}, handles: [], deck: null, text: "", name: "", source: {}, forms: [], drops: [],
+    detail: null, resting: true, tab: "structure", view: { gamma: 0, through: null, chain: null }, welcome: null, timings: [],
+    layers: { least: true, most: true, through: true, plus: true, minus: false, central: false, reactions: true, joints: true },
+    ask, change, show, edit, say, open, rest, on, undo: () => travel(-1), redo: () => travel(1), typed, setTab, remember, dialog,
+  };
+  const listeners = {};
+  const waiting = new Map(); // number of a message -> what to do with its replies
+  const flying = new Map(); // lane -> {busy, next}
+  let counter = 0, resting = null, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
+
+  function on(event, listener) { (listeners[event] ??= []).push(listener); }
+  function tell(event, ...rest) { for (const listener of listeners[event] ?? []) listener(...rest); }
+
+  // The shell
+
+  const status = h("div", { class: "status", role: "status", "aria-live": "polite" });
+  const banner = h("div", { class: "banner", role: "alert", hidden: true });
+  const undoButton = h("button", { class: "icon", title: "Undo (Ctrl+Z)", "aria-label": "Undo", onclick: () => app.undo() }, "↶");
+  const redoButton = h("button", { class: "icon", title: "Redo (Ctrl+Shift+Z)", "aria-label": "Redo", onclick: () => app.redo() }, "↷");
+  const title = h("h1", { class: "title" });
+  const tabs = h("div", { class: "tabs", role: "tablist", "aria-label": "Views" }, TABS.map(([name, label], k) =>
+    h("button", { role: "tab", id: `tab-${name}`, "data-tab": name, onclick: () => setTab(name), onkeydown: (e) => {
+      const step = { ArrowRight: 1, ArrowLeft: -1 }[e.key];
+      if (step) { const next = TABS[(k + step + TABS.length) % TABS.length][0]; setTab(next); root.querySelector(`[data-tab=${next}]`).focus(); }
+    } }, label)));
+  const themeButton = h("button", { class: "icon", title: "Dark or light", "aria-label": "Dark or light", onclick: theme }, "◐");
+  const top = h("header", { class: "top" },
+    h("span", { class: "brand" }, "extrados"),
+    h("button", { class: "open", onclick: () => chooser() }, "Open…"), undoButton, redoButton, title, tabs);
+  const stageBox = h("div", { class: "stage-box" });
+  const layersBar = h("div", { class: "layers", role: "group", "aria-label": "What is drawn" });
+  const stageFrame = h("section", { class: "stage-frame", "aria-label": "Drawing" }, layersBar, stageBox);
+  const lower = h("section", { class: "lower", "aria-label": "Details" });
+  const wide = h("section", { class: "wide", hidden: true });
+  const side = h("aside", { class: "side", "aria-label": "Numbers, sizes and deck" });
+  const mainBox = h("main", { class: "main" }, stageFrame, lower, wide);
+  root.replaceChildren(top, banner, h("div", { class: "body" }, mainBox, side), status);
+
+  const drawing = stage(stageBox, {
+    drag: (name, place, ends, when) => ask({ do: "drag", handle: name, to: place, ends, lane: `drag:${name}` }, { when }),
+    step: (name, dx, dy) => {
+      if (name === "tilt") show({ gamma: Math.round((app.view.gamma + 0.005 * (dx - dy)) * 1e4) / 1e4 });
+      else if (name === "through") nudgeThrough(dx + dy);
+      else ask({ do: "drag", handle: name, by: [dx, dy] });
+    },
+    type: (name, data) => typed(name, data),
+    through: (place, ends, when) => show({ through: place }, when),
+    tilt: (gamma, ends, when) => show({ gamma: Math.round(gamma * 2000) / 2000 }, when),
+  });
+  app.drawing = drawing;
+  drawing.layers = app.layers;
+
+  function nudgeThrough(steps) {
+    const t = app.scene?.through;
+    if (t) show({ through: { joint: t.joint, share: Math.min(1, Math.max(0, t.reached + 0.02 * steps)) } });
+  }
+  function typed(name, data) {
+    const field = h("input", { type: "text", value: name === "tilt" ? `${number(app.view.gamma, 5)} g` : Array.isArray(data.value) ? data.value.map((v) => number(v, 6)).join("; ") : quantity(data.value ?? data.now, data.unit ?? "", 6).replace("°", " deg"), "aria-label": data.label });
+    dialog(data.label, h("form", { onsubmit: (e) => {
+      e.preventDefault();
+      const text = field.value.replaceAll("−", "-");
+      if (name === "tilt") {
+        const found = text.match(/^\s*([-+]?[\d.]+)\s*(g|deg|°|)\s*$/);
+        if (!found) { say("expected a tilt such as 0.1 g or 5 deg", true); return; }
+        show({ gamma: found[2] === "deg" || found[2] === "°" ? Math.tan((Number(found[1]) * Math.PI) / 180) : Number(found[1]) });
+      } else if (name === "through") { const t = app.scene.through; if (t) show({ through: { joint: t.joint, share: Number(text.split(" ")[0]) } }); }
+      else ask({ do: "drag", handle: name, text });
+      e.target.closest("dialog").close();
+    } }, h("p", {}, name === "tilt" ? "In g, or in degrees with deg." : Array.isArray(data.value) ? "x; y in metres, or with units." : "A number, or a number with its unit, such as 75 cm."), field, h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Set"))));
+    field.select();
+  }
+
+  // Messages
+
+  /** Ask something of the session. In a lane one message is under way at a time, and only the newest waits. */
+  function ask(message, { when = performance.now(), reply = null } = {}) {
+    const lane = message.lane;
+    if (lane) {
+      const there = flying.get(lane);
+      if (there?.busy) {
+        if (there.next?.message.ends) message.ends = true;
+        there.next = { message, when, reply };
+        return;
+      }
+      flying.set(lane, { busy: true, next: null });
+    }
+    counter += 1;
+    message.of = counter;
+    waiting.set(counter, { message, when, reply, lane });
+    if (waiting.size > 400) waiting.delete(waiting.keys().next().value);
+    if (!transport.send(message)) { waiting.delete(counter); if (lane) flying.delete(lane); }
+  }
+  function landed(entry) {
+    if (!entry.lane) return;
+    const there = flying.get(entry.lane);
+    flying.delete(entry.lane);
+    if (there?.next) ask(there.next.message, there.next);
+  }
+  function change(changes, lane) { ask({ do: "set", changes, lane }); }
+  function show(view, when) {
+    Object.assign(app.view, view);
+    ask({ do: "show", ...view, lane: `show:${Object.keys(view).join()}` }, { when: when ?? performance.now() });
+  }
+  function edit(text) { ask({ do: "open", text, here: "same" }); }
+  function open(source) { ask({ do: "open", ...source }); }
+
+  transport.onstate = (state, tries, reason) => {
+    connected = state === "open";
+    if (state === "open") {
+      banner.hidden = true;
+      flying.clear(); waiting.clear();
+      const kept = wasOpen && app.text ? { text: app.text, name: app.name, ...app.source, drops: app.drops } : null;
+      ask({ do: "hello", kept });
+      if (kept && (app.view.gamma || app.view.through)) ask({ do: "show", gamma: app.view.gamma, lines: app.view.lines, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
+      if (wasOpen) say("The server is back; this page has its state again.");
+    } else {
+      banner.hidden = false;
+      banner.textContent = reason ? `The server has ended the connection: ${reason}` : `The server does not answer. Your deck is kept in this page; trying again … (${tries})`;
+    }
+    root.dataset.connected = connected;
+  };
+  transport.onreply = ({ words, arrays }) => {
+    const entry = waiting.get(words.of);
+    if (words.complaints || words.bad) {
+      if (!["rocking", "domain", "impulse"].includes(words.to)) say((words.complaints ?? [words.bad]).join("\n"), true);
+      tell("complaint", words, entry?.message);
+      entry?.reply?.(words, arrays);
+      if (entry) landed(entry);
+      return;
+    }
+    if (words.presets) { app.welcome = words; tell("welcome", words); }
+    if (words.decks && app.welcome) { app.welcome.decks = words.decks; if (words.runs) app.welcome.runs = words.runs; tell("folder"); }
+    if (words.scene) {
+      app.scene = words.scene; app.arrays = arrays; app.handles = words.handles ?? []; app.deck = words.deck; app.anchor = words.anchor ?? [0, 0]; app.detail = null;
+      if (words.opened !== undefined) opened(words);
+      app.turned();
+      drawing.show(app.scene, arrays, app.handles, words.opened === true);
+      if (["drag", "set"].includes(words.to)) dirty = true;
+      tell("scene", words.opened === true, entry?.message);
+      if (!["open", "hello"].includes(words.to)) say("");
+      rest();
+    }
+    if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
+    if (words.text !== undefined && words.to === "rest") settled(words);
+    for (const key of ["rocking", "domain", "impulse", "run", "computing", "saved"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
+    entry?.reply?.(words, arrays);
+    if (entry) {
+      if (entry.message.do !== "hello" || words.scene) landed(entry);
+      if (words.scene && entry.when && ["drag", "show", "set"].includes(entry.message.do)) painted(entry);
+      if (words.rocking && entry.message.measured) painted({ ...entry, when: entry.message.measured });
+    }
+  };
+  /** From the event to the picture that the next frame has put on the screen. */
+  function painted(entry) {
+    requestAnimationFrame(() => {
+      const channel = new MessageChannel();
+      channel.port1.onmessage = () => { app.timings.push({ do: entry.message.do, ms: performance.now() - entry.when }); if (app.timings.length > 5000) app.timings.shift(); };
+      channel.port2.postMessage(0);
+    });
+  }
+  function opened(words) {
+    app.text = words.text; app.name = words.name; app.forms = words.forms;
+    if (words.opened) {
+      app.source = words.source; app.view = { gamma: 0, through: null, chain: null };
+      wasOpen = true;
+      if (!travelling) { past = [words.text]; future = []; }
+      if (!words.source.dropped && words.source.here !== "dropped") app.drops = [];
+    }
+    tell("text");
+  }
+  function rest() {
+    app.resting = true; // until the text is that of what is seen
+    clearTimeout(resting);
+    resting = setTimeout(() => ask({ do: "rest", lane: "rest" }), REST);
+  }
+  function settled(words) {
+    app.text = words.text; app.forms = words.forms; app.name = words.name;
+    dirty = false;
+    app.resting = ["drag", "set", "show"].some((lane) => [...flying.keys()].some((key) => key.startsWith(lane)));
+    remember();
+    tell("text");
+  }
+  /** Keep the present text in the history of undo. */
+  function remember() {
+    if (!travelling && past.at(-1) !== app.text) { past.push(app.text); future = []; if (past.length > 300) past.shift(); }
+    travelling = false;
+    undoButton.disabled = past.length < 2;
+    redoButton.disabled = future.length === 0;
+    title.textContent = app.deck?.title || app.name || "";
+    title.title = app.name;
+    try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
+  }
+  function travel(way) {
+    if (dirty) { // the last change is not in the history yet
+      clearTimeout(resting);
+      ask({ do: "rest" }, { reply: (words) => { if (words.text !== undefined) travel(way); } });
+      return;
+    }
+    if (way < 0 ? past.length < 2 : !future.length) return;
+    if (way < 0) future.push(past.pop()); else past.push(future.pop());
+    travelling = true;
+    clearTimeout(resting);
+    ask({ do: "open", text: past.at(-1), here: "same" });
+  }
+
+  /** Words at the foot of the page. */
+  function say(text, bad = false) {
+    status.textContent = text;
+    status.classList.toggle("bad", bad);
+    status.hidden = !text;
+  }
+
+  function setTab(name) {
+    app.tab = name;
+    for (const button of tabs.children) { button.setAttribute("aria-selected", button.dataset.tab === name); button.tabIndex = button.dataset.tab === name ? 0 : -1; }
+    root.dataset.tab = name;
+    tell("tab", name);
+  }
+
+  function theme() {
+    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    root.dataset.theme = dark ? "light" : "dark";
+    try { localStorage.setItem("extrados-theme", root.dataset.theme); } catch { /* a browser without storage */ }
+    tell("theme");
+  }
+  try { root.dataset.theme = localStorage.getItem("extrados-theme") ?? ""; } catch { /* a browser without storage */ }
+
+  /** A dialog with what it holds; it is gone when closed. */
+  function dialog(label, ...content) {
+    const box = h("dialog", { "aria-label": label, onclose: () => box.remove(), onclick: (e) => { if (e.target === box) box.close(); } },
+      h("div", { class: "dialog-head" }, h("h2", {}, label), h("button", { class: "icon", "aria-label": "Close", onclick: () => box.close() }, "×")), ...content);
+    root.append(box);
+    box.showModal();
+    return box;
+  }
+  function chooser() {
+    const w = app.welcome;
+    if (!w) return;
+    const field = h("input", { type: "search", placeholder: "Find a deck …", "aria-label": "Find a deck", oninput: list });
+    const box = h("div", { class: "choices" });
+    const file = h("input", { type: "file", accept: ".toml,.dxf,.json,.csv,.txt,.at2", "aria-label": "A file of this machine", onchange: () => { dropped(file.files[0]); shown.close(); } });
+    const shown = dialog("Open a deck", h("div", { class: "row" }, field, h("label", { class: "button" }, "From this machine…", file)), box);
+    const item = (label, about, source) => h("button", { class: "choice", onclick: () => { open(source); shown.close(); setTab(app.tab === "results" ? "structure" : app.tab); } }, h("b", {}, label), h("span", {}, about));
+    function list() {
+      const words = field.value.toLowerCase().split(/\s+/);
+      const fits = (...texts) => words.every((word) => texts.join(" ").toLowerCase().includes(word));
+      const groups = [];
+      let kept = null;
+      try { kept = JSON.parse(localStorage.getItem(KEPT)); } catch { /* none */ }
+      if (kept?.text && fits("last", kept.name)) groups.push(["Where you left off", [item(kept.name, "the deck of your last page", { text: kept.text, name: kept.name, ...kept.source })]]);
+      groups.push([`Decks in ${w.folder}`, w.decks.filter((d) => fits(d)).map((d) => item(d, "", { path: d }))]);
+      groups.push(["New", w.kinds.structure.filter((k) => fits("new", k)).map((k) => item(`new ${k}`, "a starter deck", { starter: k }))]);
+      groups.push(["Decks with known answers", w.presets.filter((p) => fits(p.name, p.title, p.kind)).map((p) => item(p.title || p.name, `${p.name}${p.kind ? ` · ${p.kind}` : ""}`, { preset: p.name }))]);
+      box.replaceChildren(...groups.filter(([, items]) => items.length).flatMap(([name, items]) => [h("h3", {}, name), h("div", { class: "choice-grid" }, items)]));
+    }
+    list();
+    field.focus();
+  }
+  app.chooser = chooser;
+
+  // Files dropped on the page
+
+  function dropped(fileGiven) {
+    if (!fileGiven) return;
+    if (fileGiven.size > 8e6) { say(`${fileGiven.name} is larger than 8 MB`, true); return; }
+    const reader = new FileReader();
+    reader.onload = () => {
+      const data = reader.result.slice(reader.result.indexOf(",") + 1), name = fileGiven.name;
+      if (!name.endsWith(".toml")) { app.drops = app.drops.filter((d) => d.name !== name); app.drops.push({ name, data }); }
+      const drops = app.drops;
+      ask({ do: "drop", name, data }, { reply: (words) => {
+        app.drops = drops;
+        if (words.complaints?.some((c) => c.includes("unit"))) askUnit(name, data);
+      } });
+    };
+    reader.readAsDataURL(fileGiven);
+  }
+  function askUnit(name, data) {
+    const box = dialog("The unit of the drawing", h("p", {}, `${name} does not say its unit. It is in`), h("div", { class: "row" }, ["m", "cm", "mm", "in", "ft"].map((unit) => h("button", { onclick: () => { ask({ do: "drop", name, data, unit }); box.close(); } }, unit))));
+  }
+  root.addEventListener("dragover", (e) => { e.preventDefault(); root.classList.add("dropping"); });
+  root.addEventListener("dragleave", (e) => { if (!root.contains(e.relatedTarget)) root.classList.remove("dropping"); });
+  root.addEventListener("drop", (e) => { e.preventDefault(); root.classList.remove("dropping"); dropped(e.dataTransfer.files[0]); });
+  app.dropped = dropped;
+
+  root.addEventListener("keydown", (e) => {
+    const writing = e.composedPath()[0].matches?.("textarea, input[type=text], input[type=search]");
+    if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "z" && !writing) { e.preventDefault(); if (e.shiftKey) app.redo(); else app.undo(); }
+    if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "y" && !writing) { e.preventDefault(); app.redo(); }
+    if ((e.ctrlKey || e.metaKey) && e.key.toLowerCase() === "s") { e.preventDefault(); app.save?.(); }
+    if (e.key === "?" && !writing) help();
+  });
+  function help() {
+    dialog("How to use this page", h("ul", { class: "help" },
+      h("li", {}, "Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground."),
+      h("li", {}, "Tab goes from handle to handle; arrow keys move one, with Shift ten times as far; Enter or a double click lets you type its value, with a unit if you like."),
+      h("li", {}, "Click into the stones beside the line: the thrust line that passes there is drawn. Shown are the least and the greatest thrust of an arch as well."),
+      h("li", {}, "Ctrl+Z undoes, Ctrl+Shift+Z does again, Ctrl+S saves the deck, Space plays a motion."),
+      h("li", {}, "Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page."),
+      h("li", {}, "The page is served by this machine to this machine; nothing leaves it.")));
+  }
+
+  // Layers over the drawing
+
+  const LAYERS = [["least", "Least thrust"], ["most", "Greatest"], ["through", "Through a point"], ["plus", "Collapse +x"], ["minus", "Collapse −x"], ["central", "Central"], ["reactions", "Reactions"], ["joints", "Joints"]];
+  const playButton = h("button", { class: "layer", "aria-pressed": "false", title: "Let the mechanism move", onclick: () => mechanism() }, "▶ Mechanism");
+  layersBar.append(...LAYERS.map(([name, label]) => h("button", { class: `layer ${name}`, "aria-pressed": String(Boolean(app.layers[name])), "data-layer": name, onclick: (e) => {
+    app.layers[name] = !app.layers[name];
+    e.currentTarget.setAttribute("aria-pressed", String(app.layers[name]));
+    show({ lines: Object.keys(app.layers).filter((key) => app.layers[key]) });
+    tell("layers");
+  } }, h("i", { class: "swatch" }), label)), playButton, h("span", { class: "spring" }));
+  let swing = null;
+  function mechanism(stop = false) {
+    if (swing || stop) { cancelAnimationFrame(swing); swing = null; drawing.pose(null); playButton.setAttribute("aria-pressed", "false"); return; }
+    const way = app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus";
+    if (!app.arrays[`${way}_velocity`]) { say("There is no mechanism to show.", true); return; }
+    playButton.setAttribute("aria-pressed", "true");
+    const begin = performance.now();
+    const step = (now) => {
+      const share = 0.5 - 0.5 * Math.cos((now - begin) / 700);
+      drawing.pose(between(way, share));
+      swing = requestAnimationFrame(step);
+    };
+    swing = requestAnimationFrame(step);
+  }
+  /** The stones on their way along a mechanism: as carried on, or by its velocities as long as a hand moves. */
+  function between(way, share) {
+    const { centroid } = app.arrays, pose = app.arrays[`${way}_pose`], velocity = app.arrays[`${way}_velocity`];
+    const out = new Float32Array(velocity.length), n = velocity.length / 3;
+    let scale = 0;
+    if (!pose) { let most = 0; for (let b = 0; b < n; b += 1) most = Math.max(most, Math.hypot(velocity[3 * b], velocity[3 * b + 1])); scale = (0.05 * (app.scene.size_m ?? 1)) / (most || 1); }
+    for (let b = 0; b < n; b += 1) for (let k = 0; k < 3; k += 1) {
+      const home = k < 2 ? centroid[2 * b + k] : 0;
+      out[3 * b + k] = pose ? home + share * (pose[3 * b + k] - home) : home + share * scale * velocity[3 * b + k];
+    }
+    return out;
+  }
+  app.stopMechanism = () => { if (swing) mechanism(true); };
+  app.mechanismShown = () => swing !== null;
+  stageBox.addEventListener("pointerdown", (e) => {
+    if (e.button !== 0 || e.target.closest?.(".knob") || app.tab === "motion" || !app.scene?.chains?.length || drawing.moving()) return;
+    if (!e.target.closest?.(".stones, .joints, .thrust")) return;
+    const edge = drawing.svg.getBoundingClientRect();
+    app.layers.through = true;
+    app.view.lines = Object.keys(app.layers).filter((key) => app.layers[key]);
+    layersBar.querySelector("[data-layer=through]").setAttribute("aria-pressed", "true");
+    show({ lines: app.view.lines, through: drawing.modelOf(e.clientX - edge.left, e.clientY - edge.top) });
+  });
+  const turned = () => drawing.setTheta(app.tab === "motion" ? 0 : Math.atan(app.scene?.gamma ?? 0));
+  app.turned = turned;
+
+  top.append(outMenu(app), themeButton, h("button", { class: "icon", "aria-label": "Help", title: "Help (?)", onclick: help }, "?"));
+  sidebar(app, side);
+  structurePanel(app, lower);
+  motionPanel(app, lower, stageFrame);
+  resultsPanel(app, wide);
+  on("tab", (name) => {
+    wide.hidden = name !== "results"; stageFrame.hidden = lower.hidden = name === "results";
+    if (name !== "structure") app.stopMechanism();
+    turned();
+    drawing.fit();
+    drawing.redraw();
+  });
+  setTab("structure");
+  app.connected = () => connected;
+  return app;
+}
+

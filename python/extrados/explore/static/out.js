@@ -1,0 +1,90 @@
+// What is seen, taken out: PNG, SVG, and films of what moves.
+import { download, h } from "./dom.js";
+
+const STYLED = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "stroke-linecap", "opacity", "fill-opacity", "stroke-opacity", "font-size", "font-family", "font-weight", "text-anchor", "vector-effect", "visibility", "display"];
+
+/** A drawing with its styles written into it, so that it stands alone. */
+export function alone(svg, background) {
+  const copy = svg.cloneNode(true), from = [svg, ...svg.querySelectorAll("*")], to = [copy, ...copy.querySelectorAll("*")];
+  from.forEach((element, k) => {
+    const style = getComputedStyle(element);
+    // attributes, since the page's own policy lets no style be written into elements
+    for (const name of STYLED) to[k].setAttribute(name, style.getPropertyValue(name));
+    for (const name of ["class", "tabindex", "role"]) to[k].removeAttribute(name);
+  });
+  for (const hidden of copy.querySelectorAll("[data-handle]")) hidden.remove();
+  copy.setAttribute("xmlns", "http://www.w3.org/2000/svg");
+  const [, , w, hgt] = copy.getAttribute("viewBox").split(" ").map(Number);
+  const paper = document.createElementNS("http://www.w3.org/2000/svg", "rect");
+  for (const [key, value] of Object.entries({ x: 0, y: 0, width: w, height: hgt, fill: background })) paper.setAttribute(key, value);
+  copy.prepend(paper);
+  return { text: new XMLSerializer().serializeToString(copy), w, h: hgt };
+}
+
+async function picture({ text, w, h: hgt }, canvas, width, height) {
+  const image = new Image(), url = URL.createObjectURL(new Blob([text], { type: "image/svg+xml" }));
+  try {
+    image.src = url;
+    await image.decode();
+    const context = canvas.getContext("2d");
+    canvas.width = width; canvas.height = height;
+    const scale = Math.min(width / w, height / hgt);
+    context.fillStyle = text.match(/<rect[^>]*fill="([^"]+)"/)?.[1] ?? "#fff";
+    context.fillRect(0, 0, width, height);
+    context.drawImage(image, (width - w * scale) / 2, (height - hgt * scale) / 2, w * scale, hgt * scale);
+  } finally { URL.revokeObjectURL(url); }
+}
+
+export function outMenu(app) {
+  const paper = () => getComputedStyle(app.root).getPropertyValue("--paper").trim();
+  const seen = () => (app.tab === "results" ? app.results.columns[0].svg : app.drawing.svg);
+  const stem = () => app.name.replace(/\.toml$/, "") || "extrados";
+  const svg = () => download(new Blob([alone(seen(), paper()).text], { type: "image/svg+xml" }), `${stem()}.svg`);
+  async function png() {
+    const canvas = document.createElement("canvas"), drawn = alone(seen(), paper());
+    await picture(drawn, canvas, Math.round(2 * drawn.w), Math.round(2 * drawn.h));
+    canvas.toBlob((blob) => download(blob, `${stem()}.png`), "image/png");
+  }
+  /** Every picture of what moves, drawn in turn at 1280 x 720 and sent to be filmed. */
+  async function film(kind, slow) {
+    const moves = movement();
+    if (!moves) { app.say("Nothing moves here: open Motion, or a stored run that moves, first.", true); return; }
+    const rate = kind === "gif" ? 15 : 30, length = Math.min(moves.real ? (moves.end - moves.start) / slow : 6, 40);
+    const count = Math.max(2, Math.round(length * rate)), canvas = document.createElement("canvas"), parts = [new TextEncoder().encode(kind), Uint8Array.of(rate)];
+    if (count > 1200) { app.say("That film would be too long.", true); return; }
+    for (let k = 0; k < count; k += 1) {
+      moves.seek(moves.start + ((moves.end - moves.start) * k) / (count - 1));
+      app.say(`drawing picture ${k + 1} of ${count}`);
+      await picture(alone(seen(), paper()), canvas, 1280, 720);
+      const context = canvas.getContext("2d");
+      context.fillStyle = getComputedStyle(app.root).getPropertyValue("--ink"); context.font = "22px sans-serif";
+      context.fillText(moves.label(), 24, 40);
+      const blob = await new Promise((done) => canvas.toBlob(done, "image/jpeg", 0.92));
+      const length = new Uint8Array(4);
+      new DataView(length.buffer).setUint32(0, blob.size);
+      parts.push(length, new Uint8Array(await blob.arrayBuffer()));
+    }
+    app.say("making the film …");
+    const answer = await fetch(app.film, { method: "POST", body: new Blob(parts) });
+    if (!answer.ok) { app.say(await answer.text(), true); return; }
+    download(await answer.blob(), `${stem()}.${kind}`);
+    app.say("The film is done.");
+  }
+  function movement() {
+    if (app.tab === "motion" && app.motion.arrays?.pose) {
+      const a = app.motion.arrays;
+      return { start: 0, end: app.motion.end, real: true, seek: app.motion.seek, label: () => `${app.motion.time.toFixed(2)} s` };
+    }
+    const column = app.results.columns[0], times = column.arrays.body_time;
+    if (app.tab === "results" && times?.length > 1) return { start: times[0], end: times[times.length - 1], real: column.words.body.unit === "s", seek: (t) => column.seek(t, false), label: () => `${column.words.body.label} ${column.time.toPrecision(3)} ${column.words.body.unit}` };
+    return null;
+  }
+  const menu = h("div", { class: "menu", hidden: true, role: "menu" });
+  const entry = (label, act) => h("button", { role: "menuitem", onclick: () => { menu.hidden = true; button.setAttribute("aria-expanded", "false"); Promise.resolve(act()).catch((error) => app.say(String(error), true)); } }, label);
+  menu.append(entry("Picture, PNG", png), entry("Drawing, SVG", svg), ...(app.embedded ? [] : [entry("Film, MP4, real time", () => film("mp4", 1)), entry("Film, MP4, a fifth of the speed", () => film("mp4", 0.2)), entry("Film, GIF, real time", () => film("gif", 1)), entry("Film, GIF, a fifth of the speed", () => film("gif", 0.2))]));
+  const button = h("button", { class: "out", "aria-haspopup": "menu", "aria-expanded": "false", onclick: () => { menu.hidden = !menu.hidden; button.setAttribute("aria-expanded", String(!menu.hidden)); if (!menu.hidden) menu.querySelector("button").focus(); } }, "Export");
+  const box = h("div", { class: "menu-box", onkeydown: (e) => { if (e.key === "Escape") { menu.hidden = true; button.focus(); } } }, button, menu);
+  app.root.addEventListener("pointerdown", (e) => { if (!e.composedPath().includes(box)) menu.hidden = true; });
+  app.film_of = film;
+  return box;
+}

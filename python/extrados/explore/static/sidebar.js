@@ -1,0 +1,148 @@
+// Beside the drawing: what the structure bears, its sizes, its deck.
+import { teachPanel } from "./teach.js";
+import { degrees, download, h, number, quantity } from "./dom.js";
+
+const NAMES = { structure: "Structure", motion: "Motion", joints: "Joints", material: "Material", supports: "Supports", initial: "Start" };
+
+export function sidebar(app, box) {
+  const pages = { answer: h("div", { class: "page answer" }), sizes: h("div", { class: "page sizes" }), deck: h("div", { class: "page deck" }), teach: h("div", { class: "page teach" }) };
+  const labels = { answer: "Answer", sizes: "Sizes", deck: "Deck", teach: "Exercises" };
+  const tabs = h("div", { class: "tabs small", role: "tablist", "aria-label": "Beside the drawing" }, Object.keys(pages).map((name) => h("button", { role: "tab", "data-side": name, onclick: () => choose(name) }, labels[name])));
+  box.append(tabs, ...Object.values(pages));
+  let chosen = "answer";
+  function choose(name) {
+    chosen = name;
+    for (const [key, page] of Object.entries(pages)) page.hidden = key !== name;
+    for (const button of tabs.children) button.setAttribute("aria-selected", button.dataset.side === name);
+    fill();
+  }
+
+  // Answer
+
+  const row = (label, value, about = "") => h("tr", { title: about }, h("th", { scope: "row" }, label), h("td", {}, value));
+  function answer() {
+    const scene = app.scene;
+    if (!scene) return;
+    if (scene.empty) { pages.answer.replaceChildren(h("p", { class: "verdict" }, scene.empty)); return; }
+    const parts = [];
+    const c = scene.capacity;
+    if (scene.immovable) parts.push(h("p", { class: "verdict good" }, scene.immovable));
+    else if (scene.unknown) parts.push(h("p", { class: "verdict" }, h("b", {}, "Limit analysis has no answer: "), scene.unknown));
+    else if (!scene.stands) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "It cannot stand. "), app.detail?.why ?? "No thrust line stays within the stones."));
+    else if (!scene.within) parts.push(h("p", { class: "verdict bad" }, h("b", {}, "It comes down. "), `${number(scene.gamma, 3)} g is more than it bears.`));
+    else parts.push(h("p", { class: "verdict good" }, h("b", {}, scene.gamma ? "It stands when tilted. " : "It stands. "), `As a mechanism it comes down at ${number(Math.min(c.plus_g, c.minus_g), 4)} g.`));
+    const rows = [];
+    if (c) {
+      rows.push(row("Bears to +x", h("span", { "data-number": "plus" }, `${number(c.plus_g, 4)} g · ${number(degrees(c.plus_g), 4)}°`), "horizontal acceleration, and tilt of the ground, at which it becomes a mechanism"));
+      rows.push(row("Bears to −x", h("span", { "data-number": "minus" }, `${number(c.minus_g, 4)} g · ${number(degrees(c.minus_g), 4)}°`)));
+    }
+    if (scene.least_N !== undefined) {
+      rows.push(row("Least thrust", h("span", { "data-number": "least" }, quantity(scene.least_N, "N")), "horizontal thrust of the chain at the present tilt"));
+      rows.push(row("Greatest thrust", h("span", { "data-number": "most" }, quantity(scene.most_N, "N"))));
+    }
+    if (scene.through) rows.push(row("Through the point", quantity(scene.through.thrust_N, "N")));
+    if (app.detail && "safety" in app.detail) rows.push(row("Geometric safety", app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), "one over the least part of the joints that holds a thrust line upright"));
+    if (scene.required_friction !== undefined) rows.push(row("Friction needed", number(scene.required_friction, 3), "coefficient of friction needed at collapse to +x"));
+    rows.push(row("Weight", `${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));
+    rows.push(row("Stones, joints", `${scene.blocks}, ${scene.joints}`));
+    for (const [key, value] of Object.entries(scene.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));
+    parts.push(h("table", { class: "numbers" }, h("tbody", {}, rows)));
+    if (scene.chains?.length > 1) {
+      parts.push(h("label", { class: "field" }, "Thrust of the ", h("select", { "aria-label": "Whose thrust", onchange: (e) => app.show({ chain: e.target.value, through: null }) }, scene.chains.map((name) => h("option", { value: name, selected: name === scene.chain }, name)))));
+    }
+    for (const [name, text] of [["plus", "Hinges, load to +x"], ["minus", "Hinges, load to −x"]]) {
+      if (!scene[`${name}_hinges`]?.length || !app.layers[name]) continue;
+      parts.push(h("h3", {}, text), h("ul", { class: "plain" }, scene[`${name}_hinges`].map((x) => h("li", {}, x.where)), (scene[`${name}_sliding`] ?? []).slice(0, 6).map((x) => h("li", {}, `slides: ${x.name}`))));
+    }
+    if (scene.reactions?.length && app.layers.reactions) {
+      const of = { least: "at least thrust", through: "of the line through the point", plus: "at collapse" }[scene.reactions_of] ?? "";
+      parts.push(h("h3", {}, `Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "across"), h("th", {}, "up"))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
+    }
+    if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));
+    parts.push(loads());
+    const focused = pages.answer.contains(document.activeElement) || pages.answer.contains(app.root.getRootNode().activeElement);
+    if (!focused || !pages.answer.querySelector("input:focus")) pages.answer.replaceChildren(...parts);
+  }
+  function loads() {
+    const name = app.scene.limit_analysis, there = app.scene.loads ?? [];
+    const add = () => {
+      if (!name) { app.ask({ do: "analysis", add: "tilt" }); return; }
+      const w = (app.scene.weight_N || 1e4) / 20, size = 10 ** Math.floor(Math.log10(w));
+      app.change({ [`analysis.${name}.load`]: [...there.map((l) => raw(l)), { x: 0, force: Math.round(w / size) * size }] });
+    };
+    const raw = (l) => ({ x: Number((l.at[0] + app.anchor[0]).toPrecision(9)), force: l.force_N, ...(l.horizontal_N ? { horizontal: l.horizontal_N } : {}) });
+    const simple = there.every((l) => l.end === null);
+    return h("div", { class: "row wrap" },
+      h("button", { onclick: add, disabled: !simple }, name ? "Add a load" : "Add limit analysis"),
+      there.length && simple ? h("button", { onclick: () => app.change({ [`analysis.${name}.load`]: there.length > 1 ? there.slice(0, -1).map(raw) : null }) }, "Remove the last load") : null,
+      app.deck?.structure?.kind !== "blocks" ? h("button", { title: "Every stone as a block whose vertices can be dragged", onclick: () => app.ask({ do: "blocks" }) }, "Free the stones") : null);
+  }
+
+  // Sizes
+
+  function sizes() {
+    const active = box.getRootNode().activeElement;
+    if (pages.sizes.contains(active) && active.matches("input, select")) return;
+    const groups = new Map();
+    for (const form of app.forms) { if (!groups.has(form.section)) groups.set(form.section, []); groups.get(form.section).push(form); }
+    pages.sizes.replaceChildren(h("p", { class: "hint" }, "A number, or a number with its unit. Grey values are defaults; an emptied field becomes one."), ...[...groups].map(([section, forms]) => h("details", { open: section === "structure" || section === "motion" }, h("summary", {}, NAMES[section]), h("div", { class: "fields" }, forms.map((form) => field(section, form))))));
+  }
+  function field(section, form) {
+    const key = `${section}.${form.key}`, id = `field-${key}`.replaceAll(".", "-");
+    const put = (value) => app.change({ [key]: value });
+    let input;
+    if (form.sort === "choice") input = h("select", { id, onchange: (e) => put(e.target.value) }, (form.choices.includes(form.value) ? form.choices : [form.value ?? "", ...form.choices]).map((c) => h("option", { value: c, selected: c === form.value }, String(c))));
+    else if (form.sort === "yes") input = h("input", { id, type: "checkbox", checked: form.value === true, onchange: (e) => put(e.target.checked) });
+    else {
+      const text = form.value === null ? "" : typeof form.value === "number" ? String(Number(form.value.toPrecision(7))) : String(form.value);
+      const send = (e) => {
+        const raw = e.target.value.trim().replaceAll("−", "-");
+        if (raw === text.replaceAll("−", "-")) return;
+        const value = raw === "" ? null : form.number && /^[-+]?[\d.]+(e[-+]?\d+)?$/i.test(raw) ? (Number.isInteger(Number(raw)) && !raw.includes(".") ? Number(raw) : Number(raw)) : raw;
+        put(value);
+      };
+      input = h("input", { id, type: "text", value: text, spellcheck: "false", inputmode: form.number ? "decimal" : null, placeholder: form.given ? "" : "default", class: form.given ? "" : "default", onchange: send });
+    }
+    return h("div", { class: "line", title: form.about }, h("label", { for: id }, form.key.replaceAll("_", " ")), input, h("span", { class: "unit" }, typeof form.value === "string" && form.sort === "text" ? "" : form.unit));
+  }
+
+  // Deck
+
+  const text = h("textarea", { spellcheck: "false", "aria-label": "The deck as text", wrap: "off" });
+  const numbersBox = h("pre", { class: "gutter", "aria-hidden": "true" });
+  const complaints = h("ul", { class: "complaints", role: "alert" });
+  let timer = null;
+  text.addEventListener("input", () => { lines(); clearTimeout(timer); timer = setTimeout(() => app.edit(text.value), 450); });
+  text.addEventListener("scroll", () => { numbersBox.scrollTop = text.scrollTop; });
+  function lines() { numbersBox.textContent = text.value.split("\n").map((_, k) => k + 1).join("\n"); }
+  const copy = async () => {
+    try { await navigator.clipboard.writeText(app.text); app.say("The deck is copied."); } catch { text.select(); document.execCommand("copy"); app.say("The deck is copied."); }
+  };
+  app.save = () => {
+    const field = h("input", { type: "text", value: app.source.path ?? app.name, "aria-label": "Path within the folder" });
+    const replace = h("input", { type: "checkbox", checked: Boolean(app.source.path) });
+    const box = app.dialog("Save the deck", h("form", { onsubmit: (e) => {
+      e.preventDefault();
+      app.ask({ do: "save", path: field.value, replace: replace.checked }, { reply: (words) => { if (words.saved) { app.source = { path: words.saved }; app.say(`Saved as ${words.saved}`); box.close(); } } });
+    } }, h("p", {}, `In ${app.welcome.folder}, as`), field, h("label", {}, replace, " replace what is there"), h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Save"))));
+  };
+  const adder = h("select", { "aria-label": "Add an analysis", onchange: (e) => { if (e.target.value) app.ask({ do: "analysis", add: e.target.value }); e.target.value = ""; } });
+  pages.deck.append(h("div", { class: "row wrap" }, h("button", { onclick: copy }, "Copy"), h("button", { onclick: () => app.save() }, "Save…"), h("button", { onclick: () => download(new Blob([app.text], { type: "application/toml" }), app.name) }, "Download"), h("button", { onclick: () => app.chooser() }, "Open…"), adder), complaints, h("div", { class: "editor" }, numbersBox, text));
+  function deck() {
+    const editing = box.getRootNode().activeElement === text;
+    if (!editing && text.value !== app.text) text.value = app.text;
+    if (!editing) complaints.replaceChildren();
+    lines();
+  }
+  app.on("welcome", (w) => adder.replaceChildren(h("option", { value: "" }, "Add analysis…"), ...w.kinds.analysis.map((k) => h("option", { value: k }, k))));
+  app.on("complaint", (words, message) => { if (message?.do === "open" && message.here === "same") complaints.replaceChildren(...(words.complaints ?? [words.bad]).map((c) => h("li", {}, c))); });
+
+  function fill() { if (chosen === "answer") answer(); else if (chosen === "sizes") sizes(); else if (chosen === "deck") deck(); }
+  let due = false;
+  app.on("scene", () => { complaints.replaceChildren(); if (chosen === "answer" && !due) { due = true; requestAnimationFrame(() => { due = false; answer(); }); } });
+  app.on("detail", () => { if (chosen === "answer") answer(); });
+  app.on("layers", () => { if (chosen === "answer") answer(); });
+  app.on("text", fill);
+  teachPanel(app, pages.teach);
+  choose("answer");
+}

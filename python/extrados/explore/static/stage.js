@@ -1,0 +1,323 @@
+// The drawing of a structure: stones, lines of thrust, hinges, loads, reactions, and the handles that hands move.
+import { degrees, number, quantity, s, set } from "./dom.js";
+
+const LINES = [
+  ["least", "least thrust"], ["most", "greatest thrust"], ["through", "thrust through the point"],
+  ["plus", "collapse, load to +x"], ["minus", "collapse, load to −x"], ["central", "most central"],
+];
+const f = (v) => (Math.round(v * 1e4) / 1e4).toString();
+
+/** Outlines as one path; pose (blocks x 3) moves each stone from its centroid: a array of x, y, rotation. */
+export function stonesPath(outline, start, centroid = null, pose = null, offset = 0) {
+  let d = "";
+  for (let b = 0; b + 1 < start.length; b += 1) {
+    let c = 1, si = 0, gx = 0, gy = 0, px = 0, py = 0;
+    if (pose) {
+      const at = offset + 3 * b, turn = pose[at + 2];
+      c = Math.cos(turn); si = Math.sin(turn); gx = centroid[2 * b]; gy = centroid[2 * b + 1]; px = pose[at]; py = pose[at + 1];
+    }
+    for (let i = start[b]; i < start[b + 1]; i += 1) {
+      let x = outline[2 * i], y = outline[2 * i + 1];
+      if (pose) { const dx = x - gx, dy = y - gy; x = px + c * dx - si * dy; y = py + si * dx + c * dy; }
+      d += `${i === start[b] ? "M" : "L"}${f(x)} ${f(y)}`;
+    }
+    d += "Z";
+  }
+  return d;
+}
+export function piecesPath(line, start) {
+  let d = "";
+  for (let k = 0; k + 1 < start.length; k += 1) {
+    let pen = false;
+    for (let i = start[k]; i < start[k + 1]; i += 1) {
+      const x = line[2 * i], y = line[2 * i + 1];
+      if (!Number.isFinite(x + y)) { pen = false; continue; }
+      d += `${pen ? "L" : "M"}${f(x)} ${f(y)}`;
+      pen = true;
+    }
+  }
+  return d;
+}
+
+/** The stage. `hands`: {drag(name, place, ends), step(name, dx, dy), type(name), through(place), tilt(gamma, ends)} */
+export function stage(box, hands) {
+  const svg = s("svg", { class: "stage", role: "group", "aria-label": "Drawing of the structure" });
+  const world = s("g"), screen = s("g"), overlay = s("g");
+  const ground = s("path", { class: "ground" }), earth = s("path", { class: "earth" });
+  const stones = s("path", { class: "stones" }), ghost = s("path", { class: "ghost" });
+  const joints = s("path", { class: "joints" }), supports = s("path", { class: "supports" });
+  const lines = Object.fromEntries(LINES.map(([name]) => [name, s("path", { class: `thrust ${name}` })]));
+  const dynamic = s("path", { class: "thrust dynamic" });
+  const marks = s("g", { class: "marks" }), loads = s("g"), knobs = s("g", { class: "knobs" }), ruler = s("g", { class: "ruler" });
+  world.append(earth, supports, ghost, stones, joints, ...Object.values(lines), dynamic);
+  svg.append(ground, world, screen, overlay);
+  screen.append(ruler, loads, marks, knobs);
+  box.append(svg);
+  const it = { svg, show, fit, pose, moving, clear, lines, screenOf, modelOf, layers: null, bounds: null, scene: null, redraw, tip: null, setTheta };
+  const view = { k: 50, cx: 0, cy: 0, theta: 0, w: 800, h: 500 };
+  const knob = new Map();
+  let dragging = null, shownPose = null, last = null, fresh = true;
+
+  new ResizeObserver(() => {
+    const { clientWidth: w, clientHeight: h } = box;
+    if (!w || !h) return;
+    view.w = w; view.h = h;
+    set(svg, { viewBox: `0 0 ${w} ${h}`, width: w, height: h });
+    if (it.bounds) { fit(); redraw(); }
+  }).observe(box);
+
+  /** Screen places of model ones, and back; the ground turns by theta, clockwise, about the origin. */
+  function screenOf(x, y) {
+    const c = Math.cos(view.theta), n = Math.sin(view.theta);
+    return [view.cx + view.k * (c * x + n * y), view.cy - view.k * (c * y - n * x)];
+  }
+  function modelOf(px, py, theta = view.theta) {
+    const u = (px - view.cx) / view.k, v = (view.cy - py) / view.k, c = Math.cos(theta), n = Math.sin(theta);
+    return [c * u - n * v, n * u + c * v];
+  }
+  function setTheta(theta) { view.theta = theta; }
+
+  /** Fit what is there, with room for handles around it. */
+  function fit() {
+    if (!it.bounds) return;
+    const [a0, b0, a1, b1] = it.bounds, size = Math.max(a1 - a0, b1 - b0, 1e-9);
+    const room = { left: 40, right: 46, top: 50, bottom: 44 };
+    // what the ground's turn makes of the building and the ground beside it
+    const c = Math.cos(view.theta), n = Math.sin(view.theta), reach = 0.12 * (a1 - a0);
+    const turned = [[a0, b1], [a1, b1], [a0, b0], [a1, b0], [a0 - reach, 0], [a1 + reach, 0]].map(([x, y]) => [c * x + n * y, c * y - n * x]);
+    const xs = turned.map((p) => p[0]), ys = turned.map((p) => p[1]);
+    const x0 = Math.min(...xs), x1 = Math.max(...xs), y0 = Math.min(...ys), y1 = Math.max(...ys, y0 + 0.2 * size);
+    const k = Math.min((view.w - room.left - room.right) / (x1 - x0), (view.h - room.top - room.bottom) / (y1 - y0));
+    view.k = Math.max(k, 1e-6);
+    view.cx = room.left + (view.w - room.left - room.right) / 2 - (view.k * (x0 + x1)) / 2;
+    view.cy = room.top + (view.h - room.top - room.bottom) / 2 + (view.k * (y0 + y1)) / 2;
+  }
+  function boundsOf(outline) {
+    let x0 = Infinity, y0 = Infinity, x1 = -Infinity, y1 = -Infinity;
+    for (let i = 0; i < outline.length; i += 2) {
+      const x = outline[i], y = outline[i + 1];
+      if (x < x0) x0 = x; if (x > x1) x1 = x; if (y < y0) y0 = y; if (y > y1) y1 = y;
+    }
+    return [x0, y0, x1, y1];
+  }
+  function outside() {
+    const [x0, y0, x1, y1] = it.bounds;
+    const corners = [[x0, y0], [x1, y1], [x0, y1], [x1, y0]].map(([x, y]) => screenOf(x, y));
+    const px = corners.map((c) => c[0]), py = corners.map((c) => c[1]);
+    const far = Math.min(...px) < 18 || Math.max(...px) > view.w - 18 || Math.min(...py) < 30 || Math.max(...py) > view.h - 18;
+    return far || Math.max((Math.max(...px) - Math.min(...px)) / view.w, (Math.max(...py) - Math.min(...py)) / view.h) < 0.3;
+  }
+
+  /** A scene of the session. */
+  function show(scene, arrays, handles, opened = false) {
+    it.scene = { scene, arrays, handles };
+    last = arrays;
+    if (!arrays.outline) { clear(); return; }
+    it.bounds = boundsOf(arrays.outline);
+    if (opened || fresh) { shownPose = null; fit(); fresh = false; }
+    else if (!dragging && outside()) fit();
+    redraw();
+  }
+  function clear() {
+    it.bounds = null; shownPose = null;
+    for (const part of [stones, ghost, joints, supports, earth, dynamic, ground, ...Object.values(lines)]) set(part, { d: "" });
+    marks.replaceChildren(); loads.replaceChildren(); ruler.replaceChildren();
+    for (const element of knob.values()) element.remove();
+    knob.clear();
+  }
+  function redraw() {
+    if (!it.scene || !it.scene.arrays.outline) return;
+    const { scene, arrays, handles } = it.scene, layers = it.layers ?? {};
+    const c = view.k * Math.cos(view.theta), n = view.k * Math.sin(view.theta);
+    set(world, { transform: `matrix(${c} ${n} ${n} ${-c} ${view.cx} ${view.cy})` });
+    if (!shownPose) {
+      set(stones, { d: stonesPath(arrays.outline, arrays.outline_start) });
+      set(ghost, { d: "" });
+    } else drawPose();
+    let d = "";
+    if (layers.joints !== false && !shownPose) for (let j = 0; j < arrays.joint_p.length; j += 2) d += `M${f(arrays.joint_p[j])} ${f(arrays.joint_p[j + 1])}L${f(arrays.joint_q[j])} ${f(arrays.joint_q[j + 1])}`;
+    set(joints, { d });
+    set(earth, { d: arrays.earth ? `M${Array.from({ length: arrays.earth.length / 2 }, (_, i) => `${f(arrays.earth[2 * i])} ${f(arrays.earth[2 * i + 1])}`).join("L")}Z` : "" });
+    for (const [name, path] of Object.entries(lines)) {
+      const drawn = layers[name] && !shownPose && arrays[`${name}_line`];
+      set(path, { d: drawn ? piecesPath(arrays[`${name}_line`], arrays[`${name}_start`]) : "" });
+    }
+    supported(arrays);
+    drawGround(scene);
+    drawMarks(scene, layers);
+    drawLoads(scene);
+    drawKnobs(handles ?? [], scene);
+  }
+  function supported(arrays) {
+    let d = "";
+    const size = 0.02 * Math.max(it.bounds[2] - it.bounds[0], it.bounds[3] - it.bounds[1]);
+    for (let j = 0; j < arrays.joint_p.length / 2; j += 1) {
+      if (arrays.joint_block[2 * j] !== -1 && arrays.joint_block[2 * j + 1] !== -1) continue;
+      const b = arrays.joint_block[2 * j] === -1 ? arrays.joint_block[2 * j + 1] : arrays.joint_block[2 * j];
+      const px = arrays.joint_p[2 * j], py = arrays.joint_p[2 * j + 1], qx = arrays.joint_q[2 * j], qy = arrays.joint_q[2 * j + 1];
+      let nx = -(qy - py), ny = qx - px;
+      const length = Math.hypot(nx, ny) || 1;
+      nx /= length; ny /= length;
+      const side = (arrays.centroid[2 * b] - px) * nx + (arrays.centroid[2 * b + 1] - py) * ny > 0 ? -1 : 1;
+      d += `M${f(px)} ${f(py)}L${f(qx)} ${f(qy)}L${f(qx + side * nx * size)} ${f(qy + side * ny * size)}L${f(px + side * nx * size)} ${f(py + side * ny * size)}Z`;
+    }
+    set(supports, { d });
+  }
+  function drawGround(scene) {
+    const [x0, , x1] = it.bounds, size = x1 - x0, level = 0;
+    const a = screenOf(x0 - 0.12 * size, level), b = screenOf(x1 + 0.12 * size, level);
+    set(ground, { d: `M${a[0]} ${a[1]}L${b[0]} ${b[1]}` });
+    // a scale, round in metres
+    const wish = 90 / view.k, power = 10 ** Math.floor(Math.log10(wish)), step = [1, 2, 5].map((m) => m * power).filter((v) => v <= wish).pop() ?? power;
+    const x = 14, y = view.h - 14;
+    ruler.replaceChildren(
+      s("path", { d: `M${x} ${y - 4}V${y}H${x + step * view.k}V${y - 4}` }),
+      s("text", { x: x + step * view.k + 6, y: y + 1, text: quantity(step, "m", 1) }),
+    );
+    if (view.theta) ruler.append(s("text", { x: view.w - 14, y: 18, "text-anchor": "end", text: `ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }));
+  }
+  function drawMarks(scene, layers) {
+    const parts = [];
+    const hinge = (h, name) => {
+      const [x, y] = screenOf(...h.at);
+      parts.push(s("circle", { class: `hinge ${name}`, cx: x, cy: y, r: 5.5 }, s("title", { text: `${h.where} (${h.name})` })));
+    };
+    if (!shownPose) {
+      for (const name of ["plus", "minus"]) if (layers[name]) for (const h of scene[`${name}_hinges`] ?? []) hinge(h, name);
+      for (const name of ["plus", "minus"]) if (layers[name]) for (const j of scene[`${name}_sliding`] ?? []) {
+        const [x, y] = screenOf(...j.at);
+        parts.push(s("path", { class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4` }, s("title", { text: `slides: ${j.name}` })));
+      }
+      for (const name of ["least", "most"]) if (layers[name]) for (const at of scene[`${name}_touches`] ?? []) {
+        const [x, y] = screenOf(...at);
+        parts.push(s("rect", { class: `touch ${name}`, x: x - 3, y: y - 3, width: 6, height: 6 }));
+      }
+    }
+    if (layers.reactions && !shownPose) for (const r of scene.reactions ?? []) {
+      const size = Math.hypot(r.x_N, r.y_N) || 1, c = Math.cos(view.theta), n = Math.sin(view.theta);
+      const ux = (c * r.x_N + n * r.y_N) / size, uy = -(c * r.y_N - n * r.x_N) / size;
+      const [x, y] = screenOf(...r.at), long = 20 + (34 * size) / (scene.weight_N || size);
+      const [a, b] = [x - ux * long, y - uy * long], across = [-uy, ux];
+      parts.push(s("path", { class: "reaction", d: `M${a} ${b}L${x} ${y}m${-ux * 8 + across[0] * 4} ${-uy * 8 + across[1] * 4}L${x} ${y}L${x - ux * 8 - across[0] * 4} ${y - uy * 8 - across[1] * 4}` },
+        s("title", { text: `reaction at ${r.name}: ${quantity(r.x_N, "N", 3)} across, ${quantity(r.y_N, "N", 3)} up` })));
+    }
+    marks.replaceChildren(...parts);
+  }
+  function drawLoads(scene) {
+    loads.replaceChildren(...(scene.loads ?? []).filter((l) => l.force_N).map((l) => {
+      const [x, y] = screenOf(...l.at), [a, b] = screenOf(l.at[0], l.at[1] + l.scale * l.force_N);
+      const ux = x - a, uy = y - b, size = Math.hypot(ux, uy) || 1, [vx, vy] = [ux / size, uy / size];
+      return s("path", { class: "load", d: `M${a} ${b}L${x} ${y}M${x - vx * 9 - vy * 4} ${y - vy * 9 + vx * 4}L${x} ${y}L${x - vx * 9 + vy * 4} ${y - vy * 9 - vx * 4}` }, s("title", { text: `load of ${quantity(l.force_N, "N", 4)}` }));
+    }));
+  }
+
+  // Handles
+
+  function drawKnobs(handles, scene) {
+    const wanted = new Map();
+    if (!shownPose) {
+      for (const h of handles) wanted.set(h.name, { ...h, text: Array.isArray(h.value) ? `${number(h.value[0])}; ${number(h.value[1])} m` : quantity(h.value, h.unit), now: Array.isArray(h.value) ? h.value[0] : h.value });
+      if (scene.through && it.layers?.through) {
+        const t = scene.through;
+        wanted.set("through", { name: "through", label: `Thrust line through ${t.name}`, at: t.at, along: "both", text: `at ${number(t.reached, 3)} of the joint, ${quantity(t.thrust_N, "N", 4)}`, now: t.reached, sort: "through" });
+      }
+      const [, , x1] = it.bounds, reach = x1 + 0.1 * (x1 - it.bounds[0]);
+      wanted.set("tilt", { name: "tilt", label: "Tilt of the ground", at: [reach, 0], along: "y", text: `${number(degrees(scene.gamma), 3)}°, ${number(scene.gamma, 3)} g`, now: scene.gamma, sort: "tilt" });
+    }
+    for (const [name, element] of knob) if (!wanted.has(name)) { element.remove(); knob.delete(name); }
+    for (const [name, w] of wanted) {
+      let element = knob.get(name);
+      if (!element) { element = make(name, w); knob.set(name, element); knobs.append(element); }
+      const [x, y] = screenOf(...w.at);
+      if (element.place !== `${x},${y}`) { set(element, { transform: `translate(${x} ${y})` }); element.place = `${x},${y}`; }
+      if (element.now !== w.text) {
+        element.now = w.text;
+        set(element, { "aria-valuenow": number(w.now, 6).replace("−", "-"), "aria-valuetext": w.text });
+        element.tag.textContent = `${w.label}  ${w.text}`;
+        fitTag(element);
+      }
+      element.data = w;
+    }
+  }
+  function fitTag(element) {
+    const width = 12 + element.tag.textContent.length * 6.3;
+    const left = element.data && screenOf(...element.data.at)[0] > view.w - width - 20;
+    set(element.back, { width, x: left ? -width - 12 : 12 });
+    set(element.tag, { x: left ? -width - 6 : 18 });
+  }
+  function make(name, w) {
+    const tag = s("text", { y: -12 }), back = s("rect", { y: -26, height: 20, rx: 4 });
+    const shape = w.along === "x" ? "M-9 0L-4 -5V5ZM9 0L4 -5V5Z" : w.along === "y" ? "M0 -9L-5 -4H5ZM0 9L-5 4H5Z" : "";
+    const element = s("g", { class: `knob ${w.sort ?? ""}`, role: "slider", tabindex: "0", "aria-label": w.label, "data-handle": name, "aria-keyshortcuts": "ArrowLeft ArrowRight ArrowUp ArrowDown Enter" },
+      s("circle", { class: "hit", r: 15 }), shape ? s("path", { class: "arrows", d: shape }) : null, s("circle", { class: "dot", r: w.along === "both" ? 6 : 4 }), s("g", { class: "tag" }, back, tag));
+    element.tag = tag; element.back = back; element.data = w;
+    element.addEventListener("pointerdown", (event) => grab(event, element));
+    element.addEventListener("pointerenter", () => fitTag(element));
+    element.addEventListener("focus", () => fitTag(element));
+    element.addEventListener("dblclick", () => hands.type(name, element.data));
+    element.addEventListener("keydown", (event) => {
+      const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+      if (step) { const m = event.shiftKey ? 10 : 1; hands.step(name, step[0] * m, step[1] * m, element.data); event.preventDefault(); }
+      else if (event.key === "Enter") { hands.type(name, element.data); event.preventDefault(); }
+    });
+    return element;
+  }
+  function grab(event, element) {
+    if (event.button !== 0) return;
+    event.preventDefault();
+    element.focus({ preventScroll: true });
+    element.setPointerCapture(event.pointerId);
+    const edge = svg.getBoundingClientRect(), at = screenOf(...element.data.at);
+    dragging = { name: element.data.name, dx: event.clientX - edge.left - at[0], dy: event.clientY - edge.top - at[1], edge, theta: view.theta };
+    element.classList.add("held");
+    // Raw positions come as the hand moves, those of pointermove wait for the next picture.
+    const kind = "onpointerrawupdate" in window ? "pointerrawupdate" : "pointermove";
+    const move = (e) => moved(e, false);
+    const up = (e) => {
+      element.removeEventListener(kind, move);
+      element.classList.remove("held");
+      if (e.type === "pointerup") moved(e, true);
+      dragging = null;
+      if (it.bounds && outside()) { fit(); redraw(); }
+    };
+    element.addEventListener(kind, move);
+    element.addEventListener("pointerup", up, { once: true });
+    element.addEventListener("pointercancel", up, { once: true });
+  }
+  function moved(event, ends) {
+    if (!dragging) return;
+    const px = event.clientX - dragging.edge.left - dragging.dx, py = event.clientY - dragging.edge.top - dragging.dy;
+    if (dragging.name === "tilt") {
+      const theta = Math.max(-1.2, Math.min(1.2, Math.atan2(py - view.cy, px - view.cx)));
+      hands.tilt(Math.tan(theta), ends, event.timeStamp);
+    } else if (dragging.name === "through") hands.through(modelOf(px, py), ends, event.timeStamp);
+    else hands.drag(dragging.name, modelOf(px, py), ends, event.timeStamp);
+  }
+
+  // Stones that move
+
+  /** Show the stones in a pose; null brings them back. line: points of a thrust line of that pose. */
+  function pose(value, offset = 0, line = null, lineOffset = 0, points = 0) {
+    const was = shownPose;
+    shownPose = value ? { value, offset, line, lineOffset, points } : null;
+    if (!last?.outline) return;
+    if (!value) { set(dynamic, { d: "" }); redraw(); return; }
+    if (!was) redraw(); else drawPose();
+  }
+  function drawPose() {
+    const { value, offset, line, lineOffset, points } = shownPose;
+    set(ghost, { d: stonesPath(last.outline, last.outline_start) });
+    set(stones, { d: stonesPath(last.outline, last.outline_start, last.centroid, value, offset) });
+    let d = "", pen = false;
+    if (line) for (let i = 0; i < points; i += 1) {
+      const x = line[lineOffset + 2 * i], y = line[lineOffset + 2 * i + 1];
+      if (!Number.isFinite(x + y)) { pen = false; continue; }
+      d += `${pen ? "L" : "M"}${f(x)} ${f(y)}`;
+      pen = true;
+    }
+    set(dynamic, { d });
+  }
+  function moving() { return shownPose !== null; }
+  return it;
+}
+export { LINES };

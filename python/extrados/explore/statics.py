@@ -1,0 +1,226 @@
+"""What the page shows of limit analysis: capacity both ways, lines of thrust at a tilt, hinges, mechanism, reactions.
+
+It asks less than the analysis `tilt` does, and hence answers while a hand moves; the numbers are the same.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.limit.common import limit_of
+from extrados.analyses.limit.tables import LimitAnalysisTable
+from extrados.building.building import Building
+from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.limit.answer import CannotStand, assess
+from extrados.limit.graphic import force_polygon, thrust_of
+from extrados.limit.lines import thrust_paths
+from extrados.limit.motion import finite_motion
+from extrados.limit.places import place_of
+from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
+
+#: Of a joint: so near to its end the line makes a hinge
+TOUCHES = 1e-4
+#: Walls of more loops take long: their lines at a tilt are left for when the hand rests
+QUICK_LOOPS = 40
+PICTURES = 13  # of a mechanism that moves
+
+
+@dataclass(frozen=True)
+class View:
+    """What the page wants to see: the tilt as gamma [g]; the chain whose thrust is least and greatest; the place
+    [joint, share] that a line shall pass; which lines are drawn."""
+
+    gamma: float = 0.0
+    chain: str | None = None
+    through: tuple[int, float] | None = None
+    lines: frozenset[str] = frozenset(("least", "most", "through", "plus"))
+
+
+@dataclass
+class Picture:
+    """Words and arrays of a state; `limit` and what it found stay for what is asked of it later."""
+
+    words: dict[str, Any]
+    arrays: dict[str, np.ndarray]
+    assembly: Assembly
+    limit: LimitAnalysis | None = None
+    mechanisms: dict[str, Mechanism] | None = None
+
+
+def geometry(assembly: Assembly, anchor: np.ndarray) -> dict[str, np.ndarray]:
+    """Outlines, joints and centroids, from the anchor [m]."""
+    outlines = assembly.outlines
+    arrays = {
+        "outline": np.concatenate(outlines) - anchor,
+        "outline_start": np.cumsum([0, *map(len, outlines)]),
+        "centroid": assembly.centroid - anchor,
+        "joint_p": assembly.p - anchor,
+        "joint_q": assembly.q - anchor,
+        "joint_block": np.column_stack([assembly.a, assembly.b]),
+    }
+    earth = assembly.earth
+    if earth is not None:
+        line = np.column_stack([earth.line.start, earth.line.end]).reshape(-1, 2)
+        top = [[line[-1, 0], earth.road], [line[0, 0], earth.road]]
+        arrays["earth"] = np.concatenate([line, top]) - anchor
+    return arrays
+
+
+def picture(building: Building, options: LimitAnalysisTable, view: View, anchor: np.ndarray) -> Picture:
+    """The structure and all that is drawn on it; where it cannot stand the words say so and the lines are missing."""
+    assembly = building.blocks()
+    chains = assembly.chains
+    chain = view.chain if view.chain in chains else next(iter(chains), None)
+    words: dict[str, Any] = {
+        "blocks": len(assembly.mass), "joints": len(assembly.a), "depth_m": assembly.depth, "chains": list(chains),
+        "chain": chain, "weight_N": float(assembly.mass.sum()) * 9.80665, "size_m": assembly.size, "gamma": view.gamma,
+        "joint_names": assembly.joint_names if len(assembly.a) <= 400 else [], "measures": assembly.measures,
+    }  # fmt: skip
+    made = Picture(words, geometry(assembly, anchor), assembly)
+    try:
+        limit = limit_of(building, options)
+        made.limit, words["weight_N"] = limit, limit.loads.scale
+        ends = {"plus": limit.collapse(1), "minus": limit.collapse(-1)}
+    except NoEquilibrium:
+        words["stands"] = False
+        return made
+    except Immovable as error:
+        words |= {"stands": True, "immovable": str(error)}
+        return made
+    except (NoAnswer, Refused) as error:
+        words |= {"stands": None, "unknown": str(error)}
+        return made
+    plus, minus = ends["plus"][0].gamma, -ends["minus"][0].gamma
+    words["capacity"] = {"plus_g": plus, "minus_g": minus}
+    words["stands"] = plus >= 0.0 and minus >= 0.0
+    made.mechanisms = {name: mechanism for name, (_, mechanism) in ends.items()}
+    for name, (state, mechanism) in ends.items():
+        if name in view.lines:
+            _line(made, name, state, anchor)
+        made.arrays[f"{name}_velocity"] = mechanism.velocity
+        words[f"{name}_hinges"] = _hinges(assembly, mechanism, anchor)
+        words[f"{name}_sliding"] = [
+            {"name": assembly.joint_names[j], "at": (assembly.middle[j] - anchor).tolist()} for j in mechanism.sliding
+        ]
+    words["required_friction"] = float(ends["plus"][0].friction.max())
+    if not -minus <= view.gamma <= plus:
+        words["within"] = False
+        words["reactions"] = _reactions(assembly, ends["plus" if view.gamma > plus else "minus"][0], anchor)
+        _polygon(made, ends["plus" if view.gamma > plus else "minus"][0], chain)
+        return made
+    words["within"] = True
+    quick = len(assembly.a) - len(assembly.mass) <= QUICK_LOOPS
+    shown: State | None = None
+    if chain is not None and quick:
+        try:
+            least, most = limit.thrust(chains[chain], view.gamma)
+            for name, state in (("least", least), ("most", most)):
+                if name in view.lines:
+                    _line(made, name, state, anchor)
+                words[f"{name}_N"] = thrust_of(assembly, state, chains[chain])
+                words[f"{name}_touches"] = _touches(assembly, state, anchor)
+            shown = least
+            if view.through is not None and "through" in view.lines and view.through[0] < len(assembly.a):
+                shown = limit.through(*view.through, view.gamma)
+                _line(made, "through", shown, anchor)
+                joint = view.through[0]
+                at = shown.points(assembly)[joint] - anchor
+                words["through"] = {
+                    "joint": joint, "name": assembly.joint_names[joint], "wanted": view.through[1],
+                    "reached": float(shown.position[joint]), "at": at.tolist(),
+                    "thrust_N": thrust_of(assembly, shown, chains[chain]),
+                }  # fmt: skip
+        except (NoEquilibrium, NoAnswer) as error:
+            words["remark"] = str(error)
+    shown = shown or ends["plus"][0]
+    words["reactions"] = _reactions(assembly, shown, anchor)
+    words["reactions_of"] = "through" if "through" in words else "least" if shown is not ends["plus"][0] else "plus"
+    _polygon(made, shown, chain)
+    return made
+
+
+def detail(made: Picture, anchor: np.ndarray) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """What takes longer than a movement of a hand: mechanisms carried on, the geometric safety factor, or why the
+    structure cannot stand."""
+    words: dict[str, Any] = {}
+    arrays: dict[str, np.ndarray] = {}
+    limit, assembly = made.limit, made.assembly
+    if limit is None:
+        return words, arrays
+    if made.words["stands"] is None:
+        return words, arrays
+    if not made.words["stands"]:
+        try:
+            assess(assembly, limit=limit)
+        except (CannotStand, NoEquilibrium, NoAnswer, Immovable) as error:
+            words["why"] = str(error)
+        return words, arrays
+    shift = np.append(anchor, 0.0)
+    for name, mechanism in (made.mechanisms or {}).items():
+        most = finite_motion(assembly, mechanism)
+        arrays[f"{name}_pose"] = most - shift
+    if len(assembly.a) - len(assembly.mass) <= QUICK_LOOPS:
+        try:
+            state, part = limit.central(0.0)
+            words["safety"] = 1.0 / part if part > 1e-6 else None
+            _line(made, "central", state, anchor)
+            arrays |= {key: value for key, value in made.arrays.items() if key.startswith("central_")}
+        except (NoEquilibrium, NoAnswer) as error:
+            words["remark"] = str(error)
+    return words, arrays
+
+
+def _line(made: Picture, name: str, state: State, anchor: np.ndarray) -> None:
+    """The line of a state through every stone: NAME_line and NAME_start, the first vertex of each of its pieces."""
+    assert made.limit is not None
+    paths = thrust_paths(made.assembly, made.limit.loads, state)
+    points = [path.points for path in paths] or [np.empty((0, 2))]
+    made.arrays[f"{name}_line"] = np.concatenate(points) - anchor
+    made.arrays[f"{name}_start"] = np.cumsum([0, *map(len, points)])
+
+
+def _hinges(assembly: Assembly, mechanism: Mechanism, anchor: np.ndarray) -> list[dict[str, Any]]:
+    """Where a mechanism turns, in words and places."""
+    found = []
+    for j, side in mechanism.hinges:
+        point = assembly.p[j] + mechanism.pivot[j] * (assembly.q[j] - assembly.p[j])
+        found.append(
+            {"name": assembly.joint_names[j], "side": side, "where": place_of(assembly, j, point), "at": (point - anchor).tolist()}
+        )  # fmt: skip
+    return found
+
+
+def _touches(assembly: Assembly, state: State, anchor: np.ndarray) -> list[list[float]]:
+    """Where the line of a state touches the ends of joints."""
+    pressed = state.normal > 1e-6 * state.normal.max()
+    edge = pressed & (np.minimum(state.position, 1.0 - state.position) < TOUCHES)
+    return (state.points(assembly)[edge] - anchor).tolist()
+
+
+def _reactions(assembly: Assembly, state: State, anchor: np.ndarray) -> list[dict[str, Any]]:
+    """Forces of the ground on the structure, and where they act."""
+    points, force = state.points(assembly), state.force(assembly)
+    on_b = assembly.a == GROUND
+    return [
+        {"name": assembly.joint_names[j], "at": (points[j] - anchor).tolist(), "x_N": float(f[0]), "y_N": float(f[1])}
+        for j in np.flatnonzero(on_b | (assembly.b == GROUND)).tolist()
+        for f in [-force[j] if on_b[j] else force[j]]
+    ]
+
+
+def _polygon(made: Picture, state: State, chain: str | None) -> None:
+    """Rays of the force polygon of a chain [N]."""
+    if chain is not None:
+        made.arrays["polygon"] = force_polygon(made.assembly, state, made.assembly.chains[chain])
+
+
+def nearest(assembly: Assembly, point: np.ndarray, chain: str | None) -> tuple[int, float]:
+    """The joint of a chain (of all, where none is given) nearest to a point, and the share of it there."""
+    joints = np.array(assembly.chains[chain] if chain in assembly.chains else range(len(assembly.a)))
+    p, along = assembly.p[joints], (assembly.q - assembly.p)[joints]
+    share = np.clip(((point - p) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
+    k = int(np.hypot(*(p + share[:, None] * along - point).T).argmin())
+    return int(joints[k]), float(share[k])
+

@@ -1,0 +1,393 @@
+"""What the page shows of stored runs: words, charts and bodies that move, chosen by kind from the arrays that are there;
+and the keys of a deck as a form."""
+
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from extrados.decks.reader import Deck
+from extrados.plots.sla import CORNERS
+from extrados.results.store import Stored, StoreError
+from extrados.schema.constants import GRAVITY
+from extrados.schema.table import Table
+
+__all__ = ["StoreError", "forms", "shown", "unit_of"]
+
+MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
+#: Sections of the form, those of the building first
+SECTIONS = ("structure", "motion", "joints", "material", "supports", "initial")
+Arrays = dict[str, np.ndarray]
+Chart = dict[str, Any]
+
+
+@lru_cache(maxsize=64)
+def _properties(model: type[Table]) -> tuple[dict[str, Any], dict[str, Any]]:
+    schema = model.model_json_schema()
+    return schema.get("properties", {}), schema.get("$defs", {})
+
+
+def _branches(about: dict[str, Any]) -> list[dict[str, Any]]:
+    found = [about, *about.get("anyOf", [])]
+    return found + [b["items"] for b in found if isinstance(b.get("items"), dict)]
+
+
+def unit_of(table: Table, way: list[str]) -> tuple[str, bool]:
+    """The unit of the key that a way leads to within a table, and whether a number may stand there without it."""
+    properties, definitions = _properties(type(table))
+    about: dict[str, Any] = {}
+    for part in way:
+        if part.isdecimal():
+            continue
+        if part not in properties:
+            return "", True
+        about = properties[part]
+        reference = next((b["$ref"] for b in _branches(about) if "$ref" in b), None)
+        if reference is not None:
+            properties = definitions[reference.rsplit("/", 1)[1]].get("properties", {})
+    found = next((b for b in _branches(about) if "unit" in b), {})
+    return found.get("unit", ""), found.get("bare", True)
+
+
+def forms(deck: Deck) -> list[dict[str, Any]]:
+    """Keys of a deck with single values: section, key, value as it stands or its default, unit, choices, meaning."""
+    tables = {"structure": deck.structure, "motion": deck.motion} | {
+        name: getattr(deck.building, name) for name in SECTIONS[2:]
+    }
+    found = []
+    for section in SECTIONS:
+        table = tables[section]
+        if table is None:
+            continue
+        given = deck.data.get(section, {})
+        for key, about in _properties(type(table))[0].items():
+            branches = _branches(about)
+            if key == "kind" or any("$ref" in b or b.get("type") in ("array", "object") for b in branches):
+                continue
+            choices = [c for b in branches for c in (*b.get("enum", ()), *([b["const"]] if "const" in b else []))]
+            sorts = {b.get("type") for b in branches}
+            found.append(
+                {
+                    "section": section, "key": key, "value": given.get(key, getattr(table, key)), "given": key in given,
+                    "unit": next((b["unit"] for b in branches if "unit" in b), ""), "choices": choices,
+                    "sort": "choice" if choices and not sorts & {"number", "integer"} else "yes" if "boolean" in sorts else "text",
+                    "about": about.get("description", ""), "number": bool(sorts & {"number", "integer"}),
+                }
+            )  # fmt: skip
+    return found
+
+
+def _axis(array: str, label: str, unit: str, factor: float = 1.0) -> dict[str, Any]:
+    return {"array": array, "label": label, "unit": unit, "factor": factor}
+
+
+def _series(array: str, label: str, **more: Any) -> dict[str, Any]:
+    return {"array": array, "label": label, **more}
+
+
+def _chart(title: str, x: dict[str, Any], y: dict[str, Any], series: list[dict[str, Any]], **more: Any) -> Chart:
+    return {"title": title, "x": x, "y": {k: v for k, v in y.items() if k != "array"}, "series": series, **more}
+
+
+def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
+    """Words of a run and, where an analysis is named, its charts, its body and the arrays that these name."""
+    rows = [
+        {k: row.get(k) for k in ("name", "kind", "status", "reason", "answer", "warnings", "verdict", "seconds")}
+        for row in run.analyses
+    ]
+    deck = run.summary["deck"]
+    words: dict[str, Any] = {"title": deck.get("title") or deck["path"], "deck": deck["path"], "analyses": rows}
+    if name is None:
+        return words, {}
+    if name not in run.arrays:
+        raise StoreError(f"the run has no analysis {name[:60]!r} with arrays")
+    kind = run.analysis(name)["kind"]
+    arrays = {key: array.data for key, array in run.arrays[name].items()}
+    made = _Maker(run, name, arrays)
+    try:
+        getattr(made, kind.replace("-", "_"), made.others)()
+    except KeyError as error:
+        raise StoreError(f"the results of {name} lack the array {error}") from None
+    numbers = [[k, v] for k, v in run.analysis(name)["results"].items() if isinstance(v, int | float | str | None)]
+    words |= {"analysis": name, "kind": kind, "charts": made.charts, "body": made.body, "numbers": numbers[:60]}
+    return words, made.out
+
+
+class _Maker:
+    """Collects what the page is sent of one analysis."""
+
+    def __init__(self, run: Stored, name: str, arrays: Arrays):
+        self.run, self.name, self.arrays = run, name, arrays
+        self.out: Arrays = {}
+        self.charts: list[Chart] = []
+        self.body: dict[str, Any] | None = None
+
+    def send(self, *names: str, keep: slice | np.ndarray = slice(None)) -> None:
+        """Send arrays as they are, or some of their rows."""
+        for name in names:
+            if name in self.arrays:
+                self.out[name] = self.arrays[name][keep]
+
+    def _over_time(self, count: int) -> slice:
+        return slice(None, None, max(1, -(-count // MOST_POINTS)))
+
+    def _stones(self) -> None:
+        for name in ("outline", "outline_start", "centroid"):
+            if name not in self.arrays:
+                raise KeyError(name)
+            self.out[name] = self.arrays[name]
+
+    def _moving(self, time: np.ndarray, pose: np.ndarray, unit: str, label: str, **lines: np.ndarray) -> None:
+        """A body of stones that moves along `time`."""
+        self._stones()
+        self.out |= {"body_time": time, "body_pose": pose, **{f"body_{k}": v for k, v in lines.items()}}
+        self.body = {"sort": "stones", "unit": unit, "label": label, "line": "line" in lines}
+
+    def _lines(self, *names: str) -> list[dict[str, str]]:
+        """Stored lines of thrust, of states that are named."""
+        words = {"collapse": "at collapse, load to +x", "least": "least thrust", "most": "greatest thrust", "central": "most central"}
+        found = []
+        for name in names:
+            if f"{name}_line" in self.arrays:
+                self.out[f"{name}_line"], self.out[f"{name}_start"] = (
+                    self.arrays[f"{name}_line"], self.arrays[f"{name}_line_start"]
+                )  # fmt: skip
+                found.append({"name": name, "label": words[name]})
+        return found
+
+    # Kinds
+
+    def tilt(self) -> None:
+        self._stones()
+        rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
+        lines = self._lines("collapse", "least", "most")
+        if "mechanism_pose" in self.arrays:
+            share = np.linspace(0.0, 1.0, 24)[:, None, None]
+            self.out["body_time"] = share[:, 0, 0]
+            self.out["body_pose"] = rest + share * (self.arrays["mechanism_pose"] - rest)
+        self.body = {"sort": "stones", "unit": "", "label": "mechanism", "lines": lines, "swings": True}
+        if "collapse_friction" in self.arrays:
+            self.out["joint"] = np.arange(len(self.arrays["collapse_friction"]))
+            self.send("collapse_friction", "collapse_normal")
+            self.charts.append(
+                _chart("Friction needed at collapse", _axis("joint", "joint", ""), _axis("", "coefficient of friction", ""),
+                       [_series("collapse_friction", "needed", sort="points")])
+            )  # fmt: skip
+
+    def thrust(self) -> None:
+        self._stones()
+        self.body = {"sort": "stones", "unit": "", "label": "", "lines": self._lines("least", "most", "central")}
+
+    def rocking(self) -> None:
+        keep = self._over_time(len(self.arrays["time"]))
+        self.send("time", "rotation", "ground", "kinetic", "potential", "ledger", keep=keep)
+        self.send("impact_time")
+        time = _axis("time", "time", "s")
+        self.charts += [
+            _chart("Rotation", time, _axis("", "rotation", "mrad"), [_series("rotation", "rotation", factor=1e3)],
+                   marks="impact_time", cursor=True),
+            _chart("Ground", time, _axis("", "acceleration", "g"), [_series("ground", "ground", factor=1 / GRAVITY)], cursor=True),
+            _chart("Energy", time, _axis("", "energy", "J"),
+                   [_series("kinetic", "kinetic"), _series("potential", "potential"), _series("ledger", "supplied less lost", dashed=True)],
+                   cursor=True),
+        ]  # fmt: skip
+        if "film_time" in self.arrays:
+            lines = {"line": self.arrays["film_line"]} if "film_line" in self.arrays else {}
+            self._moving(self.arrays["film_time"], self.arrays["film_pose"], "s", "time", **lines)
+        elif "snapshot_time" in self.arrays and len(self.arrays["snapshot_time"]):
+            lines = {"line": self.arrays["snapshot_thrust"]} if "snapshot_thrust" in self.arrays else {}
+            self._moving(self.arrays["snapshot_time"], self.arrays["snapshot_pose"], "s", "time", **lines)
+
+    def dem(self) -> None:
+        time = self.arrays["time"]
+        keep = slice(None, None, max(1, -(-len(time) // MOST_PICTURES)))
+        if "place" in self.arrays:
+            self._moving(time[keep], self.arrays["place"][keep], "s", "time")
+            if "support_outline" in self.arrays:
+                self.send("support_outline", "support_start")
+        fine = self._over_time(len(time))
+        self.out["time"] = time[fine]
+        axis = _axis("time", "time", "s")
+        if "rotation" in self.arrays:
+            tracked = self.arrays["tracked"][:6]
+            rows = []
+            for i, label in zip(tracked.tolist(), list(self.run[self.name].peak_rotation_rad), strict=False):
+                self.out[f"rotation_{i}"] = self.arrays["rotation"][fine, i]
+                rows.append(_series(f"rotation_{i}", label, factor=1e3))
+            self.charts.append(_chart("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True))
+        if "ground" in self.arrays:
+            self.out["ground"] = self.arrays["ground"][fine]
+            self.charts.append(
+                _chart("Ground", axis, _axis("", "acceleration", "g"), [_series("ground", "ground", factor=1 / GRAVITY)], cursor=True)
+            )
+        energies = [k for k in ("work", "kinetic", "potential", "elastic", "damping", "friction") if f"{k}_energy" in self.arrays]
+        for kind in energies:
+            self.out[f"{kind}_energy"] = self.arrays[f"{kind}_energy"][fine]
+        if energies:
+            self.charts.append(
+                _chart("Energy", axis, _axis("", "energy", "kJ"), [_series(f"{k}_energy", k, factor=1e-3) for k in energies], cursor=True)
+            )
+
+    def supports(self) -> None:
+        if "movement" in self.arrays and "force" in self.arrays:
+            self.send("movement")
+            self.out["force_x"], self.out["force_y"] = self.arrays["force"].T
+            rows = [_series("force_x", "horizontal", factor=1e-3), _series("force_y", "vertical", factor=1e-3)]
+            self.charts.append(
+                _chart("Force on the support", _axis("movement", "movement of the support", "mm", 1e3), _axis("", "force", "kN"), rows, cursor=True)
+            )
+        if "film_movement" in self.arrays:
+            self._moving(1e3 * self.arrays["film_movement"], self.arrays["film_pose"], "mm", "movement", line=self.arrays["film_line"])
+        elif "shown_pose" in self.arrays:
+            self._moving(1e3 * self.arrays["shown_movement"], self.arrays["shown_pose"], "mm", "movement", line=self.arrays["shown_point"])
+        elif "settled_pose" in self.arrays:
+            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
+            share = np.linspace(0.0, 1.0, 24)
+            self._moving(share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement")
+
+    def sla(self) -> None:
+        self._curve()
+        if "state_event" not in self.arrays:
+            return
+        events = self.arrays["state_event"]
+        pick = np.unique(np.linspace(0, len(events) - 1, min(len(events), MOST_STATES)).round().astype(int))
+        polygons = [
+            a.data[:, : CORNERS[a.data.shape[1]]] for a in self.run.series(self.name, "elements")
+        ]
+        self.out["node"] = self.arrays["node"]
+        self.out["element"] = np.concatenate([p.ravel() for p in polygons])
+        self.out["element_start"] = np.cumsum([0, *(n for p in polygons for n in [p.shape[1]] * len(p))])
+        self.out["body_time"] = events[pick]
+        self.out["state_load"] = self.arrays["state_load"][pick]
+        self.out["state_moved"] = self.arrays["state_displacement"][pick]
+        for field in ("width_n", "width_s", "angle"):
+            if f"state_{field}" in self.arrays:
+                self.out[f"state_{field}"] = self.arrays[f"state_{field}"][pick]
+        self.send("point_xy", "point_element", "point_reach", "point_band")
+        self.body = {"sort": "mesh", "unit": "", "label": "event"}
+
+    def _curve(self) -> None:
+        series, axis = [], _axis("event_displacement", "displacement", "mm", 1e3)
+        if "event_displacement" not in self.arrays:
+            return
+        fine = self.arrays["event_equilibrium"] > 0 if "event_equilibrium" in self.arrays else slice(None)
+        for kind, label, more in (("event", "every event", {"faint": True}), ("envelope", "envelope", {})):
+            if f"{kind}_load" in self.arrays:
+                part = fine if kind == "event" else slice(None)
+                x, y = self.arrays[f"{kind}_displacement"][part], self.arrays[f"{kind}_load"][part]
+                thin = slice(None, None, max(1, -(-len(x) // MOST_POINTS)))
+                self.out[f"{kind}_displacement"], self.out[f"{kind}_load"] = x[thin], y[thin]
+                series.append(_series(f"{kind}_load", label, x=f"{kind}_displacement", factor=1e-3, **more))
+        if "measured_displacement" in self.arrays:
+            self.send("measured_displacement", "measured_least", "measured_greatest")
+            series.append(
+                _series("measured_greatest", "measured", x="measured_displacement", lower="measured_least", factor=1e-3, sort="band")
+            )
+        self.charts.append(_chart("Load and displacement", axis, _axis("", "load", "kN"), series, trace="state"))
+
+    def fragility(self) -> None:
+        a = self.arrays
+        if "grid" in a:
+            unit = self.run.arrays[self.name]["grid"].unit
+            about = self.run.arrays[self.name]["grid"].about
+            rows = []
+            for stage in ("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_"):
+                words = stage.strip("_").replace("_", " ") or "collapse"
+                low = f"{stage}lower" if stage else "curve_lower"
+                high = low.replace("lower", "upper")
+                if low in a and high in a:
+                    self.send(low, high)
+                    rows.append(_series(high, f"band of {words}", lower=low, sort="band"))
+                if f"{stage}curve" in a:
+                    self.send(f"{stage}curve")
+                    rows.append(_series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_")))
+            self.send("grid", "stripe_level", "stripe_collapse_probability")
+            if "stripe_level" in a:
+                rows.append(_series("stripe_collapse_probability", "share that came down", x="stripe_level", sort="points"))
+            self.charts.append(_chart("Fragility", _axis("grid", about or "intensity", unit), _axis("", "probability", ""), rows, least=0.0, most=1.0))
+        if "duration" in a and "lower" in a:
+            self.send("duration", "lower", "upper")
+            rows = [_series("upper", "95 % interval", lower="lower", sort="band")]
+            for key in a:
+                if key not in ("duration", "lower", "upper") and np.shape(a[key]) == np.shape(a["duration"]):
+                    self.send(key)
+                    rows.append(_series(key, key.replace("_", " "), sort="both"))
+            self.charts.append(_chart("Over durations", _axis("duration", "duration", "s"), _axis("", "share", ""), rows, least=0.0, most=1.0))
+        if "bin_edge" in a and "bin_count" in a:
+            self.out["bin_middle"] = 0.5 * (a["bin_edge"][1:] + a["bin_edge"][:-1])
+            self.send("bin_count")
+            self.charts.append(
+                _chart("Greatest rotations", _axis("bin_middle", "greatest rotation over the critical one", ""),
+                       _axis("", "runs", ""), [_series("bin_count", "runs", sort="bars")], least=0.0)
+            )  # fmt: skip
+        if "pga" in a and "peak_ratio" in a:
+            keep = self._over_time(len(a["pga"]))
+            self.send("pga", "peak_ratio", keep=keep)
+            self.charts.append(
+                _chart("Members", _axis("pga", "peak ground acceleration", "g"), _axis("", "rotation over critical", ""),
+                       [_series("peak_ratio", "members", sort="points")])
+            )  # fmt: skip
+
+    def failure_domain(self) -> None:
+        self.send("duration", "mode_I", "mode_II")
+        rows = [_series(k, k.replace("_", " ")) for k in ("mode_I", "mode_II") if k in self.arrays]
+        heat = None
+        if "outcome" in self.arrays:
+            self.out["codes"] = self.arrays["outcome"].astype(np.uint8)
+            self.send("amplitude")
+            heat = {"codes": "codes", "x": "duration", "y": "amplitude"}
+        self.charts.append(
+            _chart("Failure domain", _axis("duration", "duration of the pulse", "s"), _axis("", "amplitude", "g"), rows, heat=heat, least=0.0)
+        )
+
+    def dem_domain(self) -> None:
+        rows = []
+        for k, label in enumerate(np.asarray(self.arrays["curve"]).astype(str).tolist()):
+            self.out[f"shortest_{k}"] = self.arrays["shortest"][k]
+            rows.append(_series("amplitude", label, x=f"shortest_{k}", sort="both"))
+        for mode in ("mode_I", "mode_II"):
+            if mode in self.arrays:
+                self.send(mode)
+                rows.append(_series("amplitude", f"four hinges, {mode.replace('_', ' ')}", x=mode, dashed=True))
+        self.send("amplitude")
+        self.charts.append(
+            _chart("Shortest failing pulses", _axis("shortest_0", "duration", "s"), _axis("", "amplitude", "g"), rows, least=0.0)
+        )
+
+    def sweep(self) -> None:
+        self.send("value", "gamma", "fractured", "buttress_alone")
+        words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
+        rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
+        about = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
+        unit = self.run.arrays[self.name]["value"].unit
+        self.charts.append(_chart("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows))
+
+    def moving_load(self) -> None:
+        self.send("place", "capacity")
+        self.charts.append(
+            _chart("Load that brings it down", _axis("place", "place of the first axle", "m"), _axis("", "load", "kN"),
+                   [_series("capacity", "capacity", factor=1e-3)])
+        )  # fmt: skip
+        if "mechanism_pose" in self.arrays and "outline" in self.arrays:
+            rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
+            share = np.linspace(0.0, 1.0, 24)
+            self._moving(share, rest + share[:, None, None] * (self.arrays["mechanism_pose"] - rest), "", "mechanism")
+
+    def others(self) -> None:
+        """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""
+        found = self.run.arrays[self.name]
+        axes = {n: a for n, a in found.items() if a.dims == (n,) and np.size(a.data) > 1 and np.asarray(a.data).dtype.kind in "fiu"}
+        for axis, about in axes.items():
+            rows = [
+                n for n, a in found.items() if a.dims == (axis,) and n != axis and np.asarray(a.data).dtype.kind in "fiu"
+            ]
+            keep = self._over_time(np.size(about.data))
+            for unit in dict.fromkeys(found[n].unit for n in rows):
+                some = [n for n in rows if found[n].unit == unit][:6]
+                self.send(axis, *some, keep=keep)
+                self.charts.append(
+                    _chart(", ".join(n.replace("_", " ") for n in some), _axis(axis, axis.replace("_", " "), about.unit),
+                           _axis("", some[0].replace("_", " ") if len(some) == 1 else "", unit),
+                           [_series(n, n.replace("_", " ")) for n in some])
+                )  # fmt: skip
+        self.charts = self.charts[:12]

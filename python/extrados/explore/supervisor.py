@@ -1,0 +1,70 @@
+"""`extrados explore`: keeps the serving process alive at one address, so that pages find their way back.
+
+The socket and the token belong to this process, which computes nothing and hence does not die of it.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import webbrowser
+from collections.abc import Callable
+from pathlib import Path
+
+from extrados.explore import server
+
+#: Where pages are served unless that is taken
+PORT = 8737
+#: Deaths within so many seconds that are too many to begin anew
+MOST_DEATHS, WITHIN = 5, 60.0
+
+
+def explore(
+    folder: Path, deck: str | None, port: int | None, browser: bool, say: Callable[[str], None]
+) -> int:  # fmt: skip
+    """Serve pages on a working folder until Ctrl-C; the exit code."""
+    token = server.new_token()
+    with server.listen(PORT if port is None else port) as sock:
+        address = f"http://127.0.0.1:{sock.getsockname()[1]}/{token}/"
+        say(f"Page:    {address}")
+        say(f"Folder:  {folder}")
+        say("Ctrl-C ends it.")
+        environment = {
+            **os.environ,
+            "EXTRADOS_EXPLORE": json.dumps(
+                {"socket": sock.fileno(), "token": token, "folder": str(folder), "deck": deck}
+            ),
+        }
+        deaths: list[float] = []
+        while True:
+            child = subprocess.Popen(
+                [sys.executable, "-m", "extrados.explore.server"], pass_fds=[sock.fileno()], env=environment
+            )
+            if browser and not deaths:
+                webbrowser.open(address)
+            try:
+                code = child.wait()
+            except KeyboardInterrupt:
+                _end(child)
+                return 0
+            if code in (0, -signal.SIGINT):
+                return 0
+            now = time.monotonic()
+            deaths = [t for t in deaths if now - t < WITHIN] + [now]
+            if len(deaths) >= MOST_DEATHS:
+                say(f"the server died {len(deaths)} times within a minute, last with code {code}: given up")
+                return 3
+            say(f"the server died (code {code}): it is begun anew, and open pages come back with their state")
+            time.sleep(0.2 * len(deaths))
+
+
+def _end(child: subprocess.Popen) -> None:
+    """End the serving process, politely first."""
+    child.send_signal(signal.SIGINT)
+    try:
+        child.wait(5.0)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        child.wait()

@@ -1,0 +1,430 @@
+"""The interactive page as hands use it: drags, keys, typing, undo, motion, results, files, a server that dies."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from typing import Any
+
+import pytest
+from conftest import SHOTS, Served
+
+import extrados
+
+DXF_UNIT = 6  # metres
+
+
+def drag(page: Any, selector: str, dx: float, dy: float, steps: int = 8) -> None:
+    box = page.locator(selector).bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    for k in range(1, steps + 1):
+        page.mouse.move(x + dx * k / steps, y + dy * k / steps)
+    page.mouse.up()
+
+
+def until(page: Any, condition: str, arg: Any = None, timeout: float = 60_000) -> None:
+    """Wait for a condition; Playwright's own waiting evaluates text in the page, which its policy forbids."""
+    end = time.monotonic() + timeout / 1000
+    while not page.evaluate(condition, arg):
+        assert time.monotonic() < end, f"waited in vain for {condition}"
+        page.wait_for_timeout(40)
+
+
+def settled(page: Any) -> str:
+    """The deck's text once the hand rests."""
+    page.wait_for_timeout(60)
+    until(page, "window.extrados.resting === false")
+    return page.evaluate("window.extrados.text")
+
+
+def capacity(page: Any) -> float:
+    return page.evaluate("window.extrados.scene.capacity.plus_g")
+
+
+def open_text(page: Any, text: str) -> None:
+    page.evaluate("text => window.extrados.open({ text, name: 'deck.toml' })", text)
+    until(page, "text => window.extrados.text === text", arg=text)
+
+
+def test_a_drag_changes_the_structure_and_its_answer(page: Any) -> None:
+    before = capacity(page)
+    drag(page, "[data-handle=thickness] .hit", 0, -20)
+    until(page, "before => window.extrados.scene.capacity.plus_g > before * 1.2", arg=before)
+    text = settled(page)
+    thickness = float(re.search(r"thickness = ([\d.]+)", text)[1])
+    assert thickness > 0.8
+    run = extrados.run(_data(text))
+    assert run["tilt"].collapse_acceleration_g == pytest.approx(capacity(page), rel=1e-12)
+    assert f"{capacity(page):.4g} g" in page.locator("[data-number=plus]").inner_text()
+
+
+def test_span_rise_and_angle_follow_the_hand(page: Any) -> None:
+    for name, dx, dy in (("span", -30, 0), ("rise", 0, 30), ("embrace", 0, -40), ("radius", -10, -10)):
+        before = settled(page)
+        at = page.locator(f"[data-handle={name}] .dot").bounding_box()
+        drag(page, f"[data-handle={name}] .hit", dx, dy)
+        assert settled(page) != before, name
+        now = page.locator(f"[data-handle={name}] .dot").bounding_box()
+        moved = (now["x"] - at["x"]) * dx + (now["y"] - at["y"]) * dy
+        assert moved > 0.25 * (dx * dx + dy * dy), f"{name} does not follow: {at} {now}"
+
+
+def test_keys_move_a_handle_and_typing_sets_it(page: Any) -> None:
+    page.locator("[data-handle=thickness]").focus()
+    page.keyboard.press("ArrowUp")
+    page.keyboard.press("ArrowUp")
+    assert float(re.search(r"thickness = ([\d.]+)", settled(page))[1]) > 0.75
+    page.locator("[data-handle=thickness]").focus()
+    page.keyboard.press("Enter")
+    page.fill("dialog input", "60 cm")
+    page.keyboard.press("Enter")
+    until(page, "window.extrados.text.includes('thickness = 0.6')")
+    page.click("[data-side=sizes]")
+    page.fill("#field-structure-radius", "400 cm")
+    page.keyboard.press("Tab")
+    until(page, """window.extrados.text.includes('radius = "400 cm"')""")
+    page.fill("#field-structure-radius", "400 kg")
+    page.keyboard.press("Tab")
+    page.wait_for_selector(".status.bad")
+    assert "kg" in page.locator(".status").inner_text()
+    assert 'radius = "400 cm"' in settled(page), "what is wrong changes nothing"
+
+
+def test_undo_and_redo(page: Any) -> None:
+    first = settled(page)
+    drag(page, "[data-handle=thickness] .hit", 0, -15)
+    until(page, "t => window.extrados.text !== t", arg=first)
+    second = settled(page)
+    page.keyboard.press("Control+z")
+    until(page, "t => window.extrados.text === t", arg=first)
+    page.keyboard.press("Control+Shift+z")
+    until(page, "t => window.extrados.text === t", arg=second)
+
+
+def test_a_line_through_a_point_and_the_tilt(page: Any) -> None:
+    box = page.locator(".stones").bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 24)
+    until(page, "window.extrados.scene.through")
+    reached = page.evaluate("window.extrados.scene.through")
+    assert reached["reached"] == pytest.approx(reached["wanted"], abs=1e-6)
+    scene = page.evaluate("window.extrados.scene")
+    assert scene["least_N"] < reached["thrust_N"] < scene["most_N"]
+    page.locator("[data-handle=tilt]").focus()
+    for _ in range(4):
+        page.keyboard.press("Shift+ArrowDown")
+    until(page, "window.extrados.scene.gamma > 0.19")
+    page.keyboard.press("Shift+ArrowDown")
+    for _ in range(4):
+        page.keyboard.press("Shift+ArrowDown")
+    until(page, "window.extrados.scene.within === false")
+    assert "comes down" in page.locator(".answer").inner_text()
+
+
+def test_the_deck_is_edited_as_text_and_complained_of_by_line(page: Any) -> None:
+    page.click("[data-side=deck]")
+    area = page.locator("textarea")
+    text = area.input_value()
+    area.fill(text.replace("thickness = 0.75", "thickness = 0.5"))
+    until(page, "window.extrados.scene.capacity.plus_g < 0.2")
+    area.fill(text.replace("thickness = 0.75", "thicknes = 0.5"))
+    page.wait_for_selector(".complaints li")
+    assert "thickness" in page.locator(".complaints").inner_text()
+    assert ".toml:6: structure.thicknes: unknown key" in page.locator(".complaints").inner_text()
+
+
+def test_all_presets_open_or_say_why_not(page: Any) -> None:
+    names = page.evaluate("window.extrados.welcome.presets.map(p => p.name)")
+    assert len(names) > 80
+    told = page.evaluate(
+        """async names => {
+            const bad = {};
+            for (const preset of names) await new Promise(done => window.extrados.ask({ do: "open", preset }, { reply: words => {
+                if (words.bad || words.complaints) bad[preset] = (words.complaints ?? [words.bad]).join();
+                done();
+            } }));
+            return bad;
+        }""",
+        names,
+    )
+    assert told == {}
+
+
+def test_the_deck_goes_out_and_in_again_with_the_numbers_of_a_run(page: Any, served: Served) -> None:
+    page.evaluate("window.extrados.open({ preset: 'vault/dejong-a' })")
+    page.wait_for_selector("[data-handle=buttress_width]")
+    drag(page, "[data-handle=buttress_width] .hit", 18, 0)
+    text = settled(page)
+    shown = capacity(page)
+    assert "buttress_width" in text
+    page.keyboard.press("Control+s")
+    page.fill("dialog input[type=text]", "mine/vault.toml")
+    page.click("dialog button[type=submit]")
+    until(page, "window.extrados.source.path === 'mine/vault.toml'")
+    subprocess.run(
+        [sys.executable, "-m", "extrados", "run", "mine/vault.toml", "--quiet", "--no-figures"], cwd=served.folder,
+        check=True, timeout=300,
+    )  # fmt: skip
+    run = extrados.load(served.folder / "results" / "vault")
+    assert run["tilt"].collapse_acceleration_g == pytest.approx(shown, rel=1e-12)
+    page.evaluate("window.extrados.open({ preset: 'limit/arch-120' })")
+    page.evaluate("window.extrados.open({ path: 'mine/vault.toml' })")
+    until(page, "window.extrados.name === 'vault.toml'")
+    assert capacity(page) == shown
+
+
+def test_a_drawing_is_dropped_and_its_vertices_are_moved(page: Any) -> None:
+    ezdxf = pytest.importorskip("ezdxf")
+    drawing = ezdxf.new()
+    drawing.header["$INSUNITS"] = DXF_UNIT
+    space = drawing.modelspace()
+    space.add_lwpolyline([(0, 0), (1, 0), (1, 3), (0, 3)], close=True)
+    space.add_lwpolyline([(0, 3), (1, 3), (1, 5), (0, 5)], close=True)
+    import io
+
+    stream = io.StringIO()
+    drawing.write(stream)
+    page.evaluate(
+        """text => {
+            const transfer = new DataTransfer();
+            transfer.items.add(new File([text], "pier.dxf"));
+            document.querySelector(".extrados").dispatchEvent(new DragEvent("drop", { dataTransfer: transfer, bubbles: true, cancelable: true }));
+        }""",
+        stream.getvalue(),
+    )
+    until(page, "window.extrados.scene?.blocks === 2")
+    assert capacity(page) == pytest.approx(1.0 / 5.0, rel=1e-9)
+    page.click("text=Free the stones") if page.locator("text=Free the stones").count() else page.evaluate("window.extrados.ask({ do: 'blocks' })")
+    page.wait_for_selector("[data-handle^=vertex-]")
+    assert page.locator("[data-handle^=vertex-]").count() == 6
+    before = settled(page)
+    page.locator("[data-handle^=vertex-]").last.focus()
+    page.keyboard.press("Shift+ArrowLeft")
+    until(page, "t => window.extrados.text !== t", arg=before)
+
+
+def test_a_load_is_added_and_dragged(page: Any) -> None:
+    before = capacity(page)
+    page.click("text=Add a load")
+    page.wait_for_selector("[data-handle=load-0-x]")
+    until(page, "c => window.extrados.scene.capacity.plus_g !== c", arg=before)
+    first = capacity(page)
+    drag(page, "[data-handle=load-0-x] .hit", 90, 0)
+    until(page, "c => window.extrados.scene.capacity.plus_g !== c", arg=first)
+    text = settled(page)
+    run = extrados.run(_data(text))
+    assert run["tilt"].collapse_acceleration_g == pytest.approx(capacity(page), rel=1e-12)
+
+
+def test_motion_plays_and_the_map_knows_the_pulse(page: Any) -> None:
+    open_text(page, ROCKING)
+    page.click("[data-tab=motion]")
+    until(page, "window.extrados.motion.words && window.extrados.motion.map?.told.whole")
+    run = extrados.run(_data(ROCKING))
+    told = page.evaluate("window.extrados.motion.words")
+    assert told["outcome"] == run["rocking"].outcome
+    assert told["peak_rotation_rad"] == pytest.approx(run["rocking"].peak_rotation_rad, rel=1e-9)
+    assert told["impact_times_s"] == pytest.approx(run["rocking"].impact_times_s, abs=1e-9)
+    page.evaluate("window.extrados.motion.speed = 1")
+    page.click("[aria-label='stop at impacts'], label:has-text('stop at impacts') input")
+    page.click(".play")
+    until(page, "window.extrados.motion.playing === null")
+    first = told["impact_times_s"][0]
+    assert page.evaluate("window.extrados.motion.time") == pytest.approx(first, abs=1e-9)
+    assert page.locator(".ghost").get_attribute("d"), "the stones have moved from where they were"
+    page.screenshot(path=SHOTS / "motion-at-an-impact.png")
+    page.click("text=Keep")
+    drag(page, "[data-handle=pulse-amplitude] .hit", 0, 30)
+    until(page, "p => window.extrados.motion.words.peak_rotation_rad !== p", arg=told["peak_rotation_rad"])
+    assert 'amplitude = "0.8 g"' not in settled(page)
+    page.click("[data-third=energy]")
+    page.click("[data-third=friction]")
+    page.wait_for_timeout(200)
+    page.screenshot(path=SHOTS / "motion-friction.png")
+
+
+def test_results_are_looked_at_side_by_side(page: Any, served: Served) -> None:
+    for name, text in (("one", ROCKING), ("two", ROCKING.replace("0.8 g", "0.6 g"))):
+        (served.folder / f"{name}.toml").write_text(text)
+        subprocess.run(
+            [sys.executable, "-m", "extrados", "run", f"{name}.toml", "--quiet", "--no-figures"], cwd=served.folder,
+            check=True, timeout=300,
+        )  # fmt: skip
+    page.click("[data-tab=results]")
+    until(page, "window.extrados.welcome.runs.length === 2")
+    page.select_option("[aria-label='Run A']", "results/one")
+    page.wait_for_selector(".column >> nth=0 >> .chart .line")
+    page.click("text=Compare two runs")
+    page.select_option("[aria-label='Run B']", "results/two")
+    page.wait_for_selector(".column >> nth=1 >> .chart .line")
+    page.screenshot(path=SHOTS / "results-side-by-side.png")
+    page.click("text=Run the deck…")
+    page.fill("dialog input[type=text]", "computed.toml")
+    page.click("dialog button[type=submit]")
+    until(page, "window.extrados.welcome.runs.some(r => r.path === 'results/computed')", timeout=120_000)
+    assert extrados.load(served.folder / "results" / "computed")["tilt"].collapse_acceleration_g > 0.3
+
+
+def test_a_dead_server_is_told_and_comes_back_with_the_state(page: Any, served: Served) -> None:
+    drag(page, "[data-handle=thickness] .hit", 0, -15)
+    text, shown = settled(page), capacity(page)
+    (child,) = served.children()
+    os.kill(child, signal.SIGKILL)
+    page.wait_for_selector(".banner:not([hidden])")
+    assert "does not answer" in page.locator(".banner").inner_text()
+    page.wait_for_selector(".banner", state="hidden")
+    until(page, "window.extrados.scene && window.extrados.deck")
+    page.wait_for_timeout(500)
+    assert settled(page) == text
+    assert capacity(page) == shown
+    before = capacity(page)
+    drag(page, "[data-handle=thickness] .hit", 0, -10)
+    until(page, "b => window.extrados.scene.capacity.plus_g !== b", arg=before)
+
+
+def test_two_pages_do_not_disturb_each_other(page: Any, served: Served) -> None:
+    other = page.context.new_page()
+    other.goto(served.address)
+    other.wait_for_selector("[data-handle=thickness]")
+    before = settled(other)
+    drag(page, "[data-handle=thickness] .hit", 0, -15)
+    assert settled(page) != before
+    assert settled(other) == before
+    other.close()
+
+
+def test_pictures_and_films_come_out(page: Any, served: Served) -> None:
+    for entry, magic in (("Drawing, SVG", b"<svg"), ("Picture, PNG", b"\x89PNG")):
+        page.click("text=Export")
+        with page.expect_download() as waited:
+            page.click(f"text={entry}")
+        content = waited.value.path().read_bytes()
+        assert content.startswith(magic)
+        SHOTS.mkdir(parents=True, exist_ok=True)
+        (SHOTS / f"exported.{'svg' if magic == b'<svg' else 'png'}").write_bytes(content)
+    open_text(page, ROCKING.replace("end_time = 3.0", "end_time = 1.0"))
+    page.click("[data-tab=motion]")
+    until(page, "window.extrados.motion.arrays?.pose")
+    page.click("text=Export")
+    with page.expect_download(timeout=240_000) as waited:
+        page.click("text=Film, GIF, real time")
+    content = waited.value.path().read_bytes()
+    assert content.startswith(b"GIF89a")
+    from PIL import Image
+
+    with Image.open(waited.value.path()) as image:
+        assert image.size == (1280, 720)
+        assert image.n_frames > 5
+
+
+def test_the_five_exercises(page: Any) -> None:
+    page.click("[data-side=teach]")
+    assert page.locator(".exercises li").count() == 5
+    solutions = [
+        {"structure.thickness": 0.55}, None, {"structure.buttress_width": 2.0},
+        {"motion.amplitude": "0.6 g", "motion.duration": 0.45}, None,
+    ]  # fmt: skip
+    for k, changes in enumerate(solutions):
+        page.click("[data-side=teach]")
+        page.click(f".exercises button >> nth={k}")
+        until(page, f"window.extrados.name === 'exercise-{k + 1}.toml'")
+        page.wait_for_timeout(200)
+        if k == 0:
+            page.click(".exercise .first")
+            page.wait_for_selector(".told.bad")
+            page.evaluate("c => window.extrados.change(c)", {"structure.thickness": 0.54})
+        elif k == 1:
+            page.evaluate("window.extrados.show({ gamma: window.extrados.scene.capacity.plus_g * 0.99 })")
+        elif k == 2:
+            _bisect_buttress(page)
+        elif k == 3:
+            page.evaluate("c => window.extrados.change(c)", changes)
+        else:
+            page.evaluate("c => window.extrados.change(c)", {"structure.width": 2.0, "structure.height": 8.0})
+            _least_sine(page)
+        page.wait_for_timeout(900)
+        page.click(".exercise .first")
+        page.wait_for_selector(".told.good", timeout=20_000)
+        page.screenshot(path=SHOTS / f"exercise-{k + 1}.png")
+
+
+def _bisect_buttress(page: Any) -> None:
+    low, high = 1.0, 4.0
+    for _ in range(14):
+        middle = round(0.5 * (low + high), 4)
+        page.evaluate("c => window.extrados.change(c)", {"structure.buttress_width": middle})
+        until(
+            page,
+            "m => window.extrados.handles.some(h => h.name === 'buttress_width' && Math.abs(h.value - m) < 1e-9)", arg=middle
+        )
+        scene = page.evaluate("window.extrados.scene")
+        low, high = (low, middle) if scene.get("capacity") and scene["capacity"]["plus_g"] > 0.1 else (middle, high)
+
+
+def _least_sine(page: Any) -> None:
+    least = 0.05
+    for amplitude in [round(0.4 * 1.03**k, 4) for k in range(60)]:
+        deck = {
+            "structure": {"kind": "block", "width": 2.0, "height": 8.0},
+            "motion": {"kind": "sine-pulse", "amplitude": f"{amplitude} g", "period": 1.0},
+            "analysis": [{"kind": "rocking"}],
+        }
+        if extrados.run(deck)["rocking"].outcome == "collapse":
+            least = amplitude
+            break
+    page.evaluate("c => window.extrados.change(c)", {"motion.amplitude": f"{least} g"})
+
+
+def test_it_is_usable_on_a_tablet_and_in_the_dark(page: Any) -> None:
+    page.set_viewport_size({"width": 820, "height": 1100})
+    page.wait_for_timeout(300)
+    page.screenshot(path=SHOTS / "tablet.png")
+    knob = page.locator("[data-handle=thickness] .dot").bounding_box()
+    assert 0 < knob["x"] < 820
+    page.set_viewport_size({"width": 1280, "height": 720})
+    page.click("[aria-label='Dark or light']")
+    page.wait_for_timeout(200)
+    page.screenshot(path=SHOTS / "dark.png")
+    assert page.evaluate("getComputedStyle(document.querySelector('.extrados')).backgroundColor") == "rgb(21, 24, 29)"
+
+
+def test_every_control_has_a_name(page: Any) -> None:
+    nameless = page.evaluate(
+        """() => [...document.querySelectorAll("button, input, select, textarea, [role=slider], [role=img]")]
+            .filter(e => !e.closest("[hidden]") && !(e.getAttribute("aria-label") || e.labels?.length || e.textContent.trim() || e.title))
+            .map(e => e.outerHTML.slice(0, 120))"""
+    )
+    assert nameless == []
+    sliders = page.evaluate("[...document.querySelectorAll('[role=slider]')].map(e => e.getAttribute('aria-valuetext'))")
+    assert all(re.search(r"\d", text) for text in sliders)
+
+
+def _data(text: str) -> dict[str, Any]:
+    import tomllib
+
+    return tomllib.loads(text)
+
+
+ROCKING = """title = "Oppenheim's arch"
+
+[structure]
+kind = "arch"
+radius = 10.0
+thickness = 1.5
+embrace = 157.5
+voussoirs = 7
+
+[motion]
+kind = "step-pulse"
+amplitude = "0.8 g"
+duration = 0.2
+
+[[analysis]]
+kind = "tilt"
+[[analysis]]
+kind = "rocking"
+end_time = 3.0
+"""

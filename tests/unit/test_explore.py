@@ -1,0 +1,454 @@
+"""The page's server and sessions without a browser: who is let in, what may be asked, and that the numbers are a run's."""
+
+import base64
+import contextlib
+import json
+import os
+import socket
+import struct
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import uvicorn
+from websockets.exceptions import WebSocketException
+from websockets.sync.client import connect
+
+import extrados
+from extrados.explore import server
+from extrados.explore.document import Document, as_written
+from extrados.explore.film import BadFilm, film
+from extrados.explore.frames import Reply
+from extrados.explore.guard import Bucket
+from extrados.explore.session import NEW_DECK, Session
+
+TOKEN = "a-token-that-nobody-guesses"
+SECRET = "nobody may read this"
+
+
+class Page:
+    """A server in a thread, and what an honest page sends it."""
+
+    def __init__(self, folder: Path):
+        self.socket = server.listen()
+        self.port = self.socket.getsockname()[1]
+        self.server = uvicorn.Server(server.configured(self.socket, TOKEN, folder))
+        self.thread = threading.Thread(target=self.server.run, kwargs={"sockets": [self.socket]}, daemon=True)
+        self.thread.start()
+        while not self.server.started:
+            time.sleep(0.01)
+
+    def close(self) -> None:
+        self.server.should_exit = True
+        self.thread.join(10)
+        self.socket.close()
+
+    def raw(self, request: bytes, wait: float = 5.0) -> bytes:
+        """What comes back for some bytes, until the server closes or says no more."""
+        with socket.create_connection(("127.0.0.1", self.port), timeout=wait) as link:
+            with contextlib.suppress(OSError):
+                link.sendall(request)
+            found = b""
+            with contextlib.suppress(OSError):
+                while part := link.recv(65536):
+                    found += part
+                    if b"\r\n\r\n" in found and b"101 Switching" in found[:40]:
+                        break
+            return found
+
+    def request(self, path: str = f"/{TOKEN}/", method: str = "GET", body: bytes = b"", **heads: str | None) -> bytes:
+        """A request with the heads of an honest page, but for those given; None leaves one out."""
+        given = {"Host": f"127.0.0.1:{self.port}", "Connection": "close"}
+        given |= {k.replace("_", "-"): v for k, v in heads.items()}
+        if body or method == "POST":
+            given.setdefault("Content-Length", str(len(body)))
+        lines = [f"{method} {path} HTTP/1.1", *(f"{k}: {v}" for k, v in given.items() if v is not None)]
+        return self.raw("\r\n".join(lines).encode("latin-1", "replace") + b"\r\n\r\n" + body)
+
+    def upgrade(self, path: str = f"/{TOKEN}/live", **heads: str | None) -> bytes:
+        """A request for a socket."""
+        given: dict[str, str | None] = {
+            "Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13",
+            "Sec-WebSocket-Key": base64.b64encode(os.urandom(16)).decode(), "Origin": f"http://127.0.0.1:{self.port}",
+        }  # fmt: skip
+        return self.request(path, **{**given, **heads})
+
+    def open(self) -> Any:
+        return connect(
+            f"ws://127.0.0.1:{self.port}/{TOKEN}/live", origin=f"http://127.0.0.1:{self.port}", max_size=None, close_timeout=2
+        )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    above = tmp_path_factory.mktemp("above")
+    (above / "secret.toml").write_text(f'title = "{SECRET}"\n')
+    (above / "secret.csv").write_text(f"{SECRET}\n")
+    inside = above / "work"
+    inside.mkdir()
+    (inside / "deck.toml").write_text(NEW_DECK)
+    (inside / "out.toml").symlink_to(above / "secret.toml")
+    (inside / "way-out").symlink_to(above)
+    return inside
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> Iterator[Page]:
+    found = Page(folder)
+    yield found
+    found.close()
+
+
+def status(answer: bytes) -> int:
+    return int(answer.split(b" ", 2)[1]) if answer.startswith(b"HTTP/1.1 ") else 0
+
+
+def unpack(frame: bytes) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    (length,) = struct.unpack_from("<I", frame)
+    words = json.loads(frame[4 : 4 + length])
+    sorts = {"f": "<f4", "d": "<f8", "i": "<i4", "b": "|u1"}
+    arrays = {
+        name: np.frombuffer(frame, sorts[sort], int(np.prod(shape)), 4 + length + offset).reshape(shape)
+        for name, (sort, shape, offset) in words["arrays"].items()
+    }
+    return words, arrays
+
+
+def test_an_honest_page_is_served(page: Page) -> None:
+    answer = page.request()
+    assert status(answer) == 200
+    head, _, body = answer.partition(b"\r\n\r\n")
+    assert b'<script type="module"' in body
+    assert b"content-security-policy: default-src 'none'" in head
+    assert b"no-referrer" in head
+    assert status(page.request(f"/{TOKEN}/app.js")) == 200
+    assert page.upgrade().startswith(b"HTTP/1.1 101")
+
+
+#: What other sites, guessers and broken programs may send: name, request, and what of the answer shows it was refused
+HOSTILE_REQUESTS: list[tuple[str, dict[str, Any]]] = [
+    ("the name of another site", {"Host": "evil.example"}),
+    ("a name that leads here", {"Host": "127.0.0.1.evil.example:{port}"}),
+    ("another port", {"Host": "127.0.0.1:1"}),
+    ("no port", {"Host": "127.0.0.1"}),
+    ("no name", {"Host": None}),
+    ("an empty name", {"Host": ""}),
+    ("a user within the name", {"Host": "127.0.0.1:{port}@evil.example"}),
+    ("the address of all", {"Host": "0.0.0.0:{port}"}),
+    ("another site's page", {"Origin": "https://evil.example"}),
+    ("a page without a site", {"Origin": "null"}),
+    ("this machine over https", {"Origin": "https://127.0.0.1:{port}"}),
+    ("another server of this machine", {"Origin": "http://127.0.0.1:8000"}),
+    ("a site that begins alike", {"Origin": "http://127.0.0.1:{port}.evil.example"}),
+    ("a file", {"Origin": "file://"}),
+    ("cross-site by its fetch", {"Sec_Fetch_Site": "cross-site"}),
+    ("same-site by its fetch", {"Sec_Fetch_Site": "same-site"}),
+    ("no token", {"path": "/"}),
+    ("no token before a file", {"path": "/app.js"}),
+    ("another token", {"path": "/another-token/"}),
+    ("half the token", {"path": f"/{TOKEN[:-1]}/"}),
+    ("more than the token", {"path": f"/{TOKEN}x/"}),
+    ("the token in capitals", {"path": f"/{TOKEN.upper()}/"}),
+    ("the token as a query", {"path": f"/?token={TOKEN}"}),
+    ("the token in letters of another alphabet", {"path": "/%D0%B0-token/"}),
+    ("a way out", {"path": f"/{TOKEN}/../../../../etc/passwd"}),
+    ("a way out, masked", {"path": f"/{TOKEN}/..%2f..%2f..%2fetc%2fpasswd"}),
+    ("a way out, masked twice", {"path": f"/{TOKEN}/%252e%252e/%252e%252e/etc/passwd"}),
+    ("a way out by backslashes", {"path": f"/{TOKEN}/..\\..\\secret.toml"}),
+    ("an absolute path", {"path": f"/{TOKEN}//etc/passwd"}),
+    ("a zero byte", {"path": f"/{TOKEN}/app.js%00.html"}),
+    ("sources of the server", {"path": f"/{TOKEN}/../server.py"}),
+    ("a deck of the folder as a file", {"path": f"/{TOKEN}/deck.toml"}),
+    ("a very long path", {"path": f"/{TOKEN}/" + "a" * 3000}),
+    ("a very long query", {"path": f"/{TOKEN}/?" + "a" * 3000}),
+    ("a head without end", {"Cookie": "a" * 70_000}),
+    ("DELETE", {"method": "DELETE"}),
+    ("PUT", {"method": "PUT", "body": b"x"}),
+    ("OPTIONS, to ask whether it may", {"method": "OPTIONS", "Origin": "https://evil.example"}),
+    ("CONNECT", {"method": "CONNECT", "path": "evil.example:443"}),
+    ("TRACE", {"method": "TRACE"}),
+    ("a form that does not say its origin", {"method": "POST", "path": f"/{TOKEN}/film", "body": b"gif\x0f"}),
+    ("a form of another site", {"method": "POST", "path": f"/{TOKEN}/film", "body": b"gif\x0f", "Origin": "https://evil.example"}),
+    ("more than is taken", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "Content_Length": "99999999999"}),
+    ("less than nothing", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "Content_Length": "-5"}),
+    ("a film that is none", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "body": b"exe\x0f" + b"x" * 50}),
+    ("a film of one broken picture", {"method": "POST", "path": f"/{TOKEN}/film", "Origin": "http://127.0.0.1:{port}", "body": b"gif\x0f\x00\x00\x00\x08\xff\xd8\xffabcde"}),
+    ("a POST to a page", {"method": "POST", "Origin": "http://127.0.0.1:{port}", "body": b"x"}),
+]  # fmt: skip
+HOSTILE_SOCKETS: list[tuple[str, dict[str, Any]]] = [
+    ("a socket of another site", {"Origin": "https://evil.example"}),
+    ("a socket without an origin", {"Origin": None}),
+    ("a socket without a site", {"Origin": "null"}),
+    ("a socket under another name", {"Host": "evil.example"}),
+    ("a socket without the token", {"path": "/live"}),
+    ("a socket with another token", {"path": "/another-token/live"}),
+    ("a socket elsewhere", {"path": f"/{TOKEN}/other"}),
+    ("a socket from a cross-site fetch", {"Sec_Fetch_Site": "cross-site"}),
+]
+#: Messages that no page of ours sends, over an honest socket
+HOSTILE_MESSAGES: list[tuple[str, str]] = [
+    ("no JSON", "rm -rf /"),
+    ("no object", "[1, 2, 3]"),
+    ("nothing to do", '{"of": 1}'),
+    ("a method of the class", '{"do": "__class__"}'),
+    ("deep nesting", "[" * 100_000),
+    ("a deck outside", '{"do": "open", "path": "../secret.toml"}'),
+    ("a deck outside, absolutely", '{"do": "open", "path": "/etc/passwd"}'),
+    ("a deck by a link that leads out", '{"do": "open", "path": "out.toml"}'),
+    ("a deck in a folder that leads out", '{"do": "open", "path": "way-out/secret.toml"}'),
+    ("a case that leads out", '{"do": "open", "preset": "../../../etc/passwd"}'),
+    ("a record by an absolute path", json.dumps({"do": "open", "text": NEW_DECK + '[motion]\nkind = "record"\nfile = "/etc/passwd"\ntime_step = 0.01\nunit = "g"\n'})),
+    ("a run outside", '{"do": "run", "path": "../../etc"}'),
+    ("saving outside", '{"do": "save", "path": "../stolen.toml", "replace": true}'),
+    ("saving by a link", '{"do": "save", "path": "way-out/stolen.toml", "replace": true}'),
+    ("saving a hidden file", '{"do": "save", "path": ".bashrc", "replace": true}'),
+    ("running outside", '{"do": "compute", "path": "../stolen.toml", "replace": true}'),
+    ("dropping with a way out", '{"do": "drop", "name": "../../x.csv", "data": "AAAA"}'),
+    ("dropping a program", '{"do": "drop", "name": "x.py", "data": "AAAA"}'),
+    ("dropping no base64", '{"do": "drop", "name": "x.csv", "data": "!!!"}'),
+    ("no such handle", '{"do": "drag", "handle": "__init__", "to": [0, 0]}'),
+    ("a place that is none", '{"do": "drag", "handle": "thickness", "to": [null, "x"]}'),
+    ("a place beyond reason", '{"do": "drag", "handle": "thickness", "to": [1e308, 1e308]}'),
+    ("numbers that are none", '{"do": "show", "gamma": "NaN"}'),
+    ("a joint that is none", '{"do": "show", "through": {"joint": 99999, "share": 0.5}}'),
+    ("keys that are none", '{"do": "set", "changes": {"__proto__.x": 1}}'),
+    ("a key with a way out", '{"do": "set", "changes": {"../x": 1}}'),
+    ("too many changes", json.dumps({"do": "set", "changes": {f"structure.k{i}": 1 for i in range(1000)}})),
+    ("stones without number", '{"do": "set", "changes": {"structure.voussoirs": 100000000}}'),
+    ("a number of a thousand digits", '{"do": "set", "changes": {"structure.radius": 1' + "0" * 1000 + "}}"),
+]  # fmt: skip
+
+
+def _filled(page: Page, given: dict[str, Any]) -> dict[str, Any]:
+    return {k: v.replace("{port}", str(page.port)) if isinstance(v, str) else v for k, v in given.items()}
+
+
+@pytest.mark.parametrize(("name", "given"), HOSTILE_REQUESTS, ids=[name for name, _ in HOSTILE_REQUESTS])
+def test_hostile_requests_are_refused(page: Page, name: str, given: dict[str, Any]) -> None:
+    answer = page.request(**_filled(page, given))
+    assert not 200 <= status(answer) < 300, answer[:300]
+    assert SECRET.encode() not in answer
+    assert b"root:" not in answer
+    assert b"Traceback" not in answer
+    assert status(page.request()) == 200, "it goes on"
+
+
+@pytest.mark.parametrize(("name", "given"), HOSTILE_SOCKETS, ids=[name for name, _ in HOSTILE_SOCKETS])
+def test_hostile_sockets_are_refused(page: Page, name: str, given: dict[str, Any]) -> None:
+    assert b"101 Switching" not in page.upgrade(**_filled(page, given))
+    assert page.upgrade().startswith(b"HTTP/1.1 101"), "an honest one is let in"
+
+
+@pytest.mark.parametrize(("name", "message"), HOSTILE_MESSAGES, ids=[name for name, _ in HOSTILE_MESSAGES])
+def test_hostile_messages_are_refused(page: Page, folder: Path, name: str, message: str) -> None:
+    before = sorted(p.name for p in [*folder.iterdir(), *folder.parent.iterdir()])
+    with page.open() as link:
+        link.send('{"do": "hello", "of": 0}')
+        while "scene" not in unpack(link.recv(30))[0]:
+            pass
+        told = ""
+        with contextlib.suppress(WebSocketException):
+            link.send(message)
+            link.send('{"do": "rocking"}' if name.startswith("a record") else '{"do": "list", "of": 7}')
+        with contextlib.suppress(WebSocketException, TimeoutError):
+            for _ in range(2):
+                words, _ = unpack(link.recv(30))
+                told += json.dumps(words)
+                if not (words.get("bad") or words.get("complaints") or words["to"] in ("list", "open")):
+                    pytest.fail(f"answered: {words}")
+        assert SECRET not in told
+        assert "root:" not in told
+        if name.startswith("a record"):
+            assert "absolute path" in told
+        elif told and '"bad"' not in told and '"complaints"' not in told:
+            pytest.fail(f"not refused: {told[:300]}")
+    assert sorted(p.name for p in [*folder.iterdir(), *folder.parent.iterdir()]) == before
+    assert status(page.request()) == 200, "it goes on"
+
+
+def test_there_are_sixty_hostile_requests_and_more() -> None:
+    assert len(HOSTILE_REQUESTS) + len(HOSTILE_SOCKETS) + len(HOSTILE_MESSAGES) >= 60
+
+
+def test_too_many_messages_end_a_page_and_not_the_others(page: Page) -> None:
+    with page.open() as other, page.open() as link:
+        with pytest.raises(WebSocketException):  # noqa: PT012
+            for _ in range(20_000):
+                link.send('{"do": "list"}')
+            for _ in range(20_000):
+                link.recv(10)
+        other.send('{"do": "list", "of": 1}')
+        assert unpack(other.recv(30))[0]["to"] == "list"
+
+
+def test_no_more_pages_than_are_allowed(page: Page) -> None:
+    with contextlib.ExitStack() as stack:
+        links = [stack.enter_context(page.open()) for _ in range(server.MOST_PAGES)]
+        links[-1].send('{"do": "list"}')
+        links[-1].recv(30)
+        with pytest.raises(WebSocketException), page.open() as more:
+            more.recv(10)
+
+
+def test_a_bucket_lets_its_rate_pass() -> None:
+    bucket = Bucket(3.0, 1.0)
+    assert [bucket.take() for _ in range(4)] == [True, True, True, False]
+    bucket.last -= 2.0
+    assert [bucket.take() for _ in range(3)] == [True, True, False]
+
+
+def test_newer_movements_replace_older_ones_that_wait() -> None:
+    inbox = server.Inbox()
+    for message in ({"do": "a", "lane": "x", "k": 1}, {"do": "a", "lane": "x", "k": 2}, {"do": "b"}, {"do": "a", "lane": "x", "k": 3}):
+        inbox.put(message)
+    assert [m.get("k") for m in inbox.waiting] == [2, None, 3]
+
+
+def test_a_frame_is_read_as_it_was_sent() -> None:
+    arrays = {"a": np.arange(5.0), "b": np.array([[1, 2], [3, 4]]), "c": np.array([1, 255], dtype=np.uint8), "d": np.array([1e-20, np.nan])}
+    words, found = unpack(Reply({"x": np.float64(2.0), "y": np.inf}, arrays, frozenset("d")).pack())
+    assert words["x"] == 2.0
+    assert words["y"] is None
+    for name, array in arrays.items():
+        np.testing.assert_array_equal(found[name], array)
+    assert found["d"].dtype == np.float64
+
+
+# Sessions
+
+
+def do(session: Session, **message: Any) -> list[Reply]:
+    return list(session.answer(message))
+
+
+@pytest.fixture
+def session(tmp_path: Path) -> Iterator[Session]:
+    found = Session(tmp_path)
+    do(found, do="hello")
+    yield found
+    found.close()
+
+
+@pytest.mark.parametrize(
+    ("preset", "count"),
+    [("limit/arch-120", 5), ("vault/dejong-a", 6), ("vault/vezelay-like", 10), ("rocking/housner", 2), ("bridge/viaduct", 6), ("dem/column", 3)],
+)
+def test_every_handle_leads_where_it_stands(session: Session, preset: str, count: int) -> None:
+    """A handle led to where it stands changes nothing beyond its rounding; led on, the stones follow."""
+    do(session, do="open", preset=preset)
+    assert len(session.handles) == count
+    for name, handle in list(session.handles.items()):
+        value = handle.value_at(handle.x, handle.y)
+        assert value == pytest.approx(handle.value, rel=1e-9, abs=1e-9), name
+        further = handle.value * 1.02
+        (reply,) = do(session, do="drag", handle=name, text=f"{further:.6g} {handle.unit}")
+        assert "complaints" not in reply.words, (name, reply.words)
+        assert session.handles[name].value == pytest.approx(further, rel=1e-5), name
+
+
+@pytest.mark.parametrize("preset", ["limit/arch-120", "vault/dejong-a", "vault/vezelay-like", "bridge/road", "limit/church"])
+def test_the_numbers_of_the_page_are_those_of_a_run(session: Session, preset: str) -> None:
+    (reply,) = do(session, do="open", preset=preset)
+    run = extrados.run(session.live.deck.data | {"analysis": [{"kind": "tilt", **_loads(session)}]}) if preset != "limit/church" else None
+    scene = reply.words["scene"]
+    if run is None:
+        run = extrados.run(Path(session.place) / session.name)
+    found = run["tilt"]
+    assert scene["capacity"]["plus_g"] == pytest.approx(found.collapse_acceleration_g, rel=1e-9)
+    assert scene["capacity"]["minus_g"] == pytest.approx(found.collapse_acceleration_opposite_g, rel=1e-9)
+    if "least_N" in scene:
+        assert scene["least_N"] == pytest.approx(found.thrust_min_N, rel=1e-6)
+        assert scene["most_N"] == pytest.approx(found.thrust_max_N, rel=1e-6)
+    assert [h["where"] for h in scene["plus_hinges"]] == [h.place for h in found.hinges]
+
+
+def _loads(session: Session) -> dict[str, Any]:
+    given = session.live.deck.data["analysis"]
+    first = given[0] if isinstance(given, list) else given
+    return {"load": first["load"]} if "load" in first else {}
+
+
+def test_a_line_passes_where_it_is_asked_to_or_as_near_as_it_can(session: Session) -> None:
+    (reply,) = do(session, do="show", through={"joint": 18, "share": 0.5})
+    there = reply.words["scene"]["through"]
+    assert there["reached"] == pytest.approx(0.5, abs=1e-7)
+    (reply,) = do(session, do="show", through={"joint": 0, "share": 0.0}, gamma=0.3)
+    low = reply.words["scene"]["through"]["reached"]
+    (reply,) = do(session, do="show", through={"joint": 0, "share": 1.0})
+    high = reply.words["scene"]["through"]["reached"]
+    assert 0.0 <= low < high <= 1.0
+    limit, scene = session.picture.limit, session.picture
+    least, most = limit.thrust(scene.assembly.chains["arch"], 0.3)
+    for state in (least, most):
+        assert low - 1e-6 <= state.position[0] <= high + 1e-6
+
+
+def test_what_is_wrong_changes_nothing(session: Session) -> None:
+    before = session.document.text
+    for message in (
+        {"do": "drag", "handle": "thickness", "text": "9 m"}, {"do": "set", "changes": {"structure.radius": "-3 m"}},
+        {"do": "set", "changes": {"structure.nonsense": 3}}, {"do": "open", "text": "structure = ", "here": "same"},
+        {"do": "open", "preset": "nothing/there"}, {"do": "drag", "handle": "thickness", "text": "1 kg"},
+    ):  # fmt: skip
+        (reply,) = do(session, **message)
+        assert reply.words.get("complaints"), message
+        assert session.document.text == before
+    (reply,) = do(session, do="show", gamma=0.0)
+    assert reply.words["scene"]["capacity"]["plus_g"] > 0.3
+
+
+def test_the_text_keeps_what_its_author_wrote() -> None:
+    text = '# mine\n[structure]\nkind = "arch" # round\nradius = "100 cm"  # of it\n\n[[analysis]]\nkind = "tilt"\n[[analysis]]\nkind = "rocking"\n'
+    document = Document(text)
+    document.put(["structure", "radius"], as_written(1.25, "100 cm", "m"))
+    document.put(["analysis", "1", "end_time"], 3.0)
+    assert document.text == text.replace('"100 cm"', '"125.0 cm"').replace('"rocking"\n', '"rocking"\nend_time = 3.0\n')
+    assert as_written(3.0, None, "m/s^2", bare=False) == "3.0 m/s^2"
+
+
+def test_saving_replaces_nothing_unasked(session: Session, tmp_path: Path) -> None:
+    (tmp_path / "mine.toml").write_text("precious")
+    (reply,) = do(session, do="save", path="mine.toml")
+    assert "is there already" in reply.words["complaints"][0]
+    assert (tmp_path / "mine.toml").read_text() == "precious"
+    (reply,) = do(session, do="save", path="new/mine.toml")
+    assert reply.words["saved"] == "new/mine.toml"
+    assert (tmp_path / "new" / "mine.toml").read_text() == session.document.text
+
+
+def test_the_map_gets_finer_and_is_kept(session: Session) -> None:
+    do(session, do="set", changes={"motion": {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.2}})
+    replies = do(session, do="domain")
+    assert [r.words["domain"]["stride"] for r in replies] == [4, 2, 1]
+    known = [(r.arrays["codes"] < 255).sum() for r in replies]
+    assert known == [100, 500, 1600]
+    last = replies[-1].arrays["codes"]
+    for reply in replies:
+        there = reply.arrays["codes"] < 255
+        np.testing.assert_array_equal(reply.arrays["codes"][there], last[there])
+    assert len(do(session, do="domain")) == 1, "the same building: nothing to compute"
+
+
+def test_films_are_films_or_refused() -> None:
+    import io
+
+    from PIL import Image
+
+    def picture(grey: int) -> bytes:
+        out = io.BytesIO()
+        Image.new("RGB", (64, 48), (grey, 30, 90)).save(out, "JPEG")
+        return out.getvalue()
+
+    pictures = [picture(40 * k) for k in range(5)]
+    body = b"".join(struct.pack(">I", len(p)) + p for p in pictures)
+    made = film(b"gif\x0a" + body)
+    with Image.open(io.BytesIO(made.content)) as image:
+        assert image.n_frames == 5
+        assert image.size == (64, 48)
+    for bad in (b"", b"gif\x0a", b"gif\x00" + body, b"gif\x0a" + body[:-3], b"gif\x0a" + struct.pack(">I", 4) + b"text"):
+        with pytest.raises(BadFilm):
+            film(bad)
