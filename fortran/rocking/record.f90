@@ -135,7 +135,7 @@ contains
       energy = 0.5_wp * m * rate**2 + problem%body%potential(problem%side, rotation)
    end function energy_of
 
-   !> Too little energy is left to reach a share of the critical rotation of any side, over the restraints as they are now
+   !> Too little energy is left to reach a share of the critical rotation of any side, over the restraints as they are
    pure function cannot_reach(problem, rotation, rate, share) result(answer)
       type(equation_of_motion), intent(in) :: problem
       real(wp), intent(in) :: rotation  !! below the critical one [rad]

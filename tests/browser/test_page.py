@@ -1,5 +1,6 @@
 """The interactive page as hands use it: drags, keys, typing, undo, motion, results, files, a server that dies."""
 
+import base64
 import os
 import re
 import signal
@@ -9,7 +10,7 @@ import time
 from typing import Any
 
 import pytest
-from conftest import SHOTS, Served
+from served import SHOTS, Served
 
 import extrados
 
@@ -197,7 +198,9 @@ def test_a_drawing_is_dropped_and_its_vertices_are_moved(page: Any) -> None:
     )
     until(page, "window.extrados.scene?.blocks === 2")
     assert capacity(page) == pytest.approx(1.0 / 5.0, rel=1e-9)
-    page.click("text=Free the stones") if page.locator("text=Free the stones").count() else page.evaluate("window.extrados.ask({ do: 'blocks' })")
+    page.click("text=Free the stones") if page.locator("text=Free the stones").count() else page.evaluate(
+        "window.extrados.ask({ do: 'blocks' })"
+    )
     page.wait_for_selector("[data-handle^=vertex-]")
     assert page.locator("[data-handle^=vertex-]").count() == 6
     before = settled(page)
@@ -255,10 +258,14 @@ def test_results_are_looked_at_side_by_side(page: Any, served: Served) -> None:
         )  # fmt: skip
     page.click("[data-tab=results]")
     until(page, "window.extrados.welcome.runs.length === 2")
-    page.select_option("[aria-label='Run A']", "results/one")
+    page.select_option("select[aria-label='Run A']", "results/one")
+    page.wait_for_selector(".column >> nth=0 >> .chart .dots")
+    page.select_option("select[aria-label='Analysis of run A']", "rocking")
     page.wait_for_selector(".column >> nth=0 >> .chart .line")
     page.click("text=Compare two runs")
-    page.select_option("[aria-label='Run B']", "results/two")
+    page.select_option("select[aria-label='Run B']", "results/two")
+    page.wait_for_selector(".column >> nth=1 >> .chart .dots")
+    page.select_option("select[aria-label='Analysis of run B']", "rocking")
     page.wait_for_selector(".column >> nth=1 >> .chart .line")
     page.screenshot(path=SHOTS / "results-side-by-side.png")
     page.click("text=Run the deck…")
@@ -358,7 +365,8 @@ def _bisect_buttress(page: Any) -> None:
         page.evaluate("c => window.extrados.change(c)", {"structure.buttress_width": middle})
         until(
             page,
-            "m => window.extrados.handles.some(h => h.name === 'buttress_width' && Math.abs(h.value - m) < 1e-9)", arg=middle
+            "m => window.extrados.handles.some(h => h.name === 'buttress_width' && Math.abs(h.value - m) < 1e-9)",
+            arg=middle,
         )
         scene = page.evaluate("window.extrados.scene")
         low, high = (low, middle) if scene.get("capacity") and scene["capacity"]["plus_g"] > 0.1 else (middle, high)
@@ -391,6 +399,53 @@ def test_it_is_usable_on_a_tablet_and_in_the_dark(page: Any) -> None:
     assert page.evaluate("getComputedStyle(document.querySelector('.extrados')).backgroundColor") == "rgb(21, 24, 29)"
 
 
+def test_the_page_is_a_widget(browser: Any, tmp_path: Any) -> None:
+    """The module that a notebook loads, with a model that hands its messages to the widget in Python."""
+    pytest.importorskip("anywidget")
+    from extrados.explore import widget
+
+    (tmp_path / "mine.toml").write_text(ROCKING)
+    made = widget.Page.of(tmp_path / "mine.toml", 640)
+    sent: list[str] = []
+    made.send = lambda content, buffers: sent.extend(base64.b64encode(b).decode() for b in buffers)
+
+    def answer(message: Any) -> list[str]:
+        sent.clear()
+        made._answer(made, message, [])
+        return list(sent)
+
+    context = browser.new_context(viewport={"width": 1000, "height": 700})
+    page = context.new_page()
+    page.expose_function("answer", answer)
+    traits = {"modules": made.modules, "look": made.look, "height": made.height}
+    page.evaluate(
+        """async ([source, traits]) => {
+            const url = URL.createObjectURL(new Blob([source], { type: "text/javascript" }));
+            const listeners = [];
+            const model = {
+                get: name => traits[name], on: (_, f) => listeners.push(f), off: () => {},
+                send: async message => {
+                    for (const text of await window.answer(message)) {
+                        const bytes = Uint8Array.from(atob(text), c => c.charCodeAt(0));
+                        for (const f of listeners) f({}, [new DataView(bytes.buffer)]);
+                    }
+                },
+            };
+            const el = document.createElement("div");
+            document.body.append(el);
+            await (await import(url)).default.render({ model, el });
+            window.extrados = el.extrados;
+        }""",
+        [widget.LOADER, traits],
+    )
+    page.wait_for_selector("[data-handle=thickness]")
+    drag(page, "[data-handle=thickness] .hit", 0, -12)
+    until(page, "window.extrados.resting === false")
+    assert made.deck == page.evaluate("window.extrados.text") != ROCKING
+    page.screenshot(path=SHOTS / "widget.png")
+    context.close()
+
+
 def test_every_control_has_a_name(page: Any) -> None:
     nameless = page.evaluate(
         """() => [...document.querySelectorAll("button, input, select, textarea, [role=slider], [role=img]")]
@@ -398,7 +453,9 @@ def test_every_control_has_a_name(page: Any) -> None:
             .map(e => e.outerHTML.slice(0, 120))"""
     )
     assert nameless == []
-    sliders = page.evaluate("[...document.querySelectorAll('[role=slider]')].map(e => e.getAttribute('aria-valuetext'))")
+    sliders = page.evaluate(
+        "[...document.querySelectorAll('[role=slider]')].map(e => e.getAttribute('aria-valuetext'))"
+    )
     assert all(re.search(r"\d", text) for text in sliders)
 
 

@@ -79,7 +79,10 @@ class Page:
 
     def open(self) -> Any:
         return connect(
-            f"ws://127.0.0.1:{self.port}/{TOKEN}/live", origin=f"http://127.0.0.1:{self.port}", max_size=None, close_timeout=2
+            f"ws://127.0.0.1:{self.port}/{TOKEN}/live",
+            origin=f"http://127.0.0.1:{self.port}",
+            max_size=None,
+            close_timeout=2,
         )
 
 
@@ -276,7 +279,7 @@ def test_there_are_sixty_hostile_requests_and_more() -> None:
 
 def test_too_many_messages_end_a_page_and_not_the_others(page: Page) -> None:
     with page.open() as other, page.open() as link:
-        with pytest.raises(WebSocketException):  # noqa: PT012
+        with pytest.raises(WebSocketException):
             for _ in range(20_000):
                 link.send('{"do": "list"}')
             for _ in range(20_000):
@@ -303,13 +306,23 @@ def test_a_bucket_lets_its_rate_pass() -> None:
 
 def test_newer_movements_replace_older_ones_that_wait() -> None:
     inbox = server.Inbox()
-    for message in ({"do": "a", "lane": "x", "k": 1}, {"do": "a", "lane": "x", "k": 2}, {"do": "b"}, {"do": "a", "lane": "x", "k": 3}):
+    for message in (
+        {"do": "a", "lane": "x", "k": 1},
+        {"do": "a", "lane": "x", "k": 2},
+        {"do": "b"},
+        {"do": "a", "lane": "x", "k": 3},
+    ):
         inbox.put(message)
     assert [m.get("k") for m in inbox.waiting] == [2, None, 3]
 
 
 def test_a_frame_is_read_as_it_was_sent() -> None:
-    arrays = {"a": np.arange(5.0), "b": np.array([[1, 2], [3, 4]]), "c": np.array([1, 255], dtype=np.uint8), "d": np.array([1e-20, np.nan])}
+    arrays = {
+        "a": np.arange(5.0),
+        "b": np.array([[1, 2], [3, 4]]),
+        "c": np.array([1, 255], dtype=np.uint8),
+        "d": np.array([1e-20, np.nan]),
+    }
     words, found = unpack(Reply({"x": np.float64(2.0), "y": np.inf}, arrays, frozenset("d")).pack())
     assert words["x"] == 2.0
     assert words["y"] is None
@@ -335,7 +348,14 @@ def session(tmp_path: Path) -> Iterator[Session]:
 
 @pytest.mark.parametrize(
     ("preset", "count"),
-    [("limit/arch-120", 5), ("vault/dejong-a", 6), ("vault/vezelay-like", 10), ("rocking/housner", 2), ("bridge/viaduct", 6), ("dem/column", 3)],
+    [
+        ("limit/arch-120", 5),
+        ("vault/dejong-a", 6),
+        ("vault/vezelay-like", 10),
+        ("rocking/housner", 2),
+        ("bridge/viaduct", 6),
+        ("dem/column", 3),
+    ],
 )
 def test_every_handle_leads_where_it_stands(session: Session, preset: str, count: int) -> None:
     """A handle led to where it stands changes nothing beyond its rounding; led on, the stones follow."""
@@ -350,10 +370,16 @@ def test_every_handle_leads_where_it_stands(session: Session, preset: str, count
         assert session.handles[name].value == pytest.approx(further, rel=1e-5), name
 
 
-@pytest.mark.parametrize("preset", ["limit/arch-120", "vault/dejong-a", "vault/vezelay-like", "bridge/road", "limit/church"])
+@pytest.mark.parametrize(
+    "preset", ["limit/arch-120", "vault/dejong-a", "vault/vezelay-like", "bridge/road", "limit/church"]
+)
 def test_the_numbers_of_the_page_are_those_of_a_run(session: Session, preset: str) -> None:
     (reply,) = do(session, do="open", preset=preset)
-    run = extrados.run(session.live.deck.data | {"analysis": [{"kind": "tilt", **_loads(session)}]}) if preset != "limit/church" else None
+    run = (
+        extrados.run(session.live.deck.data | {"analysis": [{"kind": "tilt", **_loads(session)}]})
+        if preset != "limit/church"
+        else None
+    )
     scene = reply.words["scene"]
     if run is None:
         run = extrados.run(Path(session.place) / session.name)
@@ -449,6 +475,12 @@ def test_films_are_films_or_refused() -> None:
     with Image.open(io.BytesIO(made.content)) as image:
         assert image.n_frames == 5
         assert image.size == (64, 48)
-    for bad in (b"", b"gif\x0a", b"gif\x00" + body, b"gif\x0a" + body[:-3], b"gif\x0a" + struct.pack(">I", 4) + b"text"):
+    for bad in (
+        b"",
+        b"gif\x0a",
+        b"gif\x00" + body,
+        b"gif\x0a" + body[:-3],
+        b"gif\x0a" + struct.pack(">I", 4) + b"text",
+    ):
         with pytest.raises(BadFilm):
             film(bad)

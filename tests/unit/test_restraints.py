@@ -156,7 +156,7 @@ def test_a_run_that_stops_when_safe_ends_as_the_whole_run() -> None:
     """Yielding ties, sliding dampers and a wall: 120 random motions."""
     ties = named(Tie(start=[*TOP_LEFT], ground=[-4.0, 4.0], stiffness=3e5, yield_force=8e3, prestress=2e3))
     dampers = named(Damper(start=[*TOP_LEFT], ground=[-3.0, 1.0], slip_force=2e3, stiffness=1e6))
-    for supports in (Supports(), Supports(wall="left", rebound=0.5)):
+    for supports in (Supports(), Supports(abutting_wall="left", rebound=0.5)):
         body = block(ties=ties, dampers=dampers, supports=supports).rocker().body
         grounds = [Ground(samples=3.0 * samples(seed)[None], step=STEP) for seed in range(60)]
         early, whole = (
@@ -216,7 +216,7 @@ kind = "block"
 width = 0.6
 height = 6.0
 [supports]
-wall = "left"
+abutting_wall = "left"
 [motion]
 kind = "sine-pulse"
 amplitude = "0.3 g"
@@ -230,8 +230,12 @@ def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     damper = "[[dampers]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\ndamping = 100.0\n"
     for kind in ("tilt", "dem", "assessment", "rocking-spectrum"):
         ((status, reason),) = told(DECK.replace("rocking", kind))
-        assert status == "refused" and reason.startswith(f"{kind} does not reckon with [supports] wall"), reason
-        ((status, reason),) = told(damper + DECK.replace('[supports]\nwall = "left"\n', "").replace("rocking", kind))
+        assert status == "refused" and reason.startswith(f"{kind} does not reckon with [supports] abutting_wall"), (
+            reason
+        )
+        ((status, reason),) = told(
+            damper + DECK.replace('[supports]\nabutting_wall = "left"\n', "").replace("rocking", kind)
+        )
         assert status == "refused" and "[[dampers]]" in reason and "rocking" in reason
     ((status, reason),) = told(
         "[[ties]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\nyield_force = 10.0\n" + DECK
@@ -257,7 +261,9 @@ def test_wrong_dampers_and_hinges_are_told_with_their_line() -> None:
 def test_a_block_before_a_wall_rocks_away_from_it_only() -> None:
     """Free rocking: at each return the rate is turned and multiplied by the three impacts of Sorrentino and others (2011)."""
     building = Building(
-        Block(kind="block", width=0.6, height=6.0), supports=Supports(wall="left"), initial=Initial(rotation_ratio=0.8)
+        Block(kind="block", width=0.6, height=6.0),
+        supports=Supports(abutting_wall="left"),
+        initial=Initial(rotation_ratio=0.8),
     )
     rocker = building.rocker()
     a = np.arctan2(0.3, 3.0)

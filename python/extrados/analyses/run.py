@@ -14,6 +14,7 @@ from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
+from extrados.schema.programs import ffmpeg
 
 
 def _check(result: Result) -> None:
@@ -56,6 +57,10 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
                 raise Refused(
                     f"{options.kind} does not reckon with {what}: leave it out of its deck, or ask {_who(what)}"
                 )
+        if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
+            raise Refused(
+                'animation = "mp4" needs the program ffmpeg or the package imageio-ffmpeg, and neither is here; "gif" needs nothing'
+            )
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

@@ -1,6 +1,6 @@
 """The base of the analysis tables."""
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.schema.table import Table, key, override_of
@@ -14,6 +14,21 @@ SupportsOverride = override_of(Supports)
 InitialOverride = override_of(Initial)
 #: The tables of a building that an analysis may override for itself
 OVERRIDES = ("material", "joints", "supports", "initial")
+
+
+class Animated(Table):
+    """Keys of the analyses whose answer moves."""
+
+    animation: Literal["none", "gif", "mp4"] = key(
+        "none",
+        "also write what moves as a film, 1280 x 720, among the figures; mp4 needs ffmpeg or the package imageio-ffmpeg",
+    )
+    animation_speed: float = key(
+        1.0,
+        "speed of the film: 1 is real time, 0.2 five times slower; what has no time of its own lasts 8 s at 1",
+        gt=0,
+        le=10,
+    )
 
 
 class Analysis(Table):

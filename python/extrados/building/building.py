@@ -66,7 +66,7 @@ class Building:
         """What only some strategies reckon with, as decks call it -> is there any?"""
         return {
             "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
-            "[supports] wall": self.supports.wall is not None,
+            "[supports] abutting_wall": self.supports.abutting_wall is not None,
         }  # fmt: skip
 
     def having(self, **tables: Any) -> "Building":

@@ -3,7 +3,7 @@
 from pydantic import model_validator
 
 from extrados.building.ties import Point
-from extrados.schema.quantities import AxialStiffness, Damping, Force, Moment, TurningDamping, TurningStiffness
+from extrados.schema.quantities import AxialStiffness, Damping, Force, Moment, TurningDamping
 from extrados.schema.table import Table, key
 
 
@@ -54,9 +54,9 @@ class AddedHinge(Table):
         min_length=1,
         max_length=10000,
     )
-    stiffness: TurningStiffness | None = key(None, "moment per turn", gt=0)
+    stiffness: Moment | None = key(None, "moment per radian of turn", gt=0)
     yield_moment: Moment | None = key(None, "moment at which it yields, in both senses; needs stiffness", gt=0)
-    damping: TurningDamping | None = key(None, "moment per rate of turn", gt=0)
+    damping: TurningDamping | None = key(None, "moment per radian per second of turn", gt=0)
 
     @model_validator(mode="after")
     def _whole(self) -> "AddedHinge":

@@ -189,7 +189,7 @@ class Supports(Table):
     """What the building stands on. Stones stand on the joints to the ground that the structure has."""
 
     stiffness: Stiffness | None = key(None, "stiffness of the ground per area, in series with the joints on it", gt=0)
-    wall: Literal["left", "right"] | None = key(
+    abutting_wall: Literal["left", "right"] | None = key(
         None, "a wall that stands against it on this side: it rocks away from it only, and is thrown back by it"
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(

@@ -6,6 +6,7 @@ import copy
 import re
 import shutil
 import tempfile
+import time
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -60,7 +61,7 @@ class BadMessage(ValueError):
 class Session:
     """The deck of one page; `answer` a message at a time, from one thread at a time.
 
-    A reply holds `of`, the number of the message it answers. What is wrong with a deck or has no answer comes as
+    A reply holds `of`, the number of the message it answers, and `ms`, the processor time of this thread that it took. What is wrong with a deck or has no answer comes as
     `complaints`, and then nothing has changed.
     """
 
@@ -91,9 +92,16 @@ class Session:
         try:
             if do is None:
                 raise BadMessage(f"nothing is known of '{str(message.get('do'))[:40]}'")
+            begin = time.thread_time()
             for reply in do(self, message):
-                reply.words = {"of": number, "to": message["do"], **reply.words}
+                reply.words = {
+                    "of": number,
+                    "to": message["do"],
+                    "ms": 1e3 * (time.thread_time() - begin),
+                    **reply.words,
+                }
                 yield reply
+                begin = time.thread_time()
         except TOLD as error:
             complaints = error.complaints if isinstance(error, DeckError) else [str(error)]
             yield Reply({"of": number, "to": message["do"], "complaints": [c[:2000] for c in complaints]})
@@ -319,7 +327,9 @@ class Session:
             value = handle.value_at(x, y)
             size = self.picture.assembly.size if self.picture else 1.0
             if handle.unit == "m":
-                value = [hands.rounded(v, size) for v in value] if isinstance(value, list) else hands.rounded(value, size)
+                value = (
+                    [hands.rounded(v, size) for v in value] if isinstance(value, list) else hands.rounded(value, size)
+                )
             else:
                 value = hands.rounded(value, max(abs(value), 1e-6))
         elif "by" in message:
@@ -436,7 +446,12 @@ class Session:
         live = self._there()
         structure = live.deck.structure
         if structure is None:
-            return Reply({"scene": {"empty": "The deck has no [structure]: there is nothing to draw."}, "deck": self._deck_words()})
+            return Reply(
+                {
+                    "scene": {"empty": "The deck has no [structure]: there is nothing to draw."},
+                    "deck": self._deck_words(),
+                }
+            )
         options, building, name = self._options(LimitAnalysisTable, lambda: Tilt(kind="tilt"))
         try:
             assembly = building.blocks()
@@ -464,7 +479,10 @@ class Session:
              "value": h.value, "along": h.along}
             for h in found
         ]  # fmt: skip
-        return Reply({"scene": made.words, "handles": words, "anchor": self.anchor.tolist(), "deck": self._deck_words()}, made.arrays)
+        return Reply(
+            {"scene": made.words, "handles": words, "anchor": self.anchor.tolist(), "deck": self._deck_words()},
+            made.arrays,
+        )
 
     def _deck_words(self) -> dict[str, Any]:
         live = self._there()
@@ -576,7 +594,9 @@ def _quantity(text: str, unit: str, label: str) -> float:
         pass
     found = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z%/^0-9*]+)", text[:60])
     if not found:
-        raise DeckError([f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"])
+        raise DeckError(
+            [f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"]
+        )
     try:
         return float(found[1]) * quantities.factor(found[2], unit)
     except ValueError as error:
@@ -588,7 +608,11 @@ def _files_of(data: Any) -> list[str]:
     found: list[str] = []
     if isinstance(data, dict):
         for key, value in data.items():
-            if key in ("file", "outline", "vertical", "other") and isinstance(value, str) and not value.startswith("extrados:"):
+            if (
+                key in ("file", "outline", "vertical", "other")
+                and isinstance(value, str)
+                and not value.startswith("extrados:")
+            ):
                 found.append(value)
             elif key == "files" and isinstance(value, list):
                 found += [v for v in value if isinstance(v, str)]

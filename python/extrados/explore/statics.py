@@ -223,4 +223,3 @@ def nearest(assembly: Assembly, point: np.ndarray, chain: str | None) -> tuple[i
     share = np.clip(((point - p) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
     k = int(np.hypot(*(p + share[:, None] * along - point).T).argmin())
     return int(joints[k]), float(share[k])
-

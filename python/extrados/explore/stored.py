@@ -145,7 +145,12 @@ class _Maker:
 
     def _lines(self, *names: str) -> list[dict[str, str]]:
         """Stored lines of thrust, of states that are named."""
-        words = {"collapse": "at collapse, load to +x", "least": "least thrust", "most": "greatest thrust", "central": "most central"}
+        words = {
+            "collapse": "at collapse, load to +x",
+            "least": "least thrust",
+            "most": "greatest thrust",
+            "central": "most central",
+        }
         found = []
         for name in names:
             if f"{name}_line" in self.arrays:
@@ -218,14 +223,30 @@ class _Maker:
         if "ground" in self.arrays:
             self.out["ground"] = self.arrays["ground"][fine]
             self.charts.append(
-                _chart("Ground", axis, _axis("", "acceleration", "g"), [_series("ground", "ground", factor=1 / GRAVITY)], cursor=True)
+                _chart(
+                    "Ground",
+                    axis,
+                    _axis("", "acceleration", "g"),
+                    [_series("ground", "ground", factor=1 / GRAVITY)],
+                    cursor=True,
+                )
             )
-        energies = [k for k in ("work", "kinetic", "potential", "elastic", "damping", "friction") if f"{k}_energy" in self.arrays]
+        energies = [
+            k
+            for k in ("work", "kinetic", "potential", "elastic", "damping", "friction")
+            if f"{k}_energy" in self.arrays
+        ]
         for kind in energies:
             self.out[f"{kind}_energy"] = self.arrays[f"{kind}_energy"][fine]
         if energies:
             self.charts.append(
-                _chart("Energy", axis, _axis("", "energy", "kJ"), [_series(f"{k}_energy", k, factor=1e-3) for k in energies], cursor=True)
+                _chart(
+                    "Energy",
+                    axis,
+                    _axis("", "energy", "kJ"),
+                    [_series(f"{k}_energy", k, factor=1e-3) for k in energies],
+                    cursor=True,
+                )
             )
 
     def supports(self) -> None:
@@ -234,16 +255,36 @@ class _Maker:
             self.out["force_x"], self.out["force_y"] = self.arrays["force"].T
             rows = [_series("force_x", "horizontal", factor=1e-3), _series("force_y", "vertical", factor=1e-3)]
             self.charts.append(
-                _chart("Force on the support", _axis("movement", "movement of the support", "mm", 1e3), _axis("", "force", "kN"), rows, cursor=True)
+                _chart(
+                    "Force on the support",
+                    _axis("movement", "movement of the support", "mm", 1e3),
+                    _axis("", "force", "kN"),
+                    rows,
+                    cursor=True,
+                )
             )
         if "film_movement" in self.arrays:
-            self._moving(1e3 * self.arrays["film_movement"], self.arrays["film_pose"], "mm", "movement", line=self.arrays["film_line"])
+            self._moving(
+                1e3 * self.arrays["film_movement"],
+                self.arrays["film_pose"],
+                "mm",
+                "movement",
+                line=self.arrays["film_line"],
+            )
         elif "shown_pose" in self.arrays:
-            self._moving(1e3 * self.arrays["shown_movement"], self.arrays["shown_pose"], "mm", "movement", line=self.arrays["shown_point"])
+            self._moving(
+                1e3 * self.arrays["shown_movement"],
+                self.arrays["shown_pose"],
+                "mm",
+                "movement",
+                line=self.arrays["shown_point"],
+            )
         elif "settled_pose" in self.arrays:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement")
+            self._moving(
+                share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement"
+            )
 
     def sla(self) -> None:
         self._curve()
@@ -251,9 +292,7 @@ class _Maker:
             return
         events = self.arrays["state_event"]
         pick = np.unique(np.linspace(0, len(events) - 1, min(len(events), MOST_STATES)).round().astype(int))
-        polygons = [
-            a.data[:, : CORNERS[a.data.shape[1]]] for a in self.run.series(self.name, "elements")
-        ]
+        polygons = [a.data[:, : CORNERS[a.data.shape[1]]] for a in self.run.series(self.name, "elements")]
         self.out["node"] = self.arrays["node"]
         self.out["element"] = np.concatenate([p.ravel() for p in polygons])
         self.out["element_start"] = np.cumsum([0, *(n for p in polygons for n in [p.shape[1]] * len(p))])
@@ -281,7 +320,14 @@ class _Maker:
         if "measured_displacement" in self.arrays:
             self.send("measured_displacement", "measured_least", "measured_greatest")
             series.append(
-                _series("measured_greatest", "measured", x="measured_displacement", lower="measured_least", factor=1e-3, sort="band")
+                _series(
+                    "measured_greatest",
+                    "measured",
+                    x="measured_displacement",
+                    lower="measured_least",
+                    factor=1e-3,
+                    sort="band",
+                )
             )
         self.charts.append(_chart("Load and displacement", axis, _axis("", "load", "kN"), series, trace="state"))
 
@@ -303,8 +349,19 @@ class _Maker:
                     rows.append(_series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_")))
             self.send("grid", "stripe_level", "stripe_collapse_probability")
             if "stripe_level" in a:
-                rows.append(_series("stripe_collapse_probability", "share that came down", x="stripe_level", sort="points"))
-            self.charts.append(_chart("Fragility", _axis("grid", about or "intensity", unit), _axis("", "probability", ""), rows, least=0.0, most=1.0))
+                rows.append(
+                    _series("stripe_collapse_probability", "share that came down", x="stripe_level", sort="points")
+                )
+            self.charts.append(
+                _chart(
+                    "Fragility",
+                    _axis("grid", about or "intensity", unit),
+                    _axis("", "probability", ""),
+                    rows,
+                    least=0.0,
+                    most=1.0,
+                )
+            )
         if "duration" in a and "lower" in a:
             self.send("duration", "lower", "upper")
             rows = [_series("upper", "95 % interval", lower="lower", sort="band")]
@@ -312,7 +369,16 @@ class _Maker:
                 if key not in ("duration", "lower", "upper") and np.shape(a[key]) == np.shape(a["duration"]):
                     self.send(key)
                     rows.append(_series(key, key.replace("_", " "), sort="both"))
-            self.charts.append(_chart("Over durations", _axis("duration", "duration", "s"), _axis("", "share", ""), rows, least=0.0, most=1.0))
+            self.charts.append(
+                _chart(
+                    "Over durations",
+                    _axis("duration", "duration", "s"),
+                    _axis("", "share", ""),
+                    rows,
+                    least=0.0,
+                    most=1.0,
+                )
+            )
         if "bin_edge" in a and "bin_count" in a:
             self.out["bin_middle"] = 0.5 * (a["bin_edge"][1:] + a["bin_edge"][:-1])
             self.send("bin_count")
@@ -337,7 +403,14 @@ class _Maker:
             self.send("amplitude")
             heat = {"codes": "codes", "x": "duration", "y": "amplitude"}
         self.charts.append(
-            _chart("Failure domain", _axis("duration", "duration of the pulse", "s"), _axis("", "amplitude", "g"), rows, heat=heat, least=0.0)
+            _chart(
+                "Failure domain",
+                _axis("duration", "duration of the pulse", "s"),
+                _axis("", "amplitude", "g"),
+                rows,
+                heat=heat,
+                least=0.0,
+            )
         )
 
     def dem_domain(self) -> None:
@@ -351,7 +424,13 @@ class _Maker:
                 rows.append(_series("amplitude", f"four hinges, {mode.replace('_', ' ')}", x=mode, dashed=True))
         self.send("amplitude")
         self.charts.append(
-            _chart("Shortest failing pulses", _axis("shortest_0", "duration", "s"), _axis("", "amplitude", "g"), rows, least=0.0)
+            _chart(
+                "Shortest failing pulses",
+                _axis("shortest_0", "duration", "s"),
+                _axis("", "amplitude", "g"),
+                rows,
+                least=0.0,
+            )
         )
 
     def sweep(self) -> None:
@@ -360,7 +439,9 @@ class _Maker:
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
         about = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
         unit = self.run.arrays[self.name]["value"].unit
-        self.charts.append(_chart("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows))
+        self.charts.append(
+            _chart("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
+        )
 
     def moving_load(self) -> None:
         self.send("place", "capacity")
@@ -376,10 +457,16 @@ class _Maker:
     def others(self) -> None:
         """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""
         found = self.run.arrays[self.name]
-        axes = {n: a for n, a in found.items() if a.dims == (n,) and np.size(a.data) > 1 and np.asarray(a.data).dtype.kind in "fiu"}
+        axes = {
+            n: a
+            for n, a in found.items()
+            if a.dims == (n,) and np.size(a.data) > 1 and np.asarray(a.data).dtype.kind in "fiu"
+        }
         for axis, about in axes.items():
             rows = [
-                n for n, a in found.items() if a.dims == (axis,) and n != axis and np.asarray(a.data).dtype.kind in "fiu"
+                n
+                for n, a in found.items()
+                if a.dims == (axis,) and n != axis and np.asarray(a.data).dtype.kind in "fiu"
             ]
             keep = self._over_time(np.size(about.data))
             for unit in dict.fromkeys(found[n].unit for n in rows):

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.plots import style
+from extrados.plots import animation, style
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -78,6 +78,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         )
     if r.restraints:
         found.append(_draw_restraints(run, name, folder, t))
+    animation.draw_rocking(run, name, folder)
     moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
     if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from extrados.analyses.context import Context
+from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
@@ -30,10 +30,16 @@ def run(context: Context, options: Rocking) -> Result:
     context = with_moving_supports(context)
     structure = context.building.structure
     if structure is not None and structure.rocks_as == "stack":
+        if options.animation != "none":
+            raise Refused("rocking draws no film of a stack: dem does")
         return stack_rocking.run(context, options)
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
     result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)
+    if options.animation != "none":
+        from extrados.analyses.rocking.shapes import film_arrays
+
+        result.arrays |= film_arrays(rocker, result)
     needed, given = result.results.required_friction, context.building.joints.coefficient
     if given is not None and needed is not None and needed > given:
         result.warnings.append(

@@ -24,7 +24,7 @@ def run(context: Context, options: Rocking) -> Result:
     """History, impacts, modes, energies, and the friction needed at both joints."""
     building = context.building
     model = StackModel(building.blocks())
-    if building.restraints or building.supports.wall is not None:
+    if building.restraints or building.supports.abutting_wall is not None:
         raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out")
     if options.form == "linear":
         raise Refused('form = "linear" is known of blocks and columns only')

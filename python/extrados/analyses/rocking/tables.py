@@ -4,14 +4,14 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.table import BuildingAnalysis
+from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.building.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
 from extrados.schema.table import key
 
 #: What a rocking structure may be held by
-HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] wall")
+HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
 
 
 class RockingTable(BuildingAnalysis):
@@ -26,7 +26,7 @@ class RockingTable(BuildingAnalysis):
     )
 
 
-class Rocking(RockingTable):
+class Rocking(RockingTable, Animated):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]

@@ -108,7 +108,7 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
 
 
 def _is_restrained(building: "Building") -> bool:
-    return bool(building.restraints) or building.supports.wall is not None
+    return bool(building.restraints) or building.supports.abutting_wall is not None
 
 
 def _restrained(free: Rocker, building: "Building") -> Rocker:
@@ -117,7 +117,7 @@ def _restrained(free: Rocker, building: "Building") -> Rocker:
         return free
     model = free.model
     assert not isinstance(model, ArchModel) and building.structure is not None
-    wall = building.supports.wall
+    wall = building.supports.abutting_wall
     sides = (wall != "right", wall != "left")
     rebound = (0.0, 0.0)
     if isinstance(model, BlockModel):

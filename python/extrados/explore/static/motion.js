@@ -51,19 +51,19 @@ export function motionPanel(app, lower, frame) {
     frame.classList.toggle("with-player", there);
     if (there) { refresh(); requestAnimationFrame(draw); } else { pause(); app.drawing.pose(null); }
   });
-  app.on("scene", (opened, message) => {
+  app.on("scene", (opened, when) => {
     if (opened) { it.earlier = []; it.arrays = it.words = it.map = null; impulse.textContent = ""; }
     const motion = app.deck?.motion;
     kinds.value = motion ? ([...kinds.options].some((o) => o.value === motion.kind) ? motion.kind : "") : "";
-    if (app.tab === "motion") refresh(message);
+    if (app.tab === "motion") refresh(when);
   });
   app.on("theme", () => draw());
   app.on("complaint", (told, message) => { if (app.tab === "motion" && ["rocking", "domain"].includes(message?.do)) { words.textContent = (told.complaints ?? [told.bad]).join(" "); it.arrays = null; draw(); } });
 
   let slow = null;
-  function refresh(message) {
+  function refresh(when) {
     if (!app.scene || app.scene.empty) { words.textContent = app.scene?.empty ?? ""; return; }
-    if (app.deck?.motion) ask({ do: "rocking", lane: "rocking", measured: message?.began ?? performance.now() });
+    if (app.deck?.motion) app.ask({ do: "rocking", lane: "rocking" }, { when: when ?? performance.now() });
     else { words.textContent = "There is no motion yet: choose one below, or drop a record on the page."; charts.pulse.draw(blank("Motion"), {}); }
     clearTimeout(slow);
     slow = setTimeout(() => {
@@ -71,7 +71,6 @@ export function motionPanel(app, lower, frame) {
       if (app.deck?.motion?.kind === "record") app.ask({ do: "impulse", lane: "impulse" });
     }, 60);
   }
-  const ask = (message) => app.ask(message);
   const blank = (title) => ({ title, x: { label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [], span: [0, 1] });
   function begin(kind) {
     const g = app.scene?.capacity ? Math.max(1.6 * app.scene.capacity.plus_g, 0.02) : 0.3;
