@@ -313,7 +313,7 @@ class Session:
         table = {"structure": deck.structure, "motion": deck.motion}.get(way[0], getattr(deck.building, way[0], None))
         if way[0] == "analysis" and len(way) > 2:
             table, way = deck.analyses[self._there().names.index(way[1])], way[1:]
-        return stored.unit_of(table, way[1:]) if table is not None else ("", True)
+        return stored.unit_of(type(table), way[1:]) if table is not None else ("", True)
 
     def _drag(self, message: dict[str, Any]) -> Iterator[Reply]:
         """A handle led to a place (`to`), moved by steps, or given a value as text; `ends` lets go of it."""
