@@ -14,7 +14,16 @@ from extrados.building.geometry.builder import BadGeometry
 from extrados.building.geometry.contacts import Overlap, find_contacts
 from extrados.building.geometry.drawing import Drawing, read_json
 from extrados.building.geometry.inspection import inspect
-from extrados.building.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, reach, signed_area
+from extrados.building.geometry.polygons import (
+    below,
+    crossing_edges,
+    crossings,
+    cut,
+    inside,
+    properties,
+    reach,
+    signed_area,
+)
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Polygon, assemble, make_blocks
 from extrados.building.templates.brickwork import Bond, make_brickwork
