@@ -338,7 +338,9 @@ class _Maker:
             unit = self.run.arrays[self.name]["grid"].unit
             about = self.run.arrays[self.name]["grid"].about
             rows = []
-            for colour, stage in enumerate(("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_")):
+            for colour, stage in enumerate(
+                ("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_")
+            ):
                 words = stage.strip("_").replace("_", " ") or "collapse"
                 low = f"{stage}lower" if stage else "curve_lower"
                 high = low.replace("lower", "upper")
@@ -347,7 +349,9 @@ class _Maker:
                     rows.append(_series(high, f"band of {words}", lower=low, sort="band", colour=colour))
                 if f"{stage}curve" in a:
                     self.send(f"{stage}curve")
-                    rows.append(_series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_"), colour=colour))
+                    rows.append(
+                        _series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_"), colour=colour)
+                    )
             self.send("grid", "stripe_level", "stripe_collapse_probability")
             if "stripe_level" in a:
                 rows.append(
