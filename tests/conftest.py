@@ -39,6 +39,8 @@ def cluster(tmp_path: Path) -> Iterator[tuple[str, list[subprocess.Popen]]]:
     here = str(Path(__file__).parent / "unit")
     environment = {**os.environ, "PYTHONPATH": here + os.pathsep + os.environ.get("PYTHONPATH", "")}
     environment["DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES"] = "10"
+    for what in ("CONNECT", "TCP"):  # on a busy machine a worker would give up after half a minute
+        environment[f"DASK_DISTRIBUTED__COMM__TIMEOUTS__{what}"] = f"{PATIENCE}s"
 
     def start(*words: str) -> subprocess.Popen:
         return subprocess.Popen(

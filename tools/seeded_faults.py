@@ -59,7 +59,7 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     ),
     "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "c/sparse": (("test_sparse", "test_sla"), ("unit/test_sla_events.py",), "sla/"),
-    "c/common": (("test_handles", "test_threads"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),
+    "c/common": (("test_handles", "test_threads", "test_blas"), ("unit/test_border.py", "unit/test_cli.py"), "limit/oppenheim"),
 }  # fmt: skip
 
 #: kind -> (pattern of the part that is changed, what stands in its place)
@@ -82,6 +82,11 @@ class Fault:
     line: int
     old: str
     new: str
+
+    @property
+    def room(self) -> str:
+        """The room that the file belongs to."""
+        return "/".join(self.file.split("/")[:2])
 
     def __str__(self) -> str:
         return f"{self.file}:{self.line}: {self.kind}: {self.old.strip()}  ->  {self.new.strip()}"
@@ -136,7 +141,6 @@ def draw(count: int, seed: int) -> list[Fault]:
                 if share and options:
                     chosen.append(options.pop())
                     share -= 1
-    rng.shuffle(chosen)
     return chosen
 
 
@@ -192,7 +196,7 @@ def caught_by(place: Path, fault: Fault, patience: int) -> str:
             apart.build(place)
         except subprocess.CalledProcessError:
             return "the build"
-        return failing(place, "/".join(fault.file.split("/")[:2]), patience)
+        return failing(place, fault.room, patience)
     finally:
         plant(place, fault, back=True)
 
@@ -218,11 +222,13 @@ def main() -> int:
     kept = place / "fates.json"
     fates: dict[str, str] = json.loads(kept.read_text(encoding="utf-8")) if kept.exists() else {}
     todo = [f for f in chosen if options.only or str(f) not in fates or (options.again and not fates[str(f)])]
-    for room in sorted({"/".join(fault.file.split("/")[:2]) for fault in todo}):
-        if by := failing(place, room, 10 * options.patience):
-            sys.exit(f"{room}: {by} fails without a fault")
-        print(f"{room}: its tests pass", flush=True)
+    todo.sort(key=lambda fault: fault.room)  # the tests of a room pass without a fault before its first is planted
     for k, fault in enumerate(todo, start=1):
+        if f"{fault.room} as it is" not in fates:
+            if by := failing(place, fault.room, 10 * options.patience):
+                sys.exit(f"{fault.room}: {by} fails without a fault")
+            print(f"{fault.room}: its tests pass", flush=True)
+            fates[f"{fault.room} as it is"] = "nothing"
         begin = time.monotonic()
         by = fates[str(fault)] = caught_by(place, fault, options.patience)
         seconds = time.monotonic() - begin

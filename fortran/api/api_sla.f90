@@ -93,8 +93,8 @@ contains
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: room
-      !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first, target of monitor 1
-      !> [m], the side it is reached from, loads like B already on; see stop_rules
+      !> Load carried, displacement of monitor 1 [m], fraction of the peak, compliance over the first, target of
+      !> monitor 1 [m], the side it is reached from, loads like B already on; see stop_rules
       real(c_double), intent(in) :: limits(7)
       integer(c_int), intent(in) :: refuse_overload
       !> 1: without equilibrium all loads go down together, 2: what a tooth sets free is put on at the load reached

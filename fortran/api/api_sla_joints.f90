@@ -40,7 +40,7 @@ contains
          use common_status, only : status_bad_index, status_invalid_argument, status_out_of_memory
          use sla_group, only : element_group
          use sla_handle, only : both_directions, check_nodes
-         use sla_interface, only : interface_group, interface_group_new, joint_law
+         use sla_interface, only : interface_group, interface_group_new, joint_law, joint_law_new
          use sla_model, only : model_add
          integer(c_int), intent(out) :: fate
          type(interface_group), allocatable :: new_joints
@@ -58,14 +58,16 @@ contains
          fate = status_out_of_memory
          allocate (new_joints, stat=info)
          if (info /= 0) return
-         strength%kn = property(3, :)
-         strength%ks = property(4, :)
-         strength%friction = property(5, :)
-         strength%small = property(6, :)
-         strength%table = choice(1, :)
-         strength%crush_table = choice(2, :)
-         strength%slip_table = choice(3, :)
-         strength%dry = choice(4, :)
+         call joint_law_new(int(elements), strength, fate)
+         if (fate /= status_ok) return
+         strength%kn(:) = property(3, :)
+         strength%ks(:) = property(4, :)
+         strength%friction(:) = property(5, :)
+         strength%small(:) = property(6, :)
+         strength%table(:) = choice(1, :)
+         strength%crush_table(:) = choice(2, :)
+         strength%slip_table(:) = choice(3, :)
+         strength%dry(:) = choice(4, :)
          strength%ripple = ripple
          call interface_group_new(property(1:2, :), property(7:8, :), strength, model%teeth, model%options, &
             new_joints, bad, fate)

@@ -35,7 +35,8 @@ contains
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
-   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, status)
+   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, &
+                     status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register
@@ -110,8 +111,8 @@ contains
       !> angle of the bed joints [rad], tensile strength (0: none is bedded) and fracture energy along over across them,
       !> shear factor, crack band or 0, see `bedding` of sla_plane
       real(c_double), intent(in) :: property(11, elements)
-      !> Table of tension teeth, of compression teeth (0 none); 1: the crack normal is given, 2: also the shear is kept;
-      !> first and last table of tension teeth where the crack band follows the crack's direction (0 it does not)
+      !> Table of tension teeth (0 none), first and last of them where the crack band follows the direction of the crack
+      !> (0 where not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
       integer(c_int), intent(in) :: choice(5, elements)
       integer(c_int), intent(out) :: bad                      !! inverted element
       integer(c_int), intent(out) :: status
@@ -139,17 +140,17 @@ contains
          call check_nodes(model, connect, 1_c_int, fate)
          if (fate /= status_ok) return
          fate = status_bad_index
-         if (any(choice < 0) .or. any(choice([1, 2, 4, 5], :) > model%teeth%tables())) return
+         if (any(choice < 0) .or. any(choice(1:4, :) > model%teeth%tables())) return
          fate = status_invalid_argument
-         if (any(choice(4, :) > choice(5, :))) return
-         if (any(property(8, :) > 0.0_c_double .and. choice(1, :) > 0 .and. choice(4, :) == 0)) return
+         if (any(choice(2, :) > choice(3, :))) return
+         if (any(property(8, :) > 0.0_c_double .and. choice(1, :) > 0 .and. choice(2, :) == 0)) return
          if (per /= kind) return   ! the number of a kind is that of its nodes
          fate = status_out_of_memory
          allocate (new_plane, stat=info)
          if (info /= 0) return
          call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
-            property(3, :), choice([1, 4, 5], :), choice(2, :), property(4, :), property(6, :), &
-            choice(3, :), property(5, :), property(7:11, :), &
+            property(3, :), choice(1:3, :), choice(4, :), property(4, :), property(6, :), &
+            choice(5, :), property(5, :), property(7:11, :), &
             model%teeth, model%options, new_plane, bad, fate)
          if (fate /= status_ok) return
          call move_alloc(new_plane, group)

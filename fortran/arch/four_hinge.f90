@@ -206,7 +206,8 @@ contains
             dx = state%pivot1(:, i) + state%turn(i) * normal(arm)
             ddx = state%pivot2(:, i) + state%turn2(i) * normal(arm) - state%turn(i)**2 * arm
             mass = mass + arch%mass(i) * dot_product(dx, dx) + arch%inertia(i) * state%turn(i)**2
-            half_slope = half_slope + arch%mass(i) * dot_product(dx, ddx) + arch%inertia(i) * state%turn(i) * state%turn2(i)
+            half_slope = half_slope + arch%mass(i) * dot_product(dx, ddx) &
+               + arch%inertia(i) * state%turn(i) * state%turn2(i)
             lift = lift + arch%mass(i) * dx(2)
             drive = drive + arch%mass(i) * dx(1)
          end do

@@ -131,7 +131,7 @@ contains
          end if
       end function least
 
-      !> The side that is broken most, over the length of its gradient, or after many idle steps the first one; 0 for none
+      !> The side that is broken most, over the length of its gradient, or after many idle steps the first one; 0: none
       pure function broken() result(found)
          integer :: found, j
          real(wp) :: worst, lack

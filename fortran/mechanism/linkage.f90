@@ -10,7 +10,7 @@ module mechanism_linkage
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: linkage, linkage_new, linkage_state, linkage_coefficients, linkage_path
+   public :: linkage, linkage_new, linkage_state, linkage_coefficients, linkage_path, part_place
 
    type :: linkage
       integer :: parts = 0                     !! moving rigid parts; 0 names the ground

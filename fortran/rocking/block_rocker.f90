@@ -15,8 +15,9 @@ module rocking_block_rocker
 
    !> Length of the parameter list: form (0 nonlinear, 1 linear), mass [kg], inertia about the centre of
    !> mass [kg m^2], its height [m], distance of the right and of the left toe [m], restitution of the
-   !> impacts after which the block rocks to +x and to -x
-   integer, parameter :: block_parameters = 8
+   !> impacts after which the block rocks to +x and to -x, slope of the base up to the right [rad], on which
+   !> height and distances are counted
+   integer, parameter :: block_parameters = 9
    !> Terms of the series of the rate; the rotation has one more
    integer, parameter :: order = 8
    !> Terms below this share of the tolerance end the series: chattering magnifies what is left out
@@ -60,10 +61,11 @@ contains
       associate (mass => parameters(2), inertia => parameters(3), height => parameters(4), toe => parameters(5:6))
          radius = hypot(toe, height)
          body%linear = parameters(1) > 0.5_wp
-         body%alpha = atan2(toe, height)
+         body%alpha = atan2(toe, height) + parameters(9) * [1.0_wp, -1.0_wp]
          body%moment = mass * radius
          body%inertia = inertia + mass * radius**2
       end associate
+      if (any(body%alpha <= 0.0_wp) .or. any(body%alpha >= 0.5_wp * pi)) return  ! it slopes more than the block stands
       body%restitution = parameters(7:8)
       body%critical = body%alpha
       ! As far beyond the balance as rest is short of it, and not below the ground.
@@ -124,7 +126,8 @@ contains
       type(dense_step), intent(inout) :: step
       type(power_series) :: series
       call expand(model, side_index(side), real(side, wp), h, q, v, value, slope, tolerance, series)
-      call take_over(series, h, series_end(series%x, series%last + 1), series_end(series%u, series%last) * (1.0_wp / h), step)
+      call take_over(series, h, series_end(series%x, series%last + 1), &
+         series_end(series%u, series%last) * (1.0_wp / h), step)
    end subroutine series_step
 
    !> A series as a step
@@ -189,7 +192,8 @@ contains
          q_end = series_end(series%x, series%last + 1)
          v_end = series_end(series%u, series%last) * (1.0_wp / h)
          ! A turning point, an impact, a fall, or a step that is too long: for whoever looks closer
-         stopped = series%error > series_short .or. q_end <= 0.0_wp .or. q_end >= model%limit(i) .or. v * v_end <= 0.0_wp
+         stopped = series%error > series_short .or. q_end <= 0.0_wp .or. q_end >= model%limit(i) &
+            .or. v * v_end <= 0.0_wp
          if (stopped) then
             step%t = begin
             call take_over(series, h, q_end, v_end, step)
@@ -276,7 +280,8 @@ contains
                exit
             end if
          end do
-         series%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
+         series%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, &
+            (abs(u(last)) + abs(u(last - 1))) / tolerance_u)
       end associate
    end subroutine expand
 

@@ -164,18 +164,20 @@ contains
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)
-      real(wp) :: la(4), lb(4), stress(size(lambda)), limit(2), share
-      integer :: e
+      real(wp) :: la(4), lb(4), stress, limit(2), share
+      integer :: e, j
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
          call group%gather(e, ua, la)
          call group%gather(e, ub, lb)
-         stress = group%modulus(e) * (dot_product(group%gradient(:, e), la) + &
-            lambda * dot_product(group%gradient(:, e), lb))
          share = sqrt(group%volume(e) / group%modulus(e))
          limit = bar_limits(group, e)
-         if (limit(1) < unbounded) least = min(least, share * (limit(1) - stress))
-         if (limit(2) < unbounded) least = min(least, share * (limit(2) + stress))
+         do j = 1, size(lambda)
+            stress = group%modulus(e) * (dot_product(group%gradient(:, e), la) + &
+               lambda(j) * dot_product(group%gradient(:, e), lb))
+            if (limit(1) < unbounded) least(j) = min(least(j), share * (limit(1) - stress))
+            if (limit(2) < unbounded) least(j) = min(least(j), share * (limit(2) + stress))
+         end do
       end do
    end subroutine bar_margin
 

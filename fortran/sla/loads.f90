@@ -23,7 +23,7 @@ contains
       integer(c_int), intent(out) :: bad            !! inverted element, 1-based
       integer(c_int), intent(out) :: status
       type(element_rule) :: rule
-      real(wp) :: gradient(2, most_nodes, most_points), area(most_points), middle(2, most_nodes)
+      real(wp) :: gradient(2, most_nodes, most_points), area(most_points), middle(2, most_nodes), corner(2, most_nodes)
       real(wp) :: n(most_nodes), dn(2, most_nodes)
       integer :: e, i, k
 
@@ -33,7 +33,10 @@ contains
       call element_rule_new(kind, max(nx, 2_c_int), max(ny, 2_c_int), rule, status)
       if (status /= status_ok) return
       do e = 1, size(connect, 2)
-         call element_gradients(rule, xy(:, connect(:, e)), gradient(:, 1:rule%nodes, :), area, &
+         do i = 1, size(connect, 1)   ! a list of columns as an argument would be a copy that nobody checks
+            corner(:, i) = xy(:, connect(i, e))
+         end do
+         call element_gradients(rule, corner(:, 1:size(connect, 1)), gradient(:, 1:rule%nodes, :), area, &
             middle(:, 1:rule%nodes), status)
          if (status /= status_ok) then
             bad = int(e, c_int)

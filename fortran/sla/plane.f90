@@ -137,7 +137,7 @@ contains
       integer(c_int), intent(out) :: bad            !! the offending element, 1-based
       integer(c_int), intent(out) :: status
       integer :: e, k, p, ne, per, info
-      real(wp) :: area(most_points), middle(2, most_nodes)
+      real(wp) :: area(most_points), middle(2, most_nodes), corner(2, most_nodes)
 
       bad = 0
       call element_rule_new(kind, nx, ny, group%rule, status)
@@ -179,7 +179,10 @@ contains
       do e = 1, ne
          group%bed(e) = bedding(bed(1, e), bed(2, e), bed(3, e), bed(4, e), bed(5, e))
          p = per * (e - 1)
-         call element_gradients(group%rule, xy(:, connect(:, e)), group%gradient(:, :, p + 1:p + per), area, &
+         do k = 1, size(connect, 1)   ! a list of columns as an argument would be a copy that nobody checks
+            corner(:, k) = xy(:, connect(k, e))
+         end do
+         call element_gradients(group%rule, corner(:, 1:size(connect, 1)), group%gradient(:, :, p + 1:p + per), area, &
             middle(:, 1:group%rule%nodes), status)
          if (status /= status_ok) then
             bad = int(e, c_int)
@@ -483,13 +486,12 @@ contains
                share = sqrt(group%weight(p) / group%stiff(1, p))
                f = group%limit(1, p)
                if (f < unbounded) then
-                  least = min(least, share * slack(f, 1.0_wp, sa, sb, lambda))
+                  call lower(f, 1.0_wp, sa, sb, share, lambda, least)
                   fc = group%lateral(e)
-                  if (fc > 0.0_wp) least = min(least, share * &
-                     slack(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, lambda))
+                  if (fc > 0.0_wp) call lower(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, share, lambda, least)
                end if
                f = group%limit(3, p)
-               if (f < unbounded) least = min(least, share * slack(f, -1.0_wp, sa, sb, lambda))
+               if (f < unbounded) call lower(f, -1.0_wp, sa, sb, share, lambda, least)
                cycle
             end if
             do k = 1, merge(1, 2, group%axis(e) /= axis_free)
@@ -511,14 +513,20 @@ contains
    end subroutine margin
 
    !> What r <= alpha - beta m has left; for |beta| <= 1 no more than the greater principal stress of a change uses it
-   pure function slack(alpha, beta, sa, sb, lambda) result(left)
+   pure subroutine lower(alpha, beta, sa, sb, share, lambda, least)
       real(wp), intent(in) :: alpha, beta        !! see sla_interval
       real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
+      real(wp), intent(in) :: share              !! factor on the stress that is left
       real(wp), intent(in) :: lambda(:)
-      real(wp) :: left(size(lambda))             !! [Pa]
-      left = alpha - beta * 0.5_wp * (sa(1) + sa(2) + lambda * (sb(1) + sb(2))) &
-         - sqrt(0.25_wp * (sa(1) - sa(2) + lambda * (sb(1) - sb(2)))**2 + (sa(3) + lambda * sb(3))**2)
-   end function slack
+      real(wp), intent(inout) :: least(:)
+      real(wp) :: left
+      integer :: j
+      do j = 1, size(lambda)
+         left = alpha - beta * 0.5_wp * (sa(1) + sa(2) + lambda(j) * (sb(1) + sb(2))) &
+            - sqrt(0.25_wp * (sa(1) - sa(2) + lambda(j) * (sb(1) - sb(2)))**2 + (sa(3) + lambda(j) * sb(3))**2)
+         least(j) = min(least(j), share * left)
+      end do
+   end subroutine lower
 
    !> Does the strength of an element depend on the direction to its bed joints?
    pure function is_bedded(group, e) result(yes)

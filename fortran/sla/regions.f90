@@ -485,7 +485,7 @@ contains
          at_lo = between(tree%lambda, part%margin, lo)
          if (.not. (at_hi > 0.0_wp .and. at_lo > 0.0_wp)) return
          call edge_motion(tree, part, ua, ub)
-         calm = all(reach(part%moved, [hi, lo]) < 0.999999_wp * [at_hi, at_lo])
+         calm = reach(part%moved, hi) < 0.999999_wp * at_hi .and. reach(part%moved, lo) < 0.999999_wp * at_lo
          part%failed = merge(0, part%failed + 1, calm)
          if (.not. calm) part%patience = min(2**min(part%failed, 10) - 1, most_patience)
       end associate
@@ -510,11 +510,11 @@ contains
       if (width > 0.0_wp) value = margin(i) + (margin(i + 1) - margin(i)) * ((at - lambda(i)) / width)
    end function between
 
-   !> Bound of sqrt(2 U) of the edge's motion at some multipliers
+   !> Bound of sqrt(2 U) of the edge's motion at a multiplier
    pure function reach(moved, lambda) result(value)
       real(wp), intent(in) :: moved(6)          !! see edge_motion
-      real(wp), intent(in) :: lambda(:)
-      real(wp) :: value(size(lambda))
+      real(wp), intent(in) :: lambda
+      real(wp) :: value
       value = sqrt(max(moved(1) + lambda * (2.0_wp * moved(2) + lambda * moved(3)), 0.0_wp)) &
          + sqrt(max(moved(4) + lambda * (2.0_wp * moved(5) + lambda * moved(6)), 0.0_wp))
    end function reach
@@ -594,7 +594,9 @@ contains
             end if
             tree%part(k)%margin = least
          else
-            least = tree%part(k)%margin - reach(tree%part(k)%moved, tree%lambda)
+            do i = 1, levels
+               least(i) = tree%part(k)%margin(i) - reach(tree%part(k)%moved, tree%lambda(i))
+            end do
          end if
          if (parent > 0) tree%part(parent)%margin = min(tree%part(parent)%margin, least)
       end do

@@ -1,7 +1,9 @@
 /* Lets one call fail: the k-th write to a file, or the k-th allocation that the core or its libraries ask for.
  *
- *   LD_PRELOAD=shim.so SHIM_WRITE=k SHIM_COUNT=FILE   open for writing, write, fsync, rename and mkdir count alike
- *   shim_allocations(first, last, k) from within      allocations called from addresses of the core */
+ *   shim_writes(k)        open for writing, write, fsync, rename and mkdir count alike
+ *   shim_allocations(k)   allocations called from addresses of the core; the place of the one that fails goes to stderr
+ *
+ * Both are called from within a process that has it preloaded, and return how many calls there were before. */
 #define _GNU_SOURCE
 #include <dlfcn.h>
 #include <errno.h>
@@ -20,17 +22,10 @@
 
 static atomic_long writes, fail_write = -1;
 
-__attribute__((constructor)) static void begin(void) {
-  const char *k = getenv("SHIM_WRITE");
-  fail_write = k ? atol(k) : -1;
-}
-
-__attribute__((destructor)) static void end(void) {
-  const char *path = getenv("SHIM_COUNT");
-  if (!path) return;
-  fail_write = -1;
-  FILE *file = fopen(path, "w");
-  if (file) fprintf(file, "%ld\n", (long)writes), fclose(file);
+/* From now on the k-th call that changes files fails; -1 none. How many there were before. */
+long shim_writes(long k) {
+  fail_write = k;
+  return atomic_exchange(&writes, 0);
 }
 
 static int fails(void) { return atomic_fetch_add(&writes, 1) == fail_write ? (errno = ENOSPC, 1) : 0; }
@@ -48,6 +43,9 @@ ssize_t pwrite64(int fd, const void *data, size_t size, off64_t at) {
 }
 int fsync(int fd) { return fails() ? -1 : REAL(fsync)(fd); }
 int rename(const char *from, const char *to) { return fails() ? -1 : REAL(rename)(from, to); }
+int renameat2(int from_place, const char *from, int to_place, const char *to, unsigned flags) {
+  return fails() ? -1 : REAL(renameat2)(from_place, from, to_place, to, flags);
+}
 int mkdir(const char *path, mode_t mode) { return fails() ? -1 : REAL(mkdir)(path, mode); }
 int open64(const char *path, int flags, ...) {
   va_list more;
@@ -81,17 +79,29 @@ static int add(struct dl_phdr_info *info, size_t size, void *data) {
 /* From now on the k-th allocation asked for by the core, CHOLMOD or GSL fails; -1 none. How many there were before. */
 long shim_allocations(long k) {
   if (!ranges)
-    for (const char **name = (const char *[]){"/_core", "libcholmod", "libsuitesparseconfig", "libgsl.", "libamd", NULL}; *name; name++)
+    for (const char **name = (const char *[]){"/_core.", "libcholmod", "libsuitesparseconfig", "libgsl.", "libamd", NULL}; *name; name++)
       dl_iterate_phdr(add, (void *)*name);
   fail_allocation = k;
   return atomic_exchange(&allocations, 0);
 }
 
+/* Where the k-th allocation since the last call of shim_allocations was asked for. */
+enum { SITES = 1 << 20 };
+static uintptr_t site[SITES];
+unsigned long shim_site(long k) { return k < SITES ? site[k] : 0; }
+
 static int refused(void *caller) {
   if (!ranges) return 0;
   for (int k = 0; k < ranges; k++)
-    if ((uintptr_t)caller >= ours[k].from && (uintptr_t)caller < ours[k].to)
-      return atomic_fetch_add(&allocations, 1) == fail_allocation ? (errno = ENOMEM, 1) : 0;
+    if ((uintptr_t)caller >= ours[k].from && (uintptr_t)caller < ours[k].to) {
+      const long number = atomic_fetch_add(&allocations, 1);
+      if (number < SITES) site[number] = (uintptr_t)caller;
+      if (number != fail_allocation) return 0;
+      Dl_info where;
+      if (dladdr(caller, &where)) dprintf(2, "%s+0x%lx\n", where.dli_fname, (long)((char *)caller - (char *)where.dli_fbase) - 1);
+      errno = ENOMEM;
+      return 1;
+    }
   return 0;
 }
 

@@ -37,8 +37,8 @@ class Analysis(Table):
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
-    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears_ties: whether it
-    reckons with [[ties]]; one that looks at a building and does not is refused where there are any.
+    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
+    Building.special it reckons with; one that looks at a building with more is refused.
     """
 
     kind: str
@@ -47,7 +47,7 @@ class Analysis(Table):
     uses: ClassVar[tuple[str, ...]] = ()
     method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
-    bears_ties: ClassVar[bool] = False
+    bears: ClassVar[tuple[str, ...]] = ()
     starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = ""
 

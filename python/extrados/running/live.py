@@ -153,7 +153,9 @@ class _Kept:
 
 
 #: What a building is said to be, table by table
-_TABLES = frozenset({"structure", "material", "materials", "joints", "supports", "initial", "ties"})
+_TABLES = frozenset(
+    {"structure", "material", "materials", "joints", "supports", "initial", "ties", "dampers", "hinges"}
+)
 
 
 class _Seen:

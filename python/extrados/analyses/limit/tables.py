@@ -37,7 +37,7 @@ class LimitAnalysisTable(BuildingAnalysis):
     """What all questions of limit analysis ask."""
 
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
-    bears_ties: ClassVar = True
+    bears: ClassVar = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
         "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
@@ -119,7 +119,7 @@ class Supports(BuildingAnalysis, Animated):
     """
 
     kind: Literal["supports"]
-    bears_ties: ClassVar = True
+    bears: ClassVar = ("[[ties]]",)
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     movement: Length | None = key(

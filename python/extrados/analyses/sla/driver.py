@@ -100,7 +100,8 @@ def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], 
         for stage in found
         if stage["end_load_N"] is not None
     )
-    result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"
+    if ends:
+        result.answer = f"Stages ended: {ends}. Of stage {main.name}: {result.answer}"
     return found
 
 
