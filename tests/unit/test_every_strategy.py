@@ -67,7 +67,7 @@ REFUSED = {
     ("column", "moving-load"): PRESSED.format("column"),
     ("frame", "moving-load"): PRESSED.format("frame"),
     ("stack", "moving-load"): PRESSED.format("stack"),
-    **{("stack", strategy): TWO for strategy in ("failure-domain", "assessment", "fragility")},
+    **{("stack", strategy): TWO for strategy in ("failure-domain", "failure-curves", "assessment", "fragility")},
     ("brickwork", "moving-load"): PRESSED.format("wall"),
     ("brickwork with a door", "moving-load"): PRESSED.format("wall"),
     ("panel", "moving-load"): PRESSED.format("panel"),
