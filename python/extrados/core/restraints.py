@@ -39,10 +39,6 @@ class Law:
         """The flat list of the core."""
         return [self.stiffness, self.prestress, self.most, self.least, float(self.slack), self.viscous, self.power]
 
-    def first_force(self, u: float) -> float:
-        """Force at a path that is pulled from rest for the first time [N]."""
-        return min(self.most, max(self.least, self.prestress + self.stiffness * u))
-
 
 def paths(
     linkage: Links, sort: npt.ArrayLike, ends: npt.ArrayLike, points: npt.ArrayLike, reach: npt.ArrayLike
