@@ -88,8 +88,7 @@
   ENTRY(8, open_s, "opening s") \
   ENTRY(9, wear, "cohesion") \
   ENTRY(10, slide, "sliding") \
-  ENTRY(11, follow, "friction follows") \
-  ENTRY(12, stick, "sticking")
+  ENTRY(11, stick, "sticking")
 
 /* Why a run of events ended */
 #define EXTRADOS_SLA_STOP_LIST(ENTRY) \

@@ -3,6 +3,7 @@
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "extrados.h"
 
@@ -54,6 +55,18 @@ static void rules(void) {
   assert(extrados_handle_close(third, 1) == EXTRADOS_ok && destroyed[2] == 1 && extrados_handle_count() == 0);
 }
 
+/* A name that has no room is cut, and nothing is written behind it. */
+static void cut_names(void) {
+  int code;
+  char name[16], text[16];
+  for (int k = 0; extrados_list_entry(k, &code, 8, name, 8, text); k++) {
+    memset(name, 7, sizeof name);
+    memset(text, 7, sizeof text);
+    assert(extrados_list_entry(k, &code, 8, name, 8, text));
+    for (int i = 8; i < 16; i++) assert(name[i] == 7 && text[i] == 7);
+  }
+}
+
 static void *worker(void *number) {
   void *object;
   for (int k = 0; k < objects; k++) {
@@ -71,6 +84,7 @@ int main(void) {
   pthread_t thread[threads];
   int number[threads];
   rules();
+  cut_names();
   for (int k = 0; k < objects; k++) {
     destroyed[k] = 0;
     assert(extrados_handle_new(EXTRADOS_handle_motions, &destroyed[k], destroy, &handles[k]) == EXTRADOS_ok);

@@ -1,6 +1,7 @@
 """Calls the core's Python API with arguments that are wrong at random; prints the number of each call before it is made.
 
     api_worker.py SEED FIRST COUNT
+    api_worker.py unreached             which functions of the core it does not come to
 
 Every call must end with a result or an exception; after it the core must still give the right bits. What would end the
 process ends this one, and the last number tells where.
@@ -49,7 +50,7 @@ def wall(xy, held, connect, thickness, young, nu, band, strength, energy, latera
 
 
 def joints(connect, normal, area, stiffness, shear, friction, cohesion, energy, dry, small, ripple, push, pressure, room, slip,
-           load) -> Any:  # fmt: skip
+           load, moved, travel, rate) -> Any:  # fmt: skip
     """A joint pressed and sheared; then its most overloaded points, all at once."""
     xy = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
     free = sla.Freedoms.make(4, [(n, d) for n in (0, 1) for d in (0, 1)], [[(2, d, 1.0), (3, d, 1.0)] for d in (0, 1)])
@@ -62,7 +63,13 @@ def joints(connect, normal, area, stiffness, shear, friction, cohesion, energy, 
         events = model.run(room, [sla.Monitor.of(2, 0)], sla.Stop(displacement=slip))
         found = events.load, model.report(1.0), model.standing_at(1.0)
         model.loads(pressure, push)
-        return *found, model.relax(load)
+        relaxed = model.relax(load)
+    free.moved = moved
+    with sla.Model(xy, free, [joint], sla.Behaviour(floor=1e-9, closure=True)) as model:
+        model.supports(travel, rate)
+        model.loads(pressure, push)
+        model.run(room, [sla.Monitor.of(2, 0)], sla.Stop(displacement=slip))
+        return *found, relaxed, model.reactions()
 
 
 def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_time, output_step, step, fraction, settle, domain,
@@ -180,6 +187,7 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             connect=np.array([[0, 1, 2, 3]]), normal=np.array([[0.0, 1.0]]), area=np.array([[0.5, 0.5]]), stiffness=8e10, shear=4e10,
             friction=0.75, cohesion=3e5, energy=120.0, dry=False, small=1.0, ripple=0.1, push=np.array([[0.0, 0.0], [0.0, 0.0],
             [1.0, 0.0], [0.0, 0.0]]), pressure=np.array([[0.0, 0.0], [0.0, 0.0], [0.0, -1e5], [0.0, 0.0]]), room=30, slip=1e-3, load=5e5,
+            moved=1, travel=np.array([-1e-6]), rate=np.array([0.0]),
         )),
         (chains, dict(
             mass=link.mass, centroid=link.centroid, inertia=link.inertia, joined=link.joined, point=link.point, row=link.row,
@@ -256,6 +264,29 @@ def bits(value: Any) -> bytes:
 PATIENCE = 3.0  # seconds of the processor; then a call is asked to stop, as by Ctrl-C: it may have an age to compute
 
 
+class Watched:
+    """A module of the compiled core that notes which of its functions are asked for."""
+
+    def __init__(self, module: Any, name: str, seen: set[str]):
+        self._module, self._name, self._seen = module, name, seen
+
+    def __getattr__(self, function: str) -> Any:
+        self._seen.add(f"{self._name}.{function}")
+        return getattr(self._module, function)
+
+
+def unreached() -> list[str]:
+    """Functions of the compiled core that no valid call comes to."""
+    seen: set[str] = set()
+    there = {name: getattr(_core, name) for name in dir(_core) if name.startswith("api_")}
+    for name, module in there.items():
+        setattr(_core, name, Watched(module, name, seen))
+    for function, keys in _valid():
+        function(**keys)
+    every = {f"{name}.{f}" for name, module in there.items() for f in dir(module) if not f.startswith("_")}
+    return sorted(every - seen)
+
+
 def main() -> None:
     signal.signal(signal.SIGPROF, lambda *_: _core.api_support.set_cancel(1))
     seed, first, count = map(int, sys.argv[1:])
@@ -288,4 +319,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    print(*unreached(), sep="\n") if sys.argv[1:] == ["unreached"] else main()

@@ -79,7 +79,7 @@ static int add(struct dl_phdr_info *info, size_t size, void *data) {
 /* From now on the k-th allocation asked for by the core, CHOLMOD or GSL fails; -1 none. How many there were before. */
 long shim_allocations(long k) {
   if (!ranges)
-    for (const char **name = (const char *[]){"/_core", "libcholmod", "libsuitesparseconfig", "libgsl.", "libamd", NULL}; *name; name++)
+    for (const char **name = (const char *[]){"/_core.", "libcholmod", "libsuitesparseconfig", "libgsl.", "libamd", NULL}; *name; name++)
       dl_iterate_phdr(add, (void *)*name);
   fail_allocation = k;
   return atomic_exchange(&allocations, 0);

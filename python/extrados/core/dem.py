@@ -301,7 +301,10 @@ class Model(Owner):
         words = state[:-_DIGEST]
         if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], _digest(words)):
             raise ValueError("the state of the run is damaged")
-        if _core.api_dem.resume(self.handle, wanted, words) != status_code("ok"):
+        status = _core.api_dem.resume(self.handle, wanted, words)
+        if status == status_code("out_of_memory"):
+            check(status, "state of the run")
+        if status != status_code("ok"):
             raise ValueError("the state is of a run of another model, of other times or of another build")
 
     def _last_run(self, interrupted: bool) -> Run:

@@ -17,7 +17,7 @@ import numpy as np
 
 from extrados import kinds
 from extrados._build_info import VERSION
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import block_under
 from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
 from extrados.analyses.rocking.tables import FailureDomain, Rocking
@@ -277,7 +277,7 @@ class Session:
         try:
             reply = self._scene()
         except TOLD:
-            live._take(before)
+            live.back_to(before)
             raise
         for key, value in written.items():
             self.document.put(self._path(key), value)
@@ -317,7 +317,7 @@ class Session:
         table = {"structure": deck.structure, "motion": deck.motion}.get(way[0], getattr(deck.building, way[0], None))
         if way[0] == "analysis" and len(way) > 2:
             table, way = deck.analyses[self._there().names.index(way[1])], way[1:]
-        return stored.unit_of(table, way[1:]) if table is not None else ("", True)
+        return stored.unit_of(type(table), way[1:]) if table is not None else ("", True)
 
     def _drag(self, message: dict[str, Any]) -> Iterator[Reply]:
         """A handle led to a place (`to`), moved by steps, or given a value as text; `ends` lets go of it."""
@@ -509,15 +509,11 @@ class Session:
 
     # Motion
 
-    def _context(self) -> Context:
-        live = self._there()
-        return Context(live.deck, live.threads, motions=live._motions)
-
     def _rocking(self, message: dict[str, Any]) -> Iterator[Reply]:
         """The response to the deck's motion, with shapes unless the page only looks for an amplitude."""
         if self._there().deck.motion is None:
             raise Refused("the deck has no [motion]")
-        context = self._context()
+        context = self._there().context()
         motion = context.motion
         drawn = rocking.curve(motion)
         options, building, _ = self._options(Rocking, lambda: Rocking(kind="rocking"))
@@ -528,7 +524,7 @@ class Session:
     def _impulse(self, _: dict[str, Any]) -> Iterator[Reply]:
         if self._there().deck.motion is None:
             raise Refused("the deck has no [motion]")
-        context = self._context()
+        context = self._there().context()
         yield Reply({"impulse": rocking.impulse(context, self._there().deck.building)})
 
     def _domain(self, message: dict[str, Any]) -> Iterator[Reply]:
@@ -549,7 +545,7 @@ class Session:
             yield Reply({"domain": words}, arrays)
             return
         self._maps = {k: v for k, v in list(self._maps.items())[-7:]}
-        for step in rocking.domain(self._context(), building, asked):
+        for step in rocking.domain(self._there().context(), building, asked):
             self._maps[mark] = [step]
             yield Reply({"domain": step[0]}, step[1])
 

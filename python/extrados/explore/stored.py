@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.decks.reader import Deck
+from extrados.kinds import STRUCTURES, table
 from extrados.plots.sla import CORNERS
 from extrados.results.store import Stored, StoreError
 from extrados.schema.constants import GRAVITY
@@ -32,9 +33,9 @@ def _branches(about: dict[str, Any]) -> list[dict[str, Any]]:
     return found + [b["items"] for b in found if isinstance(b.get("items"), dict)]
 
 
-def unit_of(table: Table, way: list[str]) -> tuple[str, bool]:
+def unit_of(table: type[Table], way: list[str]) -> tuple[str, bool]:
     """The unit of the key that a way leads to within a table, and whether a number may stand there without it."""
-    properties, definitions = _properties(type(table))
+    properties, definitions = _properties(table)
     about: dict[str, Any] = {}
     for part in way:
         if part.isdecimal():
@@ -337,16 +338,20 @@ class _Maker:
             unit = self.run.arrays[self.name]["grid"].unit
             about = self.run.arrays[self.name]["grid"].about
             rows = []
-            for stage in ("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_"):
+            for colour, stage in enumerate(
+                ("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_")
+            ):
                 words = stage.strip("_").replace("_", " ") or "collapse"
                 low = f"{stage}lower" if stage else "curve_lower"
                 high = low.replace("lower", "upper")
                 if low in a and high in a:
                     self.send(low, high)
-                    rows.append(_series(high, f"band of {words}", lower=low, sort="band"))
+                    rows.append(_series(high, f"band of {words}", lower=low, sort="band", colour=colour))
                 if f"{stage}curve" in a:
                     self.send(f"{stage}curve")
-                    rows.append(_series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_")))
+                    rows.append(
+                        _series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_"), colour=colour)
+                    )
             self.send("grid", "stripe_level", "stripe_collapse_probability")
             if "stripe_level" in a:
                 rows.append(
@@ -437,8 +442,10 @@ class _Maker:
         self.send("value", "gamma", "fractured", "buttress_alone")
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
-        about = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
-        unit = self.run.arrays[self.name]["value"].unit
+        key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
+        kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
+        unit = unit_of(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
+        about = key.replace("_", " ")
         self.charts.append(
             _chart("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
         )

@@ -201,7 +201,7 @@ class Sla(BuildingAnalysis, Animated):
     )
     friction_ripple: float = key(
         0.02,
-        "half-width of the steps by which friction follows the normal stress of joints, over the friction",
+        "a quarter of the slip back after which a joint that slides sticks, over the elastic slip of its friction",
         ge=0.001,
         le=0.1,
     )

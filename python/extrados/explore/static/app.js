@@ -351,6 +351,13 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     return out;
   }
+  /** The mechanism at a share of its way, for films; null where there is none. */
+  app.mechanismAt = (share) => {
+    const way = app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus";
+    if (!app.arrays[`${way}_velocity`]) return false;
+    if (share !== undefined) drawing.pose(share === null ? null : between(way, share));
+    return true;
+  };
   app.stopMechanism = () => { if (swing) mechanism(true); };
   app.mechanismShown = () => swing !== null;
   stageBox.addEventListener("pointerdown", (e) => {

@@ -132,7 +132,7 @@ export function chart(box, options = {}) {
     options.ondraw?.(it);
   }
   const get = (name) => (typeof name === "string" ? arrays[name] : name);
-  const colour = (row, rows) => row.colour ?? rows.filter((r) => !r.faint && !r.colour).indexOf(row) % 6;
+  const colour = (row, rows) => row.colour ?? (row.faint ? 5 : null) ?? rows.filter((r) => !r.faint && !r.colour).indexOf(row) % 6;
   function words(spec) {
     const ys = spec.series.filter((r) => get(r.array)?.length).map((r) => {
       const [low, high] = range(get(r.array), r.factor ?? 1);

@@ -98,7 +98,7 @@ export function motionPanel(app, lower, frame) {
     const { arrays, words: told } = it;
     if (!arrays) { for (const key of ["history", "energy", "friction"]) charts[key].draw({ ...blank({ history: "Rotation", energy: "Energy", friction: "Friction along the joints" }[key]), y: { label: "", unit: "" } }, {}); }
     else {
-      charts.pulse.draw({ title: "Ground acceleration", x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: 0 }, arrays);
+      charts.pulse.draw({ title: "Ground acceleration", x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: 0, most: 1.22 * arrays.motion.reduce((m, v) => Math.max(m, v), 0) }, arrays);
       const critical = 1e3 * told.critical_rad[0], most = 1e3 * Math.abs(told.peak_rotation_rad);
       const flat = (v) => ({ x: Float32Array.of(0, arrays.time.at(-1) || 1), y: Float32Array.of(v, v) });
       const level = flat(critical), under = flat(-1e3 * told.critical_rad[1]);
@@ -237,7 +237,7 @@ export function motionPanel(app, lower, frame) {
       const n = it.arrays.friction.shape[1], k = it.frame ?? 0;
       const now = it.arrays.friction.subarray(k * n, (k + 1) * n), joint = Float32Array.from({ length: n }, (_, j) => j), most = new Float32Array(n);
       for (let i = 0; i < it.arrays.friction.length; i += 1) { const v = it.arrays.friction[i]; if (Number.isFinite(v) && v > most[i % n]) most[i % n] = Math.min(v, 2); }
-      charts.friction.draw({ title: `Friction needed along the joints at ${it.time.toFixed(2)} s`, x: { array: "joint", label: "joint", unit: "" }, y: { label: "coefficient", unit: "" }, series: [{ array: "now", label: "now", sort: n > 60 ? "line" : "both" }, { array: "most", label: "greatest so far", dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
+      charts.friction.draw({ title: `Friction needed at ${it.time.toFixed(2)} s`, x: { array: "joint", label: "joint", unit: "" }, y: { label: "coefficient", unit: "" }, series: [{ array: "now", label: "now", sort: n > 60 ? "line" : "both" }, { array: "most", label: "greatest so far", dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
     }
   }
   function toggle() { if (it.playing) pause(); else run(); }
