@@ -99,7 +99,9 @@ contains
    pure subroutine arms(body, s, d1, e, d2)
       type(stack), intent(in) :: body
       integer, intent(in) :: s(2)  !! pivots; 0 the middle
-      real(wp), intent(out) :: d1(2), e(2), d2(2)
+      real(wp), intent(out) :: d1(2)  !! to the centre of the lower block [m]
+      real(wp), intent(out) :: e(2)   !! to the pivot between [m]
+      real(wp), intent(out) :: d2(2)  !! from there to the centre of the upper block [m]
       d1 = [-s(1) * body%half(1), body%centre(1)]
       e = [s(2) * body%half(2) - s(1) * body%half(1), body%height]
       d2 = [-s(2) * body%half(2), body%centre(2)]
@@ -108,7 +110,7 @@ contains
    !> A vector turned clockwise
    pure function turned(v, q) result(w)
       real(wp), intent(in) :: v(2)
-      real(wp), intent(in) :: q
+      real(wp), intent(in) :: q  !! [rad]
       real(wp) :: w(2)
       w = [v(1) * cos(q) + v(2) * sin(q), -v(1) * sin(q) + v(2) * cos(q)]
    end function turned
@@ -116,10 +118,10 @@ contains
    !> Kinetic matrix about a pair of pivots, and K' of its coupling
    pure subroutine kinetic_matrix(body, s, q, matrix, slope)
       type(stack), intent(in) :: body
-      integer, intent(in) :: s(2)
-      real(wp), intent(in) :: q(2)
-      real(wp), intent(out) :: matrix(2, 2)
-      real(wp), intent(out) :: slope  !! of the coupling by q2 - q1
+      integer, intent(in) :: s(2)            !! pivots
+      real(wp), intent(in) :: q(2)           !! rotations [rad]
+      real(wp), intent(out) :: matrix(2, 2)  !! [kg m^2]
+      real(wp), intent(out) :: slope         !! of the coupling by q2 - q1 [kg m^2]
       real(wp) :: d1(2), e(2), d2(2), along, across, r
       call arms(body, s, d1, e, d2)
       r = q(2) - q(1)
@@ -135,8 +137,9 @@ contains
    !> The equation of motion about a pair of pivots
    pure function motion_about(body, s, q, v, ground) result(one)
       type(stack), intent(in) :: body
-      integer, intent(in) :: s(2)
-      real(wp), intent(in) :: q(2), v(2)
+      integer, intent(in) :: s(2)        !! pivots
+      real(wp), intent(in) :: q(2)       !! rotations [rad]
+      real(wp), intent(in) :: v(2)       !! rates [rad/s]
       real(wp), intent(in) :: ground(2)  !! acceleration to +x and up [m/s^2]
       type(pivot_equation) :: one
       real(wp) :: d1(2), e(2), d2(2), slope, first(2), second(2)

@@ -23,7 +23,9 @@ FREE = float(np.finfo(float).max)
 class Law:
     """Force on a path against its growth: prestress + stiffness u between `least` and `most`, and viscous |u'|^power.
 
-    slack: 1 where it is slack below `least` (a tie), -1 above `most` (a strut); 0 where it yields at both bounds.
+    u is a length [m] or a turn [rad]: stiffness [N/m or N m/rad], prestress, most and least [N or N m], viscous
+    [N (s/m)^power or N m (s/rad)^power]. slack: 1 where it is slack below `least` (a tie), -1 above `most` (a strut); 0
+    where it yields at both bounds.
     """
 
     stiffness: float = 0.0
@@ -38,10 +40,6 @@ class Law:
     def numbers(self) -> list[float]:
         """The flat list of the core."""
         return [self.stiffness, self.prestress, self.most, self.least, float(self.slack), self.viscous, self.power]
-
-    def first_force(self, u: float) -> float:
-        """Force at a path that is pulled from rest for the first time [N]."""
-        return min(self.most, max(self.least, self.prestress + self.stiffness * u))
 
 
 def paths(

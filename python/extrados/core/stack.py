@@ -66,7 +66,8 @@ def stack_history(
     stack: Stack, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
     start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
 ) -> StackResponse:  # fmt: skip
-    """Rock the stack under `ground` times `scale` until collapse or `end_time` [s]; start: rotations [rad] and rates."""
+    """Rock the stack under `ground` times `scale` until collapse or `end_time` [s]; start: rotations [rad]
+    of the lower and the upper block, then their rates [rad/s]; output_step [s]; room: most events that are kept."""
     if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
         raise ValueError("end time, output step and tolerance must be positive, the scale a number")
     if not 1 <= room <= 10**7:

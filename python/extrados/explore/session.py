@@ -247,6 +247,11 @@ class Session:
 
     def _save(self, message: dict[str, Any]) -> Iterator[Reply]:
         """The deck into the working folder, with the dropped files it names."""
+        saved = self._saved(message)
+        yield Reply({"saved": saved, "decks": self.folder.decks()})
+
+    def _saved(self, message: dict[str, Any]) -> str:
+        """Where the deck was saved in the working folder, at the path of a message, with the dropped files it names."""
         path = message.get("path")
         if not isinstance(path, str):
             raise BadMessage("expected a path")
@@ -254,8 +259,7 @@ class Session:
         if self.place != self.folder.root:
             for name in _files_of(self._there().deck.data):
                 beside[name] = self.folder.beside(self.place, name)
-        saved = self.folder.save(path, self.document.text, beside, message.get("replace") is True)
-        yield Reply({"saved": saved, "decks": self.folder.decks()})
+        return self.folder.save(path, self.document.text, beside, message.get("replace") is True)
 
     # Changes
 
@@ -559,14 +563,7 @@ class Session:
 
     def _compute(self, message: dict[str, Any]) -> Iterator[Reply]:
         """Save the deck and run all its analyses by the command line, in a process of its own; progress as it comes."""
-        path = message.get("path")
-        if not isinstance(path, str):
-            raise BadMessage("expected a path")
-        beside = {}
-        if self.place != self.folder.root:
-            for name in _files_of(self._there().deck.data):
-                beside[name] = self.folder.beside(self.place, name)
-        saved = self.folder.save(path, self.document.text, beside, message.get("replace") is True)
+        saved = self._saved(message)
         for line, done in self.folder.compute(saved):
             yield Reply({"computing": line, "done": done, "runs": self.folder.runs() if done else None, "saved": saved})
 

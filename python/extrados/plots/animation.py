@@ -44,6 +44,11 @@ def pictures(times: np.ndarray, kind: str, speed: float) -> tuple[np.ndarray, in
     return np.searchsorted(times, at - 1e-12).clip(max=len(times) - 1), max(1, round(speed / step))
 
 
+def _clock(time: float, speed: float) -> str:
+    """Time of a picture [s] in words, with the film's speed where that is not the real one."""
+    return f"{time:.2f} s" + ("" if speed == 1.0 else f", at {speed:g} of real time")
+
+
 def write(
     fig: Figure,
     path: Path,
@@ -209,7 +214,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> None:
                 thrust.set_data(*line.data[k].T)
             for cursor in cursors:
                 cursor.set_xdata([time[k], time[k]])
-            title.set_text(f"{time[k]:.2f} s" + ("" if speed == 1.0 else f", at {speed:g} of real time"))
+            title.set_text(_clock(time[k], speed))
 
         write(
             fig,
@@ -439,7 +444,7 @@ def draw_dem(run: Stored, name: str, folder: Path) -> None:
             hinges.set_data(*scene.hinges(k).T)
             for cursor in cursors:
                 cursor.set_xdata([time[k], time[k]])
-            title.set_text(f"{time[k]:.2f} s" + ("" if speed == 1.0 else f", at {speed:g} of real time"))
+            title.set_text(_clock(time[k], speed))
 
         write(
             fig,

@@ -121,7 +121,7 @@ def _result(context: Context, options: Rocking, model: StackModel, r: StackRespo
         "time": Array(r.time, ("time",), "s", "output times"),
         "rotation": Array(r.rotation[:, 0], ("time",), "rad", "rotation of the lower block, positive to +x"),
         "rotation_upper": Array(r.rotation[:, 1], ("time",), "rad", "rotation of the upper block, positive to +x"),
-        "mode": Array(found, ("time",), "", "0 " + ", ".join(f"{name} {k}" for k, name in enumerate(MODES))[3:]),
+        "mode": Array(found, ("time",), "", ", ".join(f"{k} {name}" for k, name in enumerate(MODES))),
         "ground": Array(r.ground, ("time",), "m/s^2", "horizontal ground acceleration"),
         "vertical": Array(r.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
         "kinetic": Array(r.kinetic, ("time",), "J"),

@@ -16,7 +16,10 @@ from extrados.schema.table import key
 
 @dataclass(frozen=True, repr=False)
 class FrameAssembly(Assembly):
-    """n equal columns, blocks 0 to n-1 from left to right, and their lintel, the last block; joints: n feet, n heads."""
+    """n equal columns, blocks 0 to n-1 from left to right, and their lintel, the last block; joints: n feet, n heads.
+
+    width, height: of a column [m].
+    """
 
     width: float
     height: float
