@@ -121,7 +121,7 @@ def test_the_load_of_limit_analysis_with_friction(kind: str, friction: float, be
     found = capacity(STRUCTURES[kind], friction, "sla")
     assert not found.reason
     assert (1.0 - below) * limit < found.results["peak_acceleration_g"] < (1.0 + above) * limit
-    assert found.results["events_without_equilibrium"] <= 1
+    assert found.results["events_without_equilibrium"] <= 3  # of a mechanism that begins
     # The last of a mechanism's displacements have no digits left
     upto = slice(0, found.results["peak_event"] - 1)
     external, stored, dissipated = (np.asarray(found[f"event_{n}"])[upto] for n in ("external", "stored", "dissipated"))
