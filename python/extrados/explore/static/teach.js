@@ -42,7 +42,7 @@ export const EXERCISES = [
       if (!near(value(app, "structure.height"), 9, 1e-3)) return [false, "Leave the height as it was: 9 m."];
       if (c < 0.098) return [false, `With ${number(width, 3)} m it bears ${number(c, 3)} g: too little.`];
       if (c > 0.102) return [false, `With ${number(width, 3)} m it bears ${number(c, 3)} g: more than asked.`];
-      return [true, `Right: about ${number(width, 3)} m. The capacity grows nearly as the width over the height, since the leeward buttress turns about its outer toe; a wide one would rather crack, which \`fracture = true\` looks at.`];
+      return [true, `Right: about ${number(width, 3)} m. The capacity grows nearly as the width over the height, since the leeward buttress turns about its outer toe; a wide one would rather crack, which a deck asks for by the key "fracture".`];
     },
   },
   {
