@@ -4,7 +4,7 @@ PYTHON := .venv/bin/python
 # An import after a pull may build anew, and meson then looks for numpy-config and ninja on the path.
 export PATH := $(CURDIR)/.venv/bin:$(PATH)
 
-.PHONY: run test verify bench oldest lint format wheel setup table-5-3 impact-map docs clean
+.PHONY: browser run test verify bench oldest lint format wheel setup table-5-3 impact-map docs clean
 
 run: setup
 	@.venv/bin/extrados run $(DECK)
@@ -12,6 +12,9 @@ run: setup
 test: setup
 	@$(PYTHON) -m pytest -q
 	@$(PYTHON) tools/native_tests.py
+
+browser: setup  ## chromium and Playwright, where they can be had, for the tests of the interactive page
+	@sh tools/browser.sh
 
 verify: setup  ## long validation and whole trials; writes docs/verification.md
 	@EXTRADOS_TRIALS=1 $(PYTHON) -m pytest -q -m ""

@@ -19,7 +19,8 @@
 #define EXTRADOS_ROCKING_BODY_LIST(ENTRY) \
   ENTRY(1, arch, "arch") \
   ENTRY(2, block, "block") \
-  ENTRY(3, table, "table")
+  ENTRY(3, table, "table") \
+  ENTRY(4, restrained, "restrained")
 
 #define EXTRADOS_ROCKING_OUTCOME_LIST(ENTRY) \
   ENTRY(0, no_hinging, "no-hinging") \
@@ -87,8 +88,7 @@
   ENTRY(8, open_s, "opening s") \
   ENTRY(9, wear, "cohesion") \
   ENTRY(10, slide, "sliding") \
-  ENTRY(11, follow, "friction follows") \
-  ENTRY(12, stick, "sticking")
+  ENTRY(11, stick, "sticking")
 
 /* Why a run of events ended */
 #define EXTRADOS_SLA_STOP_LIST(ENTRY) \

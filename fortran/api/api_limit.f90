@@ -12,12 +12,12 @@ contains
       use limit_vertex, only : least_vertex
       integer(c_int), intent(in) :: n                 !! unknowns
       integer(c_int), intent(in) :: k                 !! rows
-      real(c_double), intent(in) :: gradients(n, k)
-      real(c_double), intent(in) :: least(k)
-      real(c_double), intent(in) :: cost(n)
-      real(c_double), intent(in) :: low(n)
-      real(c_double), intent(in) :: high(n)
-      real(c_double), intent(out) :: x(n)
+      real(c_double), intent(in) :: gradients(n, k)   !! of the rows, one a column
+      real(c_double), intent(in) :: least(k)          !! values of the rows
+      real(c_double), intent(in) :: cost(n)           !! by unit of each unknown
+      real(c_double), intent(in) :: low(n)            !! finite
+      real(c_double), intent(in) :: high(n)           !! finite
+      real(c_double), intent(out) :: x(n)             !! of least cost; worth nothing where not solved
       real(c_double), intent(out) :: rows(k)          !! multipliers of the rows
       real(c_double), intent(out) :: sides(n)         !! multipliers of the box, negative at its upper side
       integer(c_int), intent(out) :: solved           !! 1, or 0 where another method must decide

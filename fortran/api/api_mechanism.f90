@@ -3,7 +3,7 @@ module api_mechanism
    use, intrinsic :: iso_c_binding, only : c_double, c_int
    implicit none
    private
-   public :: table_length, tabulate, evaluate, follow, restitution, blow
+   public :: table_length, tabulate, evaluate, follow, paths, path_length, restitution, blow
 
 contains
 
@@ -112,6 +112,51 @@ contains
          status)
       if (status == status_ok) call linkage_path(mechanism, rest, q, place, first, second, reached, status)
    end subroutine follow
+
+   !> Paths of points and parts as polynomials of q, see mechanism_path
+   subroutine paths(parts, hinges, rows, part, joined, point, row, driver, sense, count, ends, place, reach, &
+                    length, table, status)
+      use common_status, only : status_ok, status_invalid_argument
+      use mechanism_linkage, only : linkage, linkage_new, linkage_state
+      use mechanism_path, only : path_new, path_numbers, path_pack, path_table
+      integer(c_int), intent(in) :: parts
+      integer(c_int), intent(in) :: hinges
+      integer(c_int), intent(in) :: rows
+      real(c_double), intent(in) :: part(4, parts)       !! mass [kg], centroid x, y [m], inertia [kg m^2]
+      integer(c_int), intent(in) :: joined(2, hinges)
+      real(c_double), intent(in) :: point(2, hinges)
+      integer(c_int), intent(in) :: row(2, rows)
+      integer(c_int), intent(in) :: driver
+      integer(c_int), intent(in) :: sense
+      integer(c_int), intent(in) :: count
+      integer(c_int), intent(in) :: ends(3, count)       !! parts at both ends, 0 = ground; 1 length, 2 turn
+      real(c_double), intent(in) :: place(2, 2, count)   !! [m]
+      real(c_double), intent(in) :: reach(2)             !! greatest rotation, scale of the table of the mechanism [rad]
+      integer(c_int), intent(in) :: length               !! see path_length
+      real(c_double), intent(out) :: table(length)
+      integer(c_int), intent(out) :: status
+      type(linkage) :: mechanism
+      type(linkage_state) :: rest
+      type(path_table) :: found
+      !f2py threadsafe
+      table = 0.0_c_double
+      status = status_invalid_argument
+      if (length /= path_numbers(int(count))) return
+      call linkage_new(part(1, :), part(2:3, :), part(4, :), joined, point, row, driver, real(sense, c_double), &
+         mechanism, rest, status)
+      if (status == status_ok) then
+         call path_new(mechanism, rest, ends(3, :), ends(1:2, :), place, reach(1), reach(2), found, status)
+      end if
+      if (status == status_ok) call path_pack(found, table)
+   end subroutine paths
+
+   !> Length of the flat list of some paths
+   subroutine path_length(count, length)
+      use mechanism_path, only : path_numbers
+      integer(c_int), intent(in) :: count
+      integer(c_int), intent(out) :: length
+      length = int(path_numbers(int(count)), c_int)
+   end subroutine path_length
 
    !> c_v by workless impulses, see mechanism_impact
    subroutine restitution(n, mass, inertia, before, after, c_v)

@@ -3,7 +3,7 @@ module api_rocking
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, body, history, ensemble
+   public :: create, body, limits, history, ensemble
 
 contains
 
@@ -35,9 +35,35 @@ contains
       call handle_leave(handle)
    end subroutine body
 
+   !> Rotations of unstable equilibrium and those taken as collapse, to +x and to -x [rad]
+   subroutine limits(handle, number, critical, limit, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use rocking_ensemble, only : body_list, list_body
+      use rocking_handle, only : body_list_take
+      use rocking_rocker, only : rocker
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: number              !! 1-based
+      real(c_double), intent(out) :: critical(2)
+      real(c_double), intent(out) :: limit(2)
+      integer(c_int), intent(out) :: status
+      class(rocker), allocatable :: structure
+      type(body_list), pointer :: list
+      critical = 0.0_c_double
+      limit = 0.0_c_double
+      call body_list_take(handle, .false., list, status)
+      if (status /= status_ok) return
+      call list_body(list, number, structure, status)
+      if (status == status_ok) then
+         critical = structure%critical
+         limit = structure%limit
+      end if
+      call handle_leave(handle)
+   end subroutine limits
+
    !> One structure under one motion, with its history and events
-   subroutine history(bodies, motions, member, scale, end_time, tolerance, start, nt, time, room, &
-                      counts, measures, state, event_kind, event, status)
+   subroutine history(bodies, motions, member, options, start, nt, time, room, restraints, &
+                      counts, measures, state, kept, event_kind, event, status)
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take, motion_signal
       use common_signal, only : signal
@@ -49,29 +75,31 @@ contains
       integer(c_int64_t), intent(in) :: bodies
       integer(c_int64_t), intent(in) :: motions
       integer(c_int), intent(in) :: member(2)               !! structure and motion, 1-based
-      real(c_double), intent(in) :: scale
-      real(c_double), intent(in) :: end_time                !! [s]
-      real(c_double), intent(in) :: tolerance
+      real(c_double), intent(in) :: options(3)              !! scale of the motion, end time [s], tolerance
       real(c_double), intent(in) :: start(3)                !! side (+1 or -1), rotation [rad], rate [rad/s]
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: time(nt)                !! output times [s]
       integer(c_int), intent(in) :: room                    !! for events
+      integer(c_int), intent(in) :: restraints              !! that the structure has
       !> outcome, half cycles, impacts, steps, rejected, settled, output times reached, events (may exceed room)
       integer(c_int), intent(out) :: counts(8)
-      real(c_double), intent(out) :: measures(5)            !! peak [rad], peak ratio, stop time [s], work, loss [J]
-      real(c_double), intent(out) :: state(8, nt)           !! see response_history
+      !> peak [rad], peak ratio, stop time [s], work, loss, spent in restraints [J]
+      real(c_double), intent(out) :: measures(6)
+      real(c_double), intent(out) :: state(9 + restraints, nt)  !! see response_history
+      real(c_double), intent(out) :: kept(3, restraints)    !! of each: least, greatest force, path that stays
       integer(c_int), intent(out) :: event_kind(room)
       real(c_double), intent(out) :: event(2, room)
       integer(c_int), intent(out) :: status
       !f2py threadsafe
-      call with_targets(time, state, event_kind, event)
+      call with_targets(time, state, kept, event_kind, event)
 
    contains
 
       !> The arrays as pointer targets for the length of the call
-      subroutine with_targets(times, states, kinds, happened)
+      subroutine with_targets(times, states, held, kinds, happened)
          real(c_double), intent(in), target, contiguous :: times(:)
          real(c_double), intent(out), target, contiguous :: states(:, :), happened(:, :)
+         real(c_double), intent(out) :: held(:, :)
          integer(c_int), intent(out), target, contiguous :: kinds(:)
          class(rocker), allocatable :: structure
          type(body_list), pointer :: list
@@ -83,6 +111,7 @@ contains
          counts = 0
          measures = 0.0_c_double
          states = 0.0_c_double
+         held = 0.0_c_double
          kinds = 0
          happened = 0.0_c_double
          call body_list_take(bodies, .false., list, status)
@@ -92,18 +121,25 @@ contains
          if (status /= status_ok) return
          call motion_set_take(motions, .false., set, status)
          if (status /= status_ok) return
-         call motion_signal(set, member(2), scale, ground, status)
+         call motion_signal(set, member(2), options(1), ground, status)
          if (status == status_ok) then
             record%time => times
             record%state => states
             record%event_kind => kinds
             record%event => happened
-            call respond(structure, ground, response_options(end_time=end_time, tolerance=tolerance, &
+            call respond(structure, ground, response_options(end_time=options(2), tolerance=options(3), &
                start_q=start(2), start_v=start(3), start_side=merge(1, -1, start(1) > 0.0_c_double)), answer, status, &
                record)
             counts = [answer%outcome, answer%half_cycles, answer%impacts, answer%steps, answer%rejected, &
                merge(1_c_int, 0_c_int, answer%settled), int(record%points, c_int), int(record%events, c_int)]
-            measures = [answer%peak, answer%peak_ratio, answer%stop_time, record%work, record%loss]
+            measures = [answer%peak, answer%peak_ratio, answer%stop_time, record%work, record%loss, record%spent]
+            if (allocated(record%memory)) then
+               if (size(record%memory) == restraints) then
+                  held(1, :) = record%memory%least
+                  held(2, :) = record%memory%most
+                  held(3, :) = record%memory%set
+               end if
+            end if
          end if
          call handle_leave(motions)
       end subroutine with_targets

@@ -111,8 +111,8 @@ contains
       !> angle of the bed joints [rad], tensile strength (0: none is bedded) and fracture energy along over across them,
       !> shear factor, crack band or 0, see `bedding` of sla_plane
       real(c_double), intent(in) :: property(11, elements)
-      !> Table of tension teeth (0 none), first and last of them where the crack band follows the direction of the crack (0
-      !> where not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
+      !> Table of tension teeth (0 none), first and last of them where the crack band follows the direction of the crack
+      !> (0 where not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
       integer(c_int), intent(in) :: choice(5, elements)
       integer(c_int), intent(out) :: bad                      !! inverted element
       integer(c_int), intent(out) :: status

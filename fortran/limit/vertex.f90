@@ -29,7 +29,7 @@ contains
       real(wp), intent(out) :: x(:)      !! (n)
       real(wp), intent(out) :: rows(:)   !! (k) multipliers of the rows, not negative
       real(wp), intent(out) :: sides(:)  !! (n) of the box: positive where x is at its least, negative at its greatest
-      logical, intent(out) :: solved
+      logical, intent(out) :: solved     !! false: another method must decide
       real(wp) :: inverse(size(cost), size(cost)), lambda(size(cost)), share(size(cost)), bound(size(cost))
       real(wp) :: length(size(b)), leaving(size(cost)), gain
       integer :: active(size(cost)), i, out, enters, step, idle, n, k
@@ -131,7 +131,7 @@ contains
          end if
       end function least
 
-      !> The side that is broken most, over the length of its gradient, or after many idle steps the first one; 0 for none
+      !> The side that is broken most, over the length of its gradient, or after many idle steps the first one; 0: none
       pure function broken() result(found)
          integer :: found, j
          real(wp) :: worst, lack

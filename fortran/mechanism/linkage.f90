@@ -10,7 +10,8 @@ module mechanism_linkage
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: coordinate, copy_state, linkage, linkage_new, linkage_state, linkage_coefficients, linkage_path
+   public :: coordinate, copy_state, linkage, linkage_new, linkage_state, linkage_coefficients, linkage_path, &
+      part_place
 
    !> What q is
    type :: coordinate

@@ -17,6 +17,7 @@ module mechanism_table
    implicit none
    private
    public :: side_table, table_new, table_numbers, table_pack, table_unpack, table_facts
+   public :: degree, lowest, panels, fit
 
    integer, parameter :: panels = 32, degree = 11
    integer, parameter :: mass = 1, gravity_moment = 2, drive = 3
@@ -262,9 +263,9 @@ contains
    !> Polynomials in t = cos(angle) through values at Chebyshev points
    pure subroutine fit(angle, value, polynomial)
       real(wp), intent(in) :: angle(:)            !! (degree + 1)
-      real(wp), intent(in) :: value(:, :)         !! (3, degree + 1)
-      real(wp), intent(out) :: polynomial(:, 0:)  !! (3, 0:degree) coefficients of the powers of t
-      real(wp) :: chebyshev(0:degree, 0:degree), weight, wave(3)
+      real(wp), intent(in) :: value(:, :)         !! (quantities, degree + 1)
+      real(wp), intent(out) :: polynomial(:, 0:)  !! (quantities, 0:degree) coefficients of the powers of t
+      real(wp) :: chebyshev(0:degree, 0:degree), weight, wave(size(value, 1))
       integer :: j, k
 
       ! Powers of t in each Chebyshev polynomial

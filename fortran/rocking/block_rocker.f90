@@ -15,8 +15,9 @@ module rocking_block_rocker
 
    !> Length of the parameter list: form (0 nonlinear, 1 linear), mass [kg], inertia about the centre of
    !> mass [kg m^2], its height [m], distance of the right and of the left toe [m], restitution of the
-   !> impacts after which the block rocks to +x and to -x
-   integer, parameter :: block_parameters = 8
+   !> impacts after which the block rocks to +x and to -x, slope of the base up to the right [rad], on which
+   !> height and distances are counted
+   integer, parameter :: block_parameters = 9
    !> Terms of the series of the rate; the rotation has one more
    integer, parameter :: order = 8
    !> Terms below this share of the tolerance end the series: chattering magnifies what is left out
@@ -60,10 +61,11 @@ contains
       associate (mass => parameters(2), inertia => parameters(3), height => parameters(4), toe => parameters(5:6))
          radius = hypot(toe, height)
          body%linear = parameters(1) > 0.5_wp
-         body%alpha = atan2(toe, height)
+         body%alpha = atan2(toe, height) + parameters(9) * [1.0_wp, -1.0_wp]
          body%moment = mass * radius
          body%inertia = inertia + mass * radius**2
       end associate
+      if (any(body%alpha <= 0.0_wp) .or. any(body%alpha >= 0.5_wp * pi)) return  ! it slopes more than the block stands
       body%restitution = parameters(7:8)
       body%critical = body%alpha
       ! As far beyond the balance as rest is short of it, and not below the ground.

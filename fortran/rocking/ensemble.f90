@@ -3,13 +3,14 @@ module rocking_ensemble
    use common_kinds, only : wp
    use common_cancel, only : cancel_requested
    use common_lists, only : body_arch => rocking_body_arch, body_block => rocking_body_block, &
-      body_table => rocking_body_table
+      body_restrained => rocking_body_restrained, body_table => rocking_body_table
    use common_motion_set, only : motion_set, motion_signal
    use common_signal, only : signal
    use common_status, only : status_ok, status_bad_index, status_cancelled, status_invalid_argument, &
       status_not_ready, status_out_of_memory
    use rocking_arch_rocker, only : arch_rocker, arch_rocker_new
    use rocking_block_rocker, only : block_rocker, block_rocker_new
+   use rocking_restrained, only : restrain
    use rocking_response, only : respond, response, response_options
    use rocking_rocker, only : rocker
    use rocking_table_rocker, only : table_rocker, table_rocker_new
@@ -37,7 +38,7 @@ module rocking_ensemble
 contains
 
    !> A rocking structure from its flat parameter list
-   subroutine make_body(kind, parameters, body, status)
+   recursive subroutine make_body(kind, parameters, body, status)
       integer(c_int), intent(in) :: kind
       real(wp), intent(in) :: parameters(:)
       class(rocker), allocatable, intent(out) :: body
@@ -45,7 +46,7 @@ contains
       type(arch_rocker), allocatable :: arch
       type(block_rocker), allocatable :: stone
       type(table_rocker), allocatable :: tabulated
-      integer :: stat
+      integer :: last, stat
 
       select case (kind)
       case (body_arch)
@@ -72,6 +73,15 @@ contains
          end if
          call table_rocker_new(parameters, tabulated, status)
          call move_alloc(tabulated, body)
+      case (body_restrained)
+         ! kind and number of the parameters of what is restrained, these, and the restraints
+         status = status_invalid_argument
+         if (size(parameters) < 2) return
+         if (nint(parameters(1)) == body_restrained) return
+         last = 2 + nint(parameters(2))
+         if (last < 2 .or. last > size(parameters)) return
+         call make_body(nint(parameters(1), c_int), parameters(3:last), body, status)
+         if (status == status_ok) call restrain(body, parameters(last + 1:), status)
       case default
          status = status_invalid_argument
       end select

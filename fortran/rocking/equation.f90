@@ -4,7 +4,8 @@ module rocking_equation
    use common_dopri5, only : oscillator, dopri5_attempt
    use common_kinds, only : wp, gravity
    use common_signal, only : signal
-   use rocking_rocker, only : rocker, series_short
+   use rocking_restraint, only : restraint_state
+   use rocking_rocker, only : rocker, series_short, side_index
    implicit none
    private
    public :: equation_of_motion, attempt, series_factor, polish_impact
@@ -18,6 +19,8 @@ module rocking_equation
       logical :: series = .false.  !! the structure solves its own steps
       real(wp) :: rest_dv(2) = 0.0_wp  !! V' at rest, both sides
       real(wp) :: rest_dh(2) = 0.0_wp  !! H at rest, both sides
+      real(wp) :: rest_hold(2) = 0.0_wp  !! moment of restraints at rest, both sides [N m]
+      type(restraint_state), allocatable :: memory(:)  !! of the restraints; not allocated where there are none
    contains
       procedure :: acceleration
    end type equation_of_motion
@@ -40,6 +43,9 @@ contains
       end if
       call system%ground%value_at(system%segment, t, horizontal, vertical)
       a = -(half_dm * v * v + dv * (1.0_wp + vertical / gravity) + real(system%side, wp) * horizontal * dh) / m
+      if (allocated(system%memory)) then
+         a = a - system%body%held%moment(side_index(system%side), q, v, system%memory) / m
+      end if
    end function acceleration
 
    !> One step: by the structure's own series where it has one and the ground runs in straight lines

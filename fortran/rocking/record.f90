@@ -3,18 +3,24 @@ module rocking_record
    use common_dense_step, only : dense_step
    use common_kinds, only : wp, gravity
    use rocking_equation, only : equation_of_motion
+   use rocking_restraint, only : restraint_state
+   use rocking_rocker, only : side_index
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: response_history, energy_of, barrier_of
+   public :: response_history, energy_of, cannot_reach
 
+   !> Gauss points of a step
+   real(wp), parameter :: node(3) = [0.1127016653792583_wp, 0.5_wp, 0.8872983346207417_wp]
+   real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp] / 18.0_wp
 
    !> In the caller's arrays
    type :: response_history
       integer :: points = 0                        !! output times filled so far
       real(wp), pointer, contiguous :: time(:) => null()      !! asked for, ascending [s]
-      !> (8, points): rotation, rate, acceleration, ground horizontal and vertical,
-      !> kinetic and potential energy, energy put in minus energy lost at impacts
+      !> (8 or more, points): rotation, rate, acceleration, ground horizontal and vertical,
+      !> kinetic and potential energy, energy put in minus energy lost at impacts and in restraints; then the energy
+      !> stored in restraints and the force of each, where the array has rows for them
       real(wp), pointer, contiguous :: state(:, :) => null()
       integer :: events = 0                        !! found, also past the room for them
       integer(c_int), pointer, contiguous :: event_kind(:) => null()
@@ -23,6 +29,8 @@ module rocking_record
       real(wp), pointer, contiguous :: event(:, :) => null()
       real(wp) :: work = 0.0_wp                    !! energy put in by the ground [J]
       real(wp) :: loss = 0.0_wp                    !! energy lost at impacts [J]
+      type(restraint_state), allocatable :: memory(:)  !! of the restraints, in the end
+      real(wp) :: spent = 0.0_wp                   !! energy taken up by dampers and yielding [J]
    contains
       procedure :: note
       procedure :: lose
@@ -72,11 +80,16 @@ contains
          call problem%ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
          energy = energy_of(problem, rotation, rate)
          potential = problem%body%potential(problem%side, rotation)
-         history%state(:, history%points) = [sigma * rotation, sigma * rate, &
+         history%state(:8, history%points) = [sigma * rotation, sigma * rate, &
             sigma * problem%acceleration(history%time(history%points), rotation, rate), horizontal, vertical, &
-            energy - potential, potential, history%work + work_of(problem, step, x) - history%loss]
+            energy - potential, potential, history%work + work_of(problem, step, x) - history%loss - history%spent]
+         if (allocated(problem%memory)) then
+            history%state(8, history%points) = history%state(8, history%points) - spent_in(problem, step, x)
+            call restraint_rows(history, problem, rotation, rate)
+         end if
       end do
       history%work = history%work + work_of(problem, step, covered)
+      if (allocated(problem%memory)) history%spent = history%spent + spent_in(problem, step, covered)
    end subroutine cover
 
    !> Fill the output times of a rest
@@ -91,9 +104,24 @@ contains
          call problem%ground%value_at(problem%segment, history%time(history%points), horizontal, vertical)
          history%state(:, history%points) = 0.0_wp
          history%state(4:5, history%points) = [horizontal, vertical]
-         history%state(8, history%points) = history%work - history%loss
+         history%state(8, history%points) = history%work - history%loss - history%spent
+         if (allocated(problem%memory)) call restraint_rows(history, problem, 0.0_wp, 0.0_wp)
       end do
    end subroutine rest
+
+   !> What restraints store, and their forces, in the rows for them
+   subroutine restraint_rows(history, problem, rotation, rate)
+      class(response_history), intent(inout) :: history
+      type(equation_of_motion), intent(in) :: problem
+      real(wp), intent(in) :: rotation  !! [rad]
+      real(wp), intent(in) :: rate      !! [rad/s]
+      integer :: i
+      if (size(history%state, 1) < 9 + problem%body%held%count) return
+      i = side_index(problem%side)
+      history%state(9, history%points) = problem%body%held%energy(i, rotation, problem%memory)
+      call problem%body%held%forces(i, rotation, rate, problem%memory, &
+         history%state(10:9 + problem%body%held%count, history%points))
+   end subroutine restraint_rows
 
    !> Kinetic plus potential energy [J]
    pure function energy_of(problem, rotation, rate) result(energy)
@@ -107,13 +135,26 @@ contains
       energy = 0.5_wp * m * rate**2 + problem%body%potential(problem%side, rotation)
    end function energy_of
 
-   !> The lower of the two energy barriers [J]
-   pure function barrier_of(problem) result(energy)
+   !> Too little energy is left to reach a share of the critical rotation of any side, over the restraints as they are
+   pure function cannot_reach(problem, rotation, rate, share) result(answer)
       type(equation_of_motion), intent(in) :: problem
-      real(wp) :: energy
-      energy = min(problem%body%potential(1, problem%body%critical(1)), &
-         problem%body%potential(-1, problem%body%critical(2)))
-   end function barrier_of
+      real(wp), intent(in) :: rotation  !! below the critical one [rad]
+      real(wp), intent(in) :: rate      !! [rad/s]
+      real(wp), intent(in) :: share     !! at most 1
+      logical :: answer
+      real(wp) :: energy, barrier, there
+      integer :: i
+      energy = energy_of(problem, rotation, rate)
+      answer = .true.
+      do i = 1, 2
+         if (.not. problem%body%free(i)) cycle
+         there = share * problem%body%critical(i)
+         barrier = problem%body%potential(3 - 2 * i, there)
+         if (allocated(problem%memory)) barrier = barrier &
+            + problem%body%held%work_to(side_index(problem%side), rotation, i, there, problem%memory)
+         answer = answer .and. energy < barrier
+      end do
+   end function cannot_reach
 
    !> Work of the ground over the first part of a step, by three Gauss points on the dense output
    !> (thesis Eq. 6.4)
@@ -122,8 +163,6 @@ contains
       type(dense_step), intent(in) :: step
       real(wp), intent(in) :: fraction
       real(wp) :: work
-      real(wp), parameter :: node(3) = [0.1127016653792583_wp, 0.5_wp, 0.8872983346207417_wp]
-      real(wp), parameter :: weight(3) = [5.0_wp, 8.0_wp, 5.0_wp] / 18.0_wp
       real(wp) :: m, half_dm, dv, dh, horizontal, vertical, x
       logical :: closed
       integer :: j
@@ -137,5 +176,21 @@ contains
             * (real(problem%side, wp) * horizontal * dh + dv * vertical / gravity)
       end do
    end function work_of
+
+   !> Energy that dampers and yielding take up over the first part of a step, by the same points
+   function spent_in(problem, step, fraction) result(energy)
+      type(equation_of_motion), intent(in) :: problem
+      type(dense_step), intent(in) :: step
+      real(wp), intent(in) :: fraction
+      real(wp) :: energy
+      real(wp) :: x
+      integer :: j
+      energy = 0.0_wp
+      do j = 1, 3
+         x = fraction * node(j)
+         energy = energy + weight(j) * fraction * step%h * problem%body%held%dissipation(side_index(problem%side), &
+            step%coordinate(x), step%rate(x), problem%memory)
+      end do
+   end function spent_in
 
 end module rocking_record

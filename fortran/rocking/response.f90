@@ -11,12 +11,13 @@ module rocking_response
    use common_kinds, only : wp
    use common_cancel, only : cancel_requested
    use common_dense_step, only : dense_step
-   use common_dopri5, only : dopri5_factor, step_memory
+   use common_dopri5, only : dopri5_attempt, dopri5_factor, step_memory
    use common_signal, only : signal
-   use common_status, only : status_ok, status_cancelled, status_too_many_steps, status_step_too_small
+   use common_status, only : status_ok, status_cancelled, status_out_of_memory, status_too_many_steps, &
+      status_step_too_small
    use rocking_crossings, only : impact_fraction, turning_fraction, crossing_fraction
    use rocking_equation, only : equation_of_motion, attempt, series_factor, polish_impact
-   use rocking_record, only : barrier_of, energy_of, response_history
+   use rocking_record, only : cannot_reach, energy_of, response_history
    use rocking_rocker, only : rocker, side_index
    use rocking_uplift, only : find_uplift, last_calm
    use, intrinsic :: iso_c_binding, only : c_int
@@ -91,6 +92,8 @@ module rocking_response
       procedure :: advance_segment
       procedure :: note_peak
       procedure :: note_turning
+      procedure :: leave_mode
+      procedure :: hold_at_rest
    end type run_state
 
    integer, parameter :: poll_every = 2000
@@ -107,7 +110,7 @@ contains
       type(response_history), intent(inout), optional, target :: history
       type(run_state) :: run
       real(wp) :: t_next, s
-      logical :: accepted
+      logical :: accepted, left
 
       if (present(history)) run%history => history
       call run%start(body, ground, options)
@@ -125,6 +128,10 @@ contains
          call run%take_step(t_next, accepted)
          if (.not. accepted) cycle
          s = impact_fraction(run%step, run%q, run%v)
+         if (allocated(run%problem%memory)) then
+            call run%leave_mode(t_next, s, left)
+            if (left) cycle
+         end if
          if (s > 0.0_wp) then
             if (run%from_rest .and. run%q <= 0.0_wp .and. run%v <= 0.0_wp .and. run%step%q <= 0.0_wp &
                .and. s >= 1.0_wp) then
@@ -142,6 +149,7 @@ contains
          end if
       end do
       call run%conclude()
+      if (present(history) .and. allocated(run%problem%memory)) history%memory = run%problem%memory
       answer = run%answer
       status = run%status
    end subroutine respond
@@ -153,7 +161,7 @@ contains
       type(signal), intent(in) :: ground
       type(response_options), intent(in) :: options
       real(wp) :: m, half_dm
-      integer :: i
+      integer :: i, stat
       logical :: closed
 
       state%options = options
@@ -161,6 +169,17 @@ contains
       state%problem%ground = ground
       state%problem%side = options%start_side
       state%problem%series = body%has_series .and. .not. ground%has_harmonics()
+      if (allocated(body%held)) then
+         state%problem%series = .false.
+         allocate (state%problem%memory(body%held%count), stat=stat)
+         if (stat /= 0) then
+            state%status = status_out_of_memory
+            state%over = .true.
+            return
+         end if
+         call body%held%fresh(side_index(options%start_side), options%start_q, state%problem%memory)
+         if (options%start_q <= 0.0_wp) call state%hold_at_rest()
+      end if
       do i = 1, 2
          call body%coefficients(3 - 2 * i, 0.0_wp, m, half_dm, state%problem%rest_dv(i), &
             state%problem%rest_dh(i), closed)
@@ -368,15 +387,22 @@ contains
          call state%history%lose(state%problem, -v_before, 1.0_wp)
       end if
       state%answer%impacts = state%answer%impacts + 1
-      state%problem%side = -state%problem%side
-      i = side_index(state%problem%side)
+      if (state%problem%body%free(side_index(-state%problem%side))) then
+         state%problem%side = -state%problem%side
+         i = side_index(state%problem%side)
+         state%v = state%problem%body%restitution(i) * (-v_before)
+      else
+         i = side_index(state%problem%side)
+         state%v = state%problem%body%rebound(i) * (-v_before)
+      end if
       state%q = 0.0_wp
-      state%v = state%problem%body%restitution(i) * (-v_before)
+      if (allocated(state%problem%memory)) call state%problem%body%held%settle(i, 0.0_wp, state%problem%memory)
       if (associated(state%history)) call state%history%lose(state%problem, state%v, -1.0_wp)
       if (state%v <= state%problem%body%rest_rate(i)) then
          if (associated(state%history)) call state%history%lose(state%problem, state%v, 1.0_wp)
          state%v = 0.0_wp
          state%resting = .true.
+         if (allocated(state%problem%memory)) call state%hold_at_rest()
          if (associated(state%history)) call state%history%note(event_rest, state%t, 0.0_wp)
          state%over = state%options%stop_when_safe .and. state%quiet()
          if (state%over) return
@@ -408,7 +434,6 @@ contains
    subroutine move_on(state, t_next)
       class(run_state), intent(inout) :: state
       real(wp), intent(in) :: t_next
-      real(wp) :: energy
       logical :: was_quiet, whole
       call state%note_turning()
       if (associated(state%history)) call state%history%cover(state%problem, state%step, 1.0_wp)
@@ -420,36 +445,45 @@ contains
       state%v = state%step%v
       state%a = state%step%a
       call state%note_peak(state%q)
+      if (allocated(state%problem%memory)) call state%problem%body%held%note_forces(side_index(state%problem%side), &
+         state%q, state%v, state%problem%memory)
       was_quiet = state%quiet()
       call state%advance_segment()
       if (.not. (state%options%stop_when_safe .and. was_quiet .and. state%v <= 0.0_wp)) return
       if (state%q >= state%problem%body%critical(side_index(state%problem%side))) return
-      energy = energy_of(state%problem, state%q, state%v)
-      state%over = energy < barrier_of(state%problem)
-      if (state%over) state%over = state%past_its_peak(energy)
+      state%over = cannot_reach(state%problem, state%q, state%v, 1.0_wp)
+      if (state%over) state%over = state%past_its_peak()
    end subroutine move_on
 
    !> Is the greatest rotation known, as the energy left after the next impact reaches no further on either side?
-   function past_its_peak(state, energy) result(answer)
+   function past_its_peak(state) result(answer)
       class(run_state), intent(in) :: state
-      real(wp), intent(in) :: energy  !! of now, on the way back to rest [J]
       logical :: answer
-      real(wp) :: m, m_next, half_dm, dv, dh, reach(2)
+      real(wp) :: m, m_next, half_dm, dv, dh, energy, kept, reach(2)
       integer :: i
       logical :: closed
-      associate (body => state%problem%body, side => state%problem%side)
+      associate (body => state%problem%body, side => state%problem%side, share => min(1.0_wp, state%answer%peak_ratio))
+         if (allocated(state%problem%memory)) then
+            answer = cannot_reach(state%problem, state%q, state%v, share)
+            return
+         end if
+         energy = energy_of(state%problem, state%q, state%v)
          call body%coefficients(side, 0.0_wp, m, half_dm, dv, dh, closed)
          call body%coefficients(-side, 0.0_wp, m_next, half_dm, dv, dh, closed)
          do i = 1, 2
-            reach(i) = body%potential(3 - 2 * i, min(1.0_wp, state%answer%peak_ratio) * body%critical(i))
+            reach(i) = body%potential(3 - 2 * i, share * body%critical(i))
          end do
-         answer = energy * body%restitution(side_index(-side))**2 * m_next / m <= minval(reach)
+         kept = body%restitution(side_index(-side))**2 * m_next / m
+         if (.not. body%free(side_index(-side))) kept = body%rebound(side_index(side))**2
+         answer = energy * kept <= minval(reach, mask=body%free)
       end associate
    end function past_its_peak
 
    !> Outcome and whether it is final
    subroutine conclude(state)
       class(run_state), intent(inout) :: state
+      if (allocated(state%problem%memory)) call state%problem%body%held%settle(side_index(state%problem%side), &
+         merge(0.0_wp, state%q, state%resting), state%problem%memory)
       if (state%answer%outcome == outcome_collapse) return
       state%answer%stop_time = state%t
       if (state%answer%half_cycles > 0) state%answer%outcome = outcome_recovery
@@ -458,7 +492,7 @@ contains
       else
          state%answer%settled = state%quiet() .and. state%q < &
             state%problem%body%critical(side_index(state%problem%side)) &
-            .and. energy_of(state%problem, state%q, state%v) < barrier_of(state%problem)
+            .and. cannot_reach(state%problem, state%q, state%v, 1.0_wp)
       end if
    end subroutine conclude
 
@@ -483,6 +517,48 @@ contains
       state%problem%segment = state%problem%segment + 1
    end subroutine advance_segment
 
+   !> Where a restraint yields, goes slack or takes up again within the step, and before an impact: on to there only
+   subroutine leave_mode(state, t_next, impact_at, left)
+      class(run_state), intent(inout) :: state
+      real(wp), intent(in) :: t_next
+      real(wp), intent(in) :: impact_at  !! fraction of the step, 0 where there is none
+      logical, intent(out) :: left       !! the step is done with
+      real(wp) :: until, fraction, again, h
+      integer :: i, which, earlier, k
+
+      i = side_index(state%problem%side)
+      until = merge(impact_at, 1.0_wp, impact_at > 0.0_wp)
+      call state%problem%body%held%leaves(i, state%step, until, state%problem%memory, fraction, which)
+      left = which > 0
+      if (.not. left) return
+      h = fraction * state%step%h
+      if (h > 8.0_wp * spacing(state%t)) then
+         ! a step that ends there has the order of the integrator, which its polynomial has not
+         do k = 1, 4
+            call dopri5_attempt(state%problem, state%t, h, state%q, state%v, state%a, state%atol_q, state%atol_v, &
+               state%options%tolerance, state%step)
+            call state%problem%body%held%leaves(i, state%step, 1.0_wp, state%problem%memory, again, earlier)
+            if (earlier == 0) exit
+            which = earlier
+            if (again >= 1.0_wp - 1.0e-12_wp) exit
+            h = again * h
+         end do
+         if (state%step%q > 0.0_wp .or. state%q > 0.0_wp) call state%move_on(t_next)
+      end if
+      call state%problem%body%held%change(i, state%q, which, state%problem%memory)
+      state%renew = .true.
+   end subroutine leave_mode
+
+   !> The moments of restraints while the structure rests
+   subroutine hold_at_rest(state)
+      class(run_state), intent(inout) :: state
+      integer :: i
+      call state%problem%body%held%settle(1, 0.0_wp, state%problem%memory)
+      do i = 1, 2
+         state%problem%rest_hold(i) = state%problem%body%held%moment(i, 0.0_wp, 0.0_wp, state%problem%memory)
+      end do
+   end subroutine hold_at_rest
+
    !> Keep the rotation of greatest size
    subroutine note_peak(state, rotation)
       class(run_state), intent(inout) :: state
@@ -501,6 +577,8 @@ contains
       real(wp) :: turned
       if (.not. (state%v > 0.0_wp .and. state%step%v <= 0.0_wp)) return
       turned = turning_fraction(state%step)
+      if (allocated(state%problem%memory)) call state%problem%body%held%note_forces(side_index(state%problem%side), &
+         state%step%coordinate(turned), 0.0_wp, state%problem%memory)
       call state%note_peak(state%step%coordinate(turned))
       if (associated(state%history)) call state%history%note(event_peak, state%step%t + turned * state%step%h, &
          real(state%problem%side, wp) * state%step%coordinate(turned))

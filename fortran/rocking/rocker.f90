@@ -9,6 +9,7 @@
 module rocking_rocker
    use common_dense_step, only : dense_step
    use common_kinds, only : wp
+   use rocking_restraint, only : restraint_set
    implicit none
    private
    public :: rocker, side_index, series_short
@@ -24,6 +25,10 @@ module rocking_rocker
       real(wp) :: rest_rate(2) = 0.0_wp    !! rate after impact below which the structure rests [rad/s]
       !> True where series_step solves the motion under straight-line accelerations
       logical :: has_series = .false.
+      !> False where a wall keeps the structure from rocking to that side: it is thrown back from there
+      logical :: free(2) = .true.
+      real(wp) :: rebound(2) = 0.0_wp      !! rate after over rate before being thrown back to this side
+      type(restraint_set), allocatable :: held  !! ties, springs and dampers, where there are any
    contains
       procedure(coefficients), deferred :: coefficients
       procedure(potential), deferred :: potential

@@ -36,7 +36,8 @@ contains
             else if (f1(j) > 0.0_wp) then
                root = crossing(j, t0, t1)
             else
-               if (grid >= huge(grid) / 64.0_wp .or. max(f0(j), f1(j)) < -0.02_wp * problem%rest_dv(j)) cycle
+               if (grid >= huge(grid) / 64.0_wp .or. max(f0(j), f1(j)) < -0.02_wp &
+                  * (problem%rest_dv(j) + problem%rest_hold(j))) cycle
                call crest(j, t0, t1, top)
                at_top = drive(top)
                if (at_top(j) <= 0.0_wp) cycle
@@ -61,7 +62,9 @@ contains
          real(wp) :: f(2)
          real(wp) :: horizontal, vertical
          call problem%ground%value_at(problem%segment, time, horizontal, vertical)
-         f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity)
+         f = [-horizontal, horizontal] * problem%rest_dh - problem%rest_dv * (1.0_wp + vertical / gravity) &
+            - problem%rest_hold
+         if (.not. all(problem%body%free)) f = merge(f, -huge(f), problem%body%free)
       end function drive
 
       !> Where the drive of side j is greatest between two times, by golden section
@@ -141,7 +144,8 @@ contains
             weight = 1.0_wp
             if (size(sample) > 1) weight = 1.0_wp + scale * sample(2) / gravity
          end associate
-         if (any([-horizontal, horizontal] * problem%rest_dh > problem%rest_dv * weight)) exit
+         if (any(problem%body%free .and. [-horizontal, horizontal] * problem%rest_dh &
+            > problem%rest_dv * weight + problem%rest_hold)) exit
          calm = k
       end do
    end function last_calm

@@ -16,7 +16,8 @@ module sla_events
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change, extrados_sparse_solve
    use sla_group, only : below, bound, event_vectors, point_group, scan_result, unbounded, most_entries, most_rank
-   use sla_model, only : element_model, model_factor, model_reactions, model_settled, model_solve, held_work
+   use sla_model, only : element_model, model_balance, model_factor, model_reactions, model_recorded, model_settled, &
+      model_solve, held_work
    use sla_regions, only : levels, regions_bring, regions_calm, regions_home, regions_margins, regions_window
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -75,7 +76,7 @@ contains
       real(wp), allocatable :: ratio(:)
       real(wp) :: reached, at
       logical :: equilibrium, driven, met
-      integer :: info
+      integer :: info, place(2)
 
       driven = any(abs(model%moved(:, 2)) > 0.0_wp)
       at = 0.0_wp
@@ -94,7 +95,10 @@ contains
          if (rules%release .and. model%pending(1) /= 0) call hold_state(model, status)
          if (status /= status_ok) return
          if (model%pending(1) /= 0) then
+            place = model%pending(1:2)
             call apply_event(model, reason, status)
+            if (model%slides .and. status == status_ok .and. reason == stop_none) call slide(model, place, reason, &
+               status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
          if (model%releasing) then
@@ -143,12 +147,13 @@ contains
          end if
          if (reason == stop_load .or. reason == stop_displacement) then
             model%pending = 0
-            call account(model, merge(rules%lambda, at, reason == stop_load))
+            call account(model, merge(rules%lambda, at, reason == stop_load), status)
          else if (reason == stop_unbounded) then
             return
          else
-            call account(model, model%lambda)
+            call account(model, model%lambda, status)
          end if
+         if (status /= status_ok) return
          call record(model, found, equilibrium, first, equation, share, ratio, log)
          if (reason /= stop_none) return
          if (equilibrium) then
@@ -169,8 +174,8 @@ contains
             reached = merge(abs(model%lambda_held), model%peak, driven)
             if (.not. abs(model%lambda) <= farthest * reached) reason = stop_lost
          end if
-         ! Friction makes the structure unsymmetric: beyond its limit it may answer the load the other way; but what
-         ! slides back sticks at once
+         ! Joints that slide make the structure unsymmetric: it may answer the load the other way, until what slides
+         ! back sticks, at once
          if (too_soft(model, driven, rules%compliance)) then
             if (model%pending(3) /= code_stick) reason = stop_mechanism
          end if
@@ -625,8 +630,10 @@ contains
       type(scan_result), intent(in) :: found
       type(scan_result), intent(inout) :: guess
       real(wp), parameter :: room = 1.0e-9_wp
-      if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, found%hi%value + room * abs(found%hi%value))
-      if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, found%lo%value - room * abs(found%lo%value))
+      if (found%hi%point /= 0) guess%hi%value = min(guess%hi%value, found%hi%value + &
+         max(room * abs(found%hi%value), tiny(room)))
+      if (found%lo%point /= 0) guess%lo%value = max(guess%lo%value, found%lo%value - &
+         max(room * abs(found%lo%value), tiny(room)))
    end subroutine loosen
 
    !> A monitor on which the reference load does its work follows from that work. The regions of the others are
@@ -708,6 +715,7 @@ contains
       model%tree%now = model%tree%now + 1
       associate (event => model%event, tree => model%tree)
          if (event%rank == 0) return
+         model%cracked = model%cracked + event%crack
          n = event%entries
          do i = 1, event%rank
             before(:, i) = [component(event, i, model%ua), component(event, i, model%ub)]
@@ -716,7 +724,7 @@ contains
                model%before(i) = component(event, i, model%from)
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * model%before(i)**2
             end if
-            model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
+            if (event%cracks) model%cracked = model%cracked + 0.5_wp * event%sign(i) * model%before(i)**2
          end do
          if (model%refactor) then
             call add_event(event, model%start, model%row, model%value)
@@ -779,6 +787,7 @@ contains
                if (status /= status_ok) return
             end do
          end if
+         model%friction%current = .false.
          do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
             after = [component(event, i, model%ua), component(event, i, model%ub)]
             model%work_now = model%work_now + event%sign(i) * &
@@ -787,6 +796,28 @@ contains
       end associate
       if (mod(model%events, guard_every) == 0) call guard_residual(model, status)
    end subroutine apply_event
+
+   !> What slides balances with what changed, and has come as far as it is
+   subroutine slide(model, place, reason, status)
+      type(element_model), intent(inout) :: model
+      integer, intent(in) :: place(2)          !! group and point of the event
+      integer(c_int), intent(inout) :: reason
+      integer(c_int), intent(out) :: status
+      integer :: g
+      call bring_all(model, status)
+      if (status /= status_ok) return
+      call model_balance(model, place, status)
+      if (status == status_not_positive_definite) then
+         status = status_ok
+         reason = stop_mechanism
+      end if
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
+         class is (point_group)
+            call group%advance(model%lambda, model%ua, model%ub)
+         end select
+      end do
+   end subroutine slide
 
    !> Residuals of both displacements by the elements; refine, then factorise anew, only where they ask for it
    subroutine guard_residual(model, status)
@@ -843,10 +874,12 @@ contains
 
    !> Energy ledger up to the state lambda: external work by the trapezium between successive states,
    !> dissipation at the damaged points alone; the stored energy must close the balance
-   subroutine account(model, lambda)
+   subroutine account(model, lambda, status)
       type(element_model), intent(inout) :: model
       real(wp), intent(in) :: lambda
-      real(wp) :: now(3), held(2), after, was, s, t, change, cross, free(4), before(4)
+      integer(c_int), intent(out) :: status
+      logical :: counted
+      real(wp) :: now(3), held(2), after, was, s, t, cross, free(4), before(4)
       integer :: i, n
 
       was = model%lambda_recorded
@@ -865,7 +898,7 @@ contains
          now = model%work_now
          cross = now(2)
       end if
-      change = 0.0_wp
+      counted = model%recorded
       if (.not. model%recorded) then
          ! The first state of a stage: the constant loads are on, or were brought on by the stage before.
          ! From there on A does the work lambda fa.ub, also beside the forces of friction, where fb.ua is another.
@@ -879,16 +912,12 @@ contains
                after = s * along(event, i, model%ua, model%ub, lambda) - event%origin(i)
                model%dissipated = model%dissipated + 0.5_wp * event%sign(i) * (model%before(i) * after - &
                   event%origin(i)**2)
-               ! What the change of the held forces did at the old and at the new displacements
-               change = change + event%sign(i) * ( &
-                  (event%hold(1, i) + was * event%hold(2, i)) * (after + event%origin(i)) &
-                  + (event%hold(1, i) + lambda * event%hold(2, i)) * (model%before(i) + event%origin(i)))
             end do
             model%dissipated = model%dissipated - event%shift
          end associate
          ! Work of the held forces, (fh_old + fh_new) . (u_new - u_old) / 2
-         model%dissipated = model%dissipated - 0.5_wp * (2.0_wp * held(1) + (lambda + was) * held(2) &
-            - 2.0_wp * model%held(1) - (lambda + was) * model%held(2) + change)
+         if (model%slides) model%dissipated = model%dissipated - model%excess - 0.5_wp * dot_product( &
+            model%fh(:, 1) + lambda * model%fh(:, 2) + model%f_before, model%ua + lambda * model%ub - model%u_before)
          ! (f_old + f_new) . (u_new - u_old) / 2 with f = s (A + lambda B), u = s (ua + lambda ub); the loads alone
          free = [now, cross] - [model%support(1, 1), model%support(1, 2), model%support(2, 2), model%support(2, 1)]
          before = [model%work, model%cross] - [model%support_was(1, 1), model%support_was(1, 2), &
@@ -903,6 +932,8 @@ contains
             + lambda * model%support(2, 2) + model%support_was(1, 2) + was * model%support_was(2, 2))
       end if
       model%event%rank = 0
+      call model_recorded(model, lambda, status)
+      if (counted) model%dissipated = model%dissipated + model%excess
       model%held = held
       model%cross = cross
       model%work = now
@@ -910,7 +941,20 @@ contains
       model%lambda_recorded = lambda
       model%scale_recorded = s
       model%lambda = lambda
+      ! Where joints have slid under the constant loads, energies count from there: their way is not known
+      if (model%slides .and. .not. (counted .or. model%carried)) model%external = stored_energy(model)
    end subroutine account
+
+   !> Energy stored in the last state [J]
+   pure function stored_energy(model) result(stored)
+      type(element_model), intent(in) :: model
+      real(wp) :: stored
+      stored = 0.5_wp * model%scale**2 * &
+         (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
+      ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
+      if (model%slides) stored = stored + model%origin_energy - model%excess + 0.5_wp * (model%held(1) + &
+         model%lambda * model%held(2) - dot_product(model%fo, model%u_before))
+   end function stored_energy
 
    !> One row of the log
    subroutine record(model, found, equilibrium, first, equation, share, ratio, log)
@@ -922,16 +966,11 @@ contains
       real(wp), intent(in) :: share(:)
       real(wp), intent(in) :: ratio(:)      !! see watch
       type(event_log), intent(inout) :: log
-      real(wp) :: stored, slope
+      real(wp) :: slope
       integer :: k, i, offset
 
       log%count = log%count + 1
-      stored = 0.5_wp * model%scale**2 * &
-         (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
-      ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
-      if (model%slides) stored = stored + model%origin_energy + 0.5_wp * (model%held(1) + &
-         model%lambda * model%held(2) - dot_product(model%fo, model%ua + model%lambda * model%ub))
-      log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored, model%external, &
+      log%reals(:, log%count) = [model%lambda, found%hi%value, found%lo%value, stored_energy(model), model%external, &
          model%dissipated, model%cracked, model%work(3), model%residual, model%scale, &
          model%support(1, 2) + model%lambda * model%support(2, 2)]
       offset = 0

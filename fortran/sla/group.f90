@@ -9,12 +9,13 @@ module sla_group
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: element_group, point_group, group_holder, bound, scan_result, event_vectors, material_options
+   public :: element_group, point_group, group_holder, slider, bound, scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
       report_rows, state_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
    integer, parameter :: most_entries = 24, most_rank = 4
+   integer, parameter :: most_slider = 8
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19
 
@@ -44,7 +45,19 @@ module sla_group
       real(wp) :: origin(most_rank) = 0.0_wp         !! value of w.u at which the part that changes carries nothing
       real(wp) :: hold(2, most_rank) = 0.0_wp        !! change of a held force along w, constant and per multiplier
       real(wp) :: shift = 0.0_wp                     !! change of the energy of `origins` [J]
+      logical :: cracks = .true.                     !! what the springs lose is energy of a crack
+      real(wp) :: crack = 0.0_wp                     !! beside what they lose [J]
    end type event_vectors
+
+   !> A point that slides: a force h that follows the displacements, unlike a spring not symmetrically, see sla_friction
+   type :: slider
+      integer :: group = 0
+      integer :: point = 0
+      integer(c_int) :: index(most_slider) = 0       !! equations, 0 held
+      real(wp) :: law(most_slider) = 0.0_wp          !! h = law.u [Pa/m]
+      real(wp) :: force(most_slider) = 0.0_wp        !! nodal forces of a unit of h [m^2]
+      real(wp) :: held(2) = 0.0_wp                   !! h as it is, constant and per unit multiplier [Pa]
+   end type slider
 
    !> How cracked material behaves, the same for the whole model
    type :: material_options
@@ -83,6 +96,11 @@ module sla_group
       procedure(state_interface), deferred :: state
       procedure :: margin
       procedure :: origins
+      procedure :: sliding
+      procedure :: sliders
+      procedure :: hold
+      procedure :: advance
+      procedure :: excess
    end type point_group
 
    type :: group_holder
@@ -193,6 +211,51 @@ contains
       associate (none => group, same => springs, likewise => held, unchanged => energy)   ! most groups have none
       end associate
    end subroutine origins
+
+   !> How many points slide
+   pure function sliding(group) result(count)
+      class(point_group), intent(in) :: group
+      integer :: count
+      count = 0 * group%points      ! most groups have none
+   end function sliding
+
+   !> Append the points that slide
+   pure subroutine sliders(group, list, count)
+      class(point_group), intent(in) :: group
+      type(slider), intent(inout) :: list(:)
+      integer, intent(inout) :: count
+      associate (none => group, same => list, unchanged => count)
+      end associate
+   end subroutine sliders
+
+   !> Take over the force of a point that slides
+   pure subroutine hold(group, point, held)
+      class(point_group), intent(inout) :: group
+      integer, intent(in) :: point
+      real(wp), intent(in) :: held(2)     !! constant and per unit multiplier [Pa]
+      associate (none => group, p => point, h => held)
+      end associate
+   end subroutine hold
+
+   !> Energy that the stiffness stores at points that slide and that their forces take back [J]
+   pure function excess(group, u) result(energy)
+      class(point_group), intent(in) :: group
+      real(wp), intent(in) :: u(0:)
+      real(wp) :: energy
+      associate (none => group, same => u)
+      end associate
+      energy = 0.0_wp
+   end function excess
+
+   !> What slides has come as far as in the state ua + lambda ub
+   pure subroutine advance(group, lambda, ua, ub)
+      class(point_group), intent(inout) :: group
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      associate (none => group, load => lambda, a => ua, b => ub)
+      end associate
+   end subroutine advance
 
    !> Displacements of an element's own freedoms
    pure subroutine gather(group, element, u, local)

@@ -9,22 +9,22 @@
 !>   sliding      |tau| <= c1 - mu sigma      before the first slip, c1 the first tooth of the cohesion
 !>                |tau_c| <= c_i              after it: teeth of a law whose strain is the slip, energy of mode II
 !>                |tau_f| <= -mu sigma        its friction, beside the cohesion: tau = tau_c + tau_f
-!> Where friction sticks it is elastic, with what stiffness the cohesion has lost. Where it slides it is a force h that
-!> is held, without stiffness, and changes with the multiplier as the strength did when it was set; it is set anew
-!> where it differs from the strength by more than the ripple of friction. Slip that turns back sticks.
+!> Where friction sticks it is elastic, with what stiffness the cohesion has lost. Where it slides, tau_f = -/+ mu sigma
+!> is a force that follows the displacements, see sla_friction. Slip that turns back sticks.
 !>
 !> Cohesion and tension are one bond: the same part of both is left (Lourenco and Rots 1997). The split of a bond and a
 !> slider is that of Alfano and Sacco (2006), but that here friction helps from the start, as in Coulomb's law.
 !>
 !> Cracked joints close again with their initial normal stiffness. What opens without strength, and what closes, does so
-!> at zero stress; a joint that closes sticks where it touches.
+!> at zero stress; a joint that closes slides on as it moved.
 module sla_interface
    use common_kinds, only : wp
    use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression, &
       code_close => sla_event_close, code_open => sla_event_open, code_wear => sla_event_wear, &
-      code_slide => sla_event_slide, code_follow => sla_event_follow, code_stick => sla_event_stick
+      code_slide => sla_event_slide, code_stick => sla_event_stick
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
-   use sla_group, only : point_group, scan_result, event_vectors, material_options, unbounded, linear_bound, offer_hi
+   use sla_group, only : point_group, scan_result, slider, event_vectors, material_options, unbounded, linear_bound, &
+      offer_hi
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -33,16 +33,17 @@ module sla_interface
 
    !> How the friction of a closed point is
    integer(c_int), parameter :: sticks = 0, slides_up = 1, slides_down = 2
-   !> Below this strength, over the stress that counts as small, friction is none until it is twice as much
-   real(wp), parameter :: least_friction = 10.0_wp
-   !> Slip back that counts as sticking, over the ripple and the elastic slip of the friction: more than the friction
-   !> may lag behind the normal stress, which would else stick what slides on as soon as it follows
+   !> Slip back that counts as sticking, over the ripple and the elastic slip of the friction
    real(wp), parameter :: turned = 4.0_wp
-   !> Shear stiffness left where friction slides, over the initial one: a stone that slides at all of its points must
-   !> not be lost before those that it drags back stick
-   real(wp), parameter :: least_rest = 1.0e-9_wp
-   !> A held force is changed beside a stiffness of this part of the initial one, that changes by a hundredth
-   real(wp), parameter :: hundredth = 0.01_wp
+   !> A point that can neither stick nor slide on at a load (Painleve's paradox) may slip either way from then on: it
+   !> would else stick and slide again by steps of no size. Mark of such a point [m]; loads that are the same
+   real(wp), parameter :: never = 1.0e7_wp, same = 1.0e-9_wp
+   !> Stiffness that a point which slides keeps in the factor, over that of one that sticks; its force takes that back.
+   !> With less of it the factor loses digits, with more the energies, see `excess`
+   real(wp), parameter :: soft = 1.0e-4_wp
+   !> What the law along a joint holds back is changed beside its stiffness, which then changes by so much: of an open
+   !> joint over what is left of it, of a closed one over the whole
+   real(wp), parameter :: hundredth = 0.01_wp, least_change = 1.0e-11_wp
 
    !> What the joints of a group are made of, each (elements)
    type :: joint_law
@@ -54,7 +55,7 @@ module sla_interface
       integer(c_int), allocatable :: crush_table(:)
       integer(c_int), allocatable :: slip_table(:)   !! teeth of the cohesion, 0 none
       integer(c_int), allocatable :: dry(:)     !! 1: no tensile strength
-      real(wp) :: ripple = 0.02_wp              !! by which sliding friction may differ from its strength
+      real(wp) :: ripple = 0.02_wp              !! see `turned`
    end type joint_law
 
    type, extends(point_group) :: interface_group
@@ -72,7 +73,8 @@ module sla_interface
       integer(c_int), allocatable :: even(:)     !! 0 or 1, changes with the held force
       real(wp), allocatable :: start(:)          !! slip from which the cohesion counts its own [m]
       real(wp), allocatable :: mark(:)           !! where friction sticks: slip without it; where it slides: so far [m]
-      real(wp), allocatable :: held(:, :)        !! (2, points) friction where it slides: constant, per multiplier [Pa]
+      real(wp), allocatable :: held(:, :)        !! (2, points) see `slider`, constant and per multiplier [Pa]
+      real(wp), allocatable :: stuck(:)          !! multiplier at which a sliding point has stuck last
    contains
       procedure :: matrix
       procedure :: force
@@ -81,6 +83,11 @@ module sla_interface
       procedure :: report
       procedure :: state
       procedure :: origins
+      procedure :: sliding
+      procedure :: sliders
+      procedure :: hold
+      procedure :: advance
+      procedure :: excess
    end type interface_group
 
    !> The law along the joint, tau = k ds - k0 + h; its elastic energy is k ds^2 / 2 - k0 ds + e0
@@ -141,7 +148,8 @@ contains
       status = status_out_of_memory
       allocate (group%normal(2, n), group%area(2 * n), group%tooth(2 * n), group%crush(2 * n), group%slip(2 * n), &
          group%shut(2 * n), group%changes(2 * n), group%mode(2 * n), group%even(2 * n), group%start(2 * n), &
-         group%mark(2 * n), group%held(2, 2 * n), stat=info)
+         group%mark(2 * n), group%held(2, 2 * n), &
+         group%stuck(2 * n), stat=info)
       if (info /= 0) return
       group%normal(:, :) = normal
       group%crush = 1
@@ -151,6 +159,7 @@ contains
       group%start = 0.0_wp
       group%mark = 0.0_wp
       group%held = 0.0_wp
+      group%stuck = unbounded
       do e = 1, n
          if (.not. all(area(:, e) >= 0.0_wp) .or. .not. any(area(:, e) > 0.0_wp) .or. &
              .not. abs(norm2(normal(:, e)) - 1.0_wp) < 1.0e-9_wp) then
@@ -238,32 +247,38 @@ contains
       end associate
    end function across
 
+   !> Stiffness along a closed joint that sticks [Pa/m]
+   pure function shear(group, e, p) result(k)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp) :: k
+      k = group%law%ks(e) * (1.0_wp + least_change * real(group%even(p), wp))
+   end function shear
+
    !> The law along the joint as it stands
    pure function along(group, e, p) result(law)
       class(interface_group), intent(in) :: group
       integer, intent(in) :: e, p
       type(line) :: law
       real(wp) :: k
-      real(wp) :: rest
-      rest = group%options%floor
-      if (is_closed(group, p)) rest = max(rest, least_rest)
-      rest = rest * group%law%ks(e) * (1.0_wp + hundredth * real(group%even(p), wp))
-      associate (ks => group%law%ks(e))
-         if (group%law%friction(e) < 0.0_wp) then
-            law = line(k=ks)
-            return
-         end if
-         k = bond(group, e, p)
-         law = line(k + rest, k * group%start(p), 0.5_wp * k * group%start(p)**2)
-         if (.not. is_closed(group, p)) return
-         if (group%mode(p) == sticks) then
-            law%k = ks + rest
-            law%k0 = law%k0 + (ks - k) * group%mark(p)
-            law%e0 = law%e0 + 0.5_wp * (ks - k) * group%mark(p)**2
-         else
-            law%h = group%held(:, p)
-         end if
-      end associate
+      if (group%law%friction(e) < 0.0_wp) then
+         law = line(k=group%law%ks(e))
+         return
+      end if
+      k = bond(group, e, p)
+      law = line(k, k * group%start(p), 0.5_wp * k * group%start(p)**2)
+      if (.not. is_closed(group, p)) then
+         law%k = k + group%options%floor * group%law%ks(e) * (1.0_wp + hundredth * real(group%even(p), wp))
+         return
+      end if
+      law%k = shear(group, e, p)
+      if (group%mode(p) == sticks) then
+         law%k0 = law%k0 + (law%k - k) * group%mark(p)
+         law%e0 = law%e0 + 0.5_wp * (law%k - k) * group%mark(p)**2
+      else   ! a spring, and h, which takes it away and puts friction there
+         law%k = k + soft * law%k
+         law%h = group%held(:, p)
+      end if
    end function along
 
    !> Part of a strength that is left, 1 before the first tooth has passed
@@ -349,6 +364,91 @@ contains
       end do
    end subroutine origins
 
+   !> Can a closed point slide? Mortar of which no cohesion is given holds until it is torn
+   pure function slips(group, e, p) result(yes)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      logical :: yes
+      yes = group%law%friction(e) >= 0.0_wp .and. group%slip(p) > 1
+      if (yes) yes = group%law%slip_table(e) /= 0 .or. group%tooth(p) > 1
+   end function slips
+
+   !> Does the friction of a point slide?
+   pure function is_sliding(group, p) result(yes)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: p
+      logical :: yes
+      yes = group%mode(p) /= sticks .and. is_closed(group, p) .and. group%area(p) > 0.0_wp
+   end function is_sliding
+
+   pure function sliding(group) result(count)
+      class(interface_group), intent(in) :: group
+      integer :: count, p
+      count = 0
+      do p = 1, group%points
+         if (is_sliding(group, p)) count = count + 1
+      end do
+   end function sliding
+
+   pure subroutine sliders(group, list, count)
+      class(interface_group), intent(in) :: group
+      type(slider), intent(inout) :: list(:)
+      integer, intent(inout) :: count
+      integer :: e, p
+      do p = 1, group%points
+         if (.not. is_sliding(group, p)) cycle
+         e = (p + 1) / 2
+         count = count + 1
+         list(count)%point = p
+         list(count)%index = group%equation(:, e)
+         list(count)%law = nodal(group, e, p, [merge(-1.0_wp, 1.0_wp, group%mode(p) == slides_up) * &
+            group%law%friction(e) * across(group, e, p), -soft * shear(group, e, p)]) * group%factor(:, e)
+         list(count)%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+         list(count)%held = group%held(:, p)
+      end do
+   end subroutine sliders
+
+   pure subroutine hold(group, point, held)
+      class(interface_group), intent(inout) :: group
+      integer, intent(in) :: point
+      real(wp), intent(in) :: held(2)
+      group%held(:, point) = held
+   end subroutine hold
+
+   pure function excess(group, u) result(energy)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: u(0:)
+      real(wp) :: energy, local(8), d(2)
+      integer :: e, p
+      energy = 0.0_wp
+      do p = 1, group%points
+         if (.not. is_sliding(group, p)) cycle
+         e = (p + 1) / 2
+         call group%gather(e, u, local)
+         d = jump(group, e, p, local)
+         energy = energy + 0.5_wp * group%area(p) * soft * shear(group, e, p) * d(2)**2
+      end do
+   end function excess
+
+   pure subroutine advance(group, lambda, ua, ub)
+      class(interface_group), intent(inout) :: group
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp) :: local(8), other(8), d(2)
+      integer :: e, p
+      do p = 1, group%points
+         if (.not. is_sliding(group, p)) cycle
+         e = (p + 1) / 2
+         call group%gather(e, ua, local)
+         call group%gather(e, ub, other)
+         d = jump(group, e, p, local + lambda * other)
+         if (abs(group%mark(p)) >= never) cycle
+         if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), d(2))
+         if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), d(2))
+      end do
+   end subroutine advance
+
    pure subroutine scan(group, first, last, ua, ub, lambda, noise, found)
       class(interface_group), intent(in) :: group
       integer, intent(in) :: first
@@ -379,7 +479,7 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
-      real(wp) :: f, mu, sa, sb, scale, k, ta, tb, fall
+      real(wp) :: f, mu, sa, sb, scale, k, spring, ta, tb
       integer :: side
 
       associate (law => group%law, kn => group%law%kn(e), ks => group%law%ks(e))
@@ -412,44 +512,40 @@ contains
                   code_wear, found)
             end if
          end do
-         if (group%slip(p) == 1 .or. .not. is_closed(group, p)) return
-         if (law%slip_table(e) == 0 .and. group%tooth(p) == 1) return   ! mortar of which no cohesion is given holds
-         ta = (ks - k) * (da(2) - group%mark(p))
-         tb = (ks - k) * db(2)
+         if (.not. (is_closed(group, p) .and. slips(group, e, p))) return
+         spring = shear(group, e, p) - k
+         ta = spring * (da(2) - group%mark(p))
+         tb = spring * db(2)
          if (group%mode(p) == sticks) then
             do side = 1, -1, -2
-               call reach(side * tb + mu * sb, scale - side * ta - mu * sa, lambda, noise, p, code_slide, found)
+               call reach(side * tb + mu * sb, -side * ta - mu * sa, scale, lambda, noise, p, code_slide, found)
             end do
             return
          end if
          ! Friction that slides, less its strength, both linear in the multiplier
          side = merge(1, -1, group%mode(p) == slides_up)
-         k = side * (group%held(1, p) + lambda * group%held(2, p))
-         f = max(k, 0.0_wp) * law%ripple + scale
-         ta = side * group%held(1, p) + mu * sa
-         fall = side * group%held(2, p) + mu * sb
-         if (k > 0.0_wp) then
-            call reach(fall, f - ta, lambda, noise, p, code_follow, found)
-         else
-            f = 2.0_wp * least_friction * scale
-         end if
-         call reach(-fall, f + ta, lambda, noise, p, code_follow, found)
-         ta = (ks - bond(group, e, p)) * (da(2) - group%mark(p))
-         call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, lambda, noise, p, &
+         k = side * (group%held(1, p) + lambda * group%held(2, p) + &
+            soft * shear(group, e, p) * (da(2) + lambda * db(2)))
+         call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, 0.0_wp, lambda, noise, p, &
             code_stick, found)
       end associate
    end subroutine scan_point
 
    !> What grows by `rate` per unit multiplier reaches `room` as the load grows, or at once where it is beyond: it never
    !> asks for less load than there is. A load that falls for the next tooth is the method's, no reversal.
-   pure subroutine reach(rate, room, lambda, noise, point, code, found)
+   pure subroutine reach(rate, room, least, lambda, noise, point, code, found)
       real(wp), intent(in) :: rate     !! [Pa]
       real(wp), intent(in) :: room     !! [Pa]
+      real(wp), intent(in) :: least    !! [Pa]
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       integer, intent(in) :: point, code
       type(scan_result), intent(inout) :: found
-      if (rate > noise) call offer_hi(found, max(room / rate, lambda), point, code)
+      if (rate > noise) then
+         call offer_hi(found, max(room / rate, lambda), point, code)
+      else if (room < rate * lambda - least) then
+         call offer_hi(found, lambda, point, code)
+      end if
    end subroutine reach
 
    pure subroutine damage(group, point, code, lambda, ua, ub, event, tooth)
@@ -461,7 +557,7 @@ contains
       real(wp), intent(in) :: ub(0:)
       type(event_vectors), intent(out) :: event
       integer, intent(out) :: tooth
-      real(wp) :: local(8), other(8), d(2), normal(2), strength, change, rate
+      real(wp) :: local(8), other(8), d(2), moved(2), normal(2), strength, change, friction
       type(line) :: old, new
       integer :: e, p
 
@@ -470,11 +566,12 @@ contains
       call group%gather(e, ua, local)
       call group%gather(e, ub, other)
       d = jump(group, e, p, local + lambda * other)
+      moved = jump(group, e, p, other)
       normal(1) = across(group, e, p)
       old = along(group, e, p)
       associate (law => group%law)
          strength = max(-law%friction(e) * normal(1) * d(1), 0.0_wp)
-         rate = -law%friction(e) * normal(1) * across_rate(group, e, p, other)
+         friction = group%held(1, p) + lambda * group%held(2, p) + soft * shear(group, e, p) * d(2)
          tooth = 0
          select case (code)
          case (code_tension)
@@ -489,22 +586,30 @@ contains
          case (code_open, code_close)
             group%shut(p) = merge(1_c_int, 0_c_int, code == code_close)
             group%changes(p) = group%changes(p) + 1_c_int
+            ! What closes slides on as it comes; what moves neither way sticks at once
             group%mode(p) = sticks
+            if (code == code_close .and. slips(group, e, p)) then
+               group%mode(p) = merge(slides_up, slides_down, moved(2) > 0.0_wp)
+            end if
             group%mark(p) = d(2)
             group%held(:, p) = 0.0_wp
+            if (group%mode(p) /= sticks) call begin(group, e, p, 0.0_wp, d, moved, lambda)
             tooth = int(group%changes(p))
          case (code_wear)
             if (group%slip(p) == 1) then
                ! The first slip: friction carries what it can, the cohesion the rest, at the slip of its own law
                group%mode(p) = merge(slides_up, slides_down, d(2) > 0.0_wp)
-               call hold(group, p, sign(strength, d(2)), sign(rate, d(2) * rate), lambda)
                group%start(p) = sign(strength, d(2)) / law%ks(e)
                group%mark(p) = d(2)
+               friction = sign(strength, d(2))
             end if
+            event%crack = 0.5_wp * group%area(p) * (bond(group, e, p) - bond_of(group, e, group%slip(p) + 1_c_int)) * &
+               (d(2) - group%start(p))**2
             group%slip(p) = group%slip(p) + 1_c_int
+            if (group%mode(p) /= sticks) call begin(group, e, p, friction, d, moved, lambda)
             if (group%mode(p) == sticks) then   ! friction keeps its force, with more stiffness
-               change = (law%ks(e) - bond_of(group, e, group%slip(p) - 1_c_int)) * (d(2) - group%mark(p))
-               group%mark(p) = d(2) - change / (law%ks(e) - bond(group, e, p))
+               change = (shear(group, e, p) - bond_of(group, e, group%slip(p) - 1_c_int)) * (d(2) - group%mark(p))
+               group%mark(p) = d(2) - change / (shear(group, e, p) - bond(group, e, p))
             end if
             if (law%table(e) /= 0) then
                call wear_with(group%teeth, law%slip_table(e), group%slip(p), law%table(e), group%tooth(p))
@@ -512,23 +617,20 @@ contains
             end if
             tooth = int(group%slip(p))
          case (code_slide)
-            change = (law%ks(e) - bond(group, e, p)) * (d(2) - group%mark(p))
+            change = (shear(group, e, p) - bond(group, e, p)) * (d(2) - group%mark(p))
             group%mode(p) = merge(slides_up, slides_down, change > 0.0_wp)
-            call hold(group, p, change, sign(rate, change * rate), lambda)
+            call begin(group, e, p, change, d, moved, lambda)
             group%mark(p) = d(2)
-         case (code_follow)
-            change = merge(1.0_wp, -1.0_wp, group%mode(p) == slides_up)
-            if (strength <= least_friction * law%small(e)) change = 0.0_wp
-            call hold(group, p, change * strength, change * rate, lambda)
-            if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), d(2))
-            if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), d(2))
+            if (abs(lambda - group%stuck(p)) <= same * abs(lambda)) group%mark(p) = &
+               merge(-never, never, group%mode(p) == slides_up)
          case default
-            change = group%held(1, p) + lambda * group%held(2, p)
-            group%mark(p) = d(2) - change / (law%ks(e) - bond(group, e, p))
+            group%mark(p) = d(2) - friction / (shear(group, e, p) - bond(group, e, p))
             group%mode(p) = sticks
             group%held(:, p) = 0.0_wp
+            group%stuck(p) = lambda
          end select
       end associate
+      event%cracks = code == code_tension .or. code == code_compression
       new = along(group, e, p)
       if (any(abs(new%h - old%h) > 0.0_wp) .or. abs(new%k0 - old%k0) > 0.0_wp) then
          if (.not. abs(new%k - old%k) > 0.0_wp) then
@@ -549,25 +651,19 @@ contains
       end associate
    end subroutine damage
 
-   !> Rate of the opening, per unit multiplier [m]
-   pure function across_rate(group, e, p, local) result(rate)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      real(wp), intent(in) :: local(:)
-      real(wp) :: rate, d(2)
-      d = jump(group, e, p, local)
-      rate = d(1)
-   end function across_rate
-
-   !> Friction that has a value at a multiplier and changes with it
-   pure subroutine hold(group, p, stress, rate, lambda)
+   !> The force of a point that begins to slide with a friction, see `slider`; its balance is found with all the others'
+   pure subroutine begin(group, e, p, friction, d, moved, lambda)
       class(interface_group), intent(inout) :: group
-      integer, intent(in) :: p
-      real(wp), intent(in) :: stress      !! [Pa]
-      real(wp), intent(in) :: rate        !! per unit multiplier [Pa]
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: friction    !! [Pa]
+      real(wp), intent(in) :: d(2)        !! jumps [m]
+      real(wp), intent(in) :: moved(2)    !! per unit multiplier [m]
       real(wp), intent(in) :: lambda
-      group%held(:, p) = [stress - lambda * rate, rate]
-   end subroutine hold
+      real(wp) :: spring
+      spring = soft * shear(group, e, p)
+      group%held(2, p) = -spring * moved(2)
+      group%held(1, p) = friction - spring * d(2) - lambda * group%held(2, p)
+   end subroutine begin
 
    !> One more vector of the change of a stiffness, softening where it is positive
    pure subroutine add_vector(group, e, p, v, change, event)
@@ -601,7 +697,7 @@ contains
       end do
    end subroutine wear_with
 
-   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held friction, constant and per multiplier, over the shear
+   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the shear
    !> stiffness [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion, 6 compression tooth,
    !> 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
    pure subroutine state(group, store, values)
@@ -634,6 +730,7 @@ contains
          group%mark(:) = values(9, :)
          group%changes(:) = nint(values(10, :), c_int)
          group%mode(:) = mod(nint(values(11, :), c_int), 4_c_int)
+         group%stuck(:) = unbounded
          group%even(:) = min(nint(values(11, :), c_int) / 4_c_int, 1_c_int)
       end if
    end subroutine state
@@ -667,6 +764,7 @@ contains
             values(7:8, p) = group%normal(:, e)
             values(9, p) = k / group%law%kn(e)
             values(10, p) = law%k / group%law%ks(e)
+            if (group%mode(p) /= sticks) values(10, p) = bond(group, e, p) / group%law%ks(e)
             values(11, p) = real(group%tooth(p), wp)
             values(12, p) = real(group%slip(p), wp)
             found = scan_result()

@@ -11,13 +11,14 @@ module sla_model
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
    use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
       most_entries, most_rank, report_rows
+   use sla_friction, only : friction_store, friction_balance
    use sla_regions, only : region_tree, regions_new, regions_measure, regions_settled, regions_made_up
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
    implicit none
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
-   public :: model_displacements, model_settled, model_reactions
+   public :: model_displacements, model_settled, model_balance, model_reactions, model_recorded
    public :: held_work, model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
@@ -45,8 +46,12 @@ module sla_model
       real(wp), allocatable :: fa(:), fb(:)              !! (0:n) constant and reference load [N]
       real(wp), allocatable :: fo(:)                     !! (0:n) forces of origins that moved, see group [N]
       real(wp), allocatable :: fh(:, :)                  !! (0:n, 2) held forces, constant and per multiplier [N]
+      ! Of the last state where joints slide: displacements [m], held forces [N], energy that they take back [J]
+      real(wp), allocatable :: u_before(:), f_before(:)
+      real(wp) :: excess = 0.0_wp
       real(wp) :: held(2) = 0.0_wp                       !! fh.u of the last state [J]
       real(wp) :: origin_energy = 0.0_wp                 !! [J]
+      type(friction_store) :: friction
       logical :: slides = .false.                        !! a group has origins: no region may wait
       real(wp), allocatable :: moved(:, :)               !! (moved, 2) supports, constant and per multiplier [m]
       real(wp), allocatable :: reaction(:, :)            !! (moved, 2) their forces under A and per multiplier [N]
@@ -350,8 +355,20 @@ contains
       if (status /= status_ok) return
       model%ua(1:n) = model%z(:, 1)
       model%ub(1:n) = model%z(:, 2)
-      call model_settled(model)
+      model%friction%known = .false.
+      call model_balance(model, [0, 0], status)
    end subroutine model_solve
+
+   !> Where all displacements are known: let friction balance with them, then see `model_settled`
+   subroutine model_balance(model, place, status)
+      type(element_model), intent(inout) :: model
+      integer, intent(in) :: place(2)             !! group and point of the last event, 0 none
+      integer(c_int), intent(out) :: status        !! not_positive_definite: what slides is a mechanism
+      status = status_ok
+      if (model%slides) call friction_balance(model%friction, model%holders, model%event, place, model%handle, &
+         model%refactor, model%value, model%equations, model%ua, model%ub, model%fh, status)
+      call model_settled(model)
+   end subroutine model_balance
 
    !> The forces by which moved supports act on the unknowns, into z; the supports move
    subroutine push_supports(model)
@@ -504,9 +521,34 @@ contains
       model%event%rank = 0
       call model_solve(model, status)
       model%held = held_work(model, model%lambda_recorded)
+      call model_recorded(model, model%lambda_recorded, status)
       model%cross = dot_product(model%fb, model%ua(0:model%equations)) + model%support(2, 1)
       model%support_was = model%support
    end subroutine model_resume
+
+   !> Remember a state for the work of what slides until the next
+   subroutine model_recorded(model, lambda, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: lambda
+      integer(c_int), intent(out) :: status
+      integer :: g, info
+      status = status_ok
+      model%excess = 0.0_wp
+      if (.not. model%slides) return
+      if (.not. allocated(model%u_before)) then
+         allocate (model%u_before, model%f_before, mold=model%ua, stat=info)
+         if (info /= 0) status = status_out_of_memory
+         if (info /= 0) return
+      end if
+      model%u_before(:) = model%ua + lambda * model%ub
+      model%f_before(:) = model%fh(:, 1) + lambda * model%fh(:, 2)
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
+         class is (point_group)
+            model%excess = model%excess + group%excess(model%u_before)
+         end select
+      end do
+   end subroutine model_recorded
 
    !> Products of the held forces, constant and per multiplier, with the displacements at a multiplier [J]
    pure function held_work(model, lambda) result(work)

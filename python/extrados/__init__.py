@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from extrados.explore.widget import Page
     from extrados.running.live import Live
     from extrados.running.run import Run
 
-__all__ = ["live", "load", "run"]
+__all__ = ["live", "load", "run", "widget"]
 
 
 def run(
@@ -50,6 +51,16 @@ def load(folder: str | Path) -> "Run":
     from extrados.running.run import Run
 
     return Run.read(folder)
+
+
+def widget(deck: str | Path | None = None, *, height: int = 680) -> "Page":
+    """The interactive page as a widget of a notebook (needs anywidget: pip install "extrados[notebook]"), `height` in pixels.
+
+    `widget(...).deck` is the text of the deck as it stands in the page.
+    """
+    from extrados.explore.widget import Page
+
+    return Page.of(None if deck is None else Path(deck), height)
 
 
 def _checked(deck: str | Path | dict[str, Any]) -> Any:

@@ -475,7 +475,9 @@ def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> No
 @app.command()
 def explore(
     deck: Annotated[Path | None, typer.Argument(help="the deck to open; default a new arch")] = None,
-    port: Annotated[int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")] = None,
+    port: Annotated[
+        int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")
+    ] = None,
     browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
 ) -> None:
     """Open the interactive page: drag the stones, see the thrust. It is served to this machine alone."""

@@ -37,6 +37,8 @@ STRUCTURES: dict[str, str] = {
     "mesh": "building.templates.walls:MeshFile",
     "column": "building.templates.masonry:Column",
     "brickwork": "building.templates.brickwork:Brickwork",
+    "frame": "building.templates.frame:Frame",
+    "stack": "building.templates.stack:Stack",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",

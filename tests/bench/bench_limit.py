@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy import sparse
 from scipy.optimize import linprog
-from timing import seconds
+from timing import processor, seconds
 
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
@@ -88,17 +88,6 @@ def scipy_full(a: Assembly, friction: float | None = None) -> float:
     return -found.fun
 
 
-def processor(call, runs: int = 15) -> float:
-    """Least processor time of a call after one warm-up [s]: what it takes when the machine is not shared."""
-    call()
-    found = []
-    for _ in range(runs):
-        begin = time.process_time()
-        call()
-        found.append(time.process_time() - begin)
-    return min(found)
-
-
 def warm_highs(a: Assembly) -> Callable[[], float]:
     """HiGHS on three equations per block, started from its own last basis: a solve with the load reversed and back."""
     import highspy
@@ -165,7 +154,10 @@ def main() -> None:
         ("three-aisle section", church, 15.0),
     ):
         answer = whole_answer(make())
-        mine, alone = seconds(lambda make=make: whole_answer(make())), processor(lambda make=make: whole_answer(make()))
+        mine, alone = (
+            seconds(lambda make=make: whole_answer(make())),
+            processor(lambda make=make: whole_answer(make()), 15),
+        )
         peer = seconds(lambda make=make: scipy_full(make()))
         print(
             f"  {name}: {1e3 * mine:.2f} ms for all of it with geometry, {1e3 * alone:.2f} ms of processor (goal {goal:g} "

@@ -14,7 +14,8 @@ program test_rocking
    real(wp), parameter :: arch_values(21) = [-9.07_wp, 1.80_wp, -5.97_wp, 8.94_wp, 2.1_wp, 10.54_wp, 10.54_wp, &
       2.10_wp, 11.3_wp, 12.1_wp, 17.9_wp, -8.3_wp, 5.6_wp, -2.1_wp, 9.7_wp, 7.4_wp, 6.9_wp, 31.0_wp, 43.0_wp, &
       59.0_wp, 0.9_wp]
-   real(wp), parameter :: block_values(8) = [0.0_wp, 1000.0_wp, 1500.0_wp, 2.0_wp, 0.5_wp, 0.4_wp, 0.9_wp, 0.8_wp]
+   real(wp), parameter :: block_values(9) = [0.0_wp, 1000.0_wp, 1500.0_wp, 2.0_wp, 0.5_wp, 0.4_wp, 0.9_wp, 0.8_wp, &
+      0.0_wp]
    type(arch_rocker) :: arch
    type(block_rocker) :: stone
    integer(c_int) :: status
@@ -25,9 +26,11 @@ program test_rocking
    call block_rocker_new(block_values, stone, status)
    if (status /= status_ok) error stop 'the block is refused'
    call potential_is_integral(stone, 'block')
+   call block_rocker_new([block_values(:8), 0.05_wp], stone, status)
+   call potential_is_integral(stone, 'block on sloping ground')
    call block_rocker_new([1.0_wp, block_values(2:)], stone, status)
    call potential_is_integral(stone, 'slender block')
-   call block_rocker_new([1.0_wp, block_values(2:6), 1.1_wp, 0.8_wp], stone, status)
+   call block_rocker_new([1.0_wp, block_values(2:6), 1.1_wp, 0.8_wp, 0.0_wp], stone, status)
    if (status /= status_invalid_argument) error stop 'a restitution above 1 is taken'
    call free_rocking()
    print '(a)', 'rocking: all right'
@@ -69,7 +72,8 @@ contains
       type(response) :: answer
       type(response_history) :: record
       integer :: k, impacts
-      call block_rocker_new([1.0_wp, block_values(2:4), 0.5_wp, 0.5_wp, restitution, restitution], stone, status)
+      call block_rocker_new([1.0_wp, block_values(2:4), 0.5_wp, 0.5_wp, restitution, restitution, &
+         0.0_wp], stone, status)
       breaks = [0.0_wp, 1.0_wp]
       lines = 0.0_wp
       still = signal_piecewise(breaks, lines, sines, 1.0_wp)

@@ -31,10 +31,14 @@ MAY_IMPORT = {
         "schema",
     },
     "plots": {"kinds", "results", "schema"},
-    "running": {"analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
-    "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "schema", "_build_info"},
+    "running": {"kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
+    "explore": {
+        "kinds", "analyses", "tables", "building", "geometry", "errors", "limit", "decks", "motions", "core", "results", "plots",
+        "running", "schema", "_build_info",
+    },
+    "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info"},
     "__main__": {"cli"},
-    "": {"analyses", "decks", "running"},
+    "": {"analyses", "decks", "running", "explore"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit
 #: analysis, which knows blocks and joints alone

@@ -190,7 +190,7 @@ def test_what_falls_without_lintels() -> None:
          "openings": [{"x": [0.4, 1.2], "y": [0.0, 0.8]}]},
         {"kind": "tilt"}, joints={"friction": 0.5},
     )  # fmt: skip
-    assert result.status == "refused" and "nothing bears unit 2 of course 5" in result.reason
+    assert result.status == "refused" and "nothing but friction bears unit 2 of course 5" in result.reason
 
 
 def test_regions_of_another_density() -> None:

@@ -130,7 +130,7 @@ def test_a_deck_gives_no_orders_to_the_terminal(tmp_path) -> None:
 
 
 def test_names_and_headers_of_tables_are_no_formulas(tmp_path) -> None:
-    table = store.csv_text(TableData({"=cmd": ["@x", "\x1b[31m"], "+1": [1.0, 2.0]}, {"+1": "m"}))
+    table = "".join(store.csv_parts(TableData({"=cmd": ["@x", "\x1b[31m"], "+1": [1.0, 2.0]}, {"+1": "m"})))
     assert table.splitlines() == ["'=cmd,'+1 [m]", "'@x,1.0", "\\x1b[31m,2.0"]
 
 

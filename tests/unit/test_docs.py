@@ -11,7 +11,10 @@ import pytest
 from extrados.decks.reader import make_deck
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")] + sorted(
+    (ROOT / "docs").glob("*.md")
+)
+DECKS = sorted(p for p in (ROOT / "cases").rglob("*.toml") if not p.name.endswith(".expect.toml"))
 
 
 def decks() -> list:
@@ -31,7 +34,7 @@ def test_decks_in_the_docs_are_right(block: str) -> None:
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.name)
 def test_what_the_docs_name_exists(page: Path) -> None:
-    """Cases, tests and modules that a page names in backquotes."""
+    """Cases, tests and modules that a page names in backquotes, and the pages it links."""
     text = page.read_text(encoding="utf-8")
     missing = []
     for name in re.findall(r"`((?:cases|tests|tools|docs|python|fortran|c)/[\w./*-]+)`", text):
@@ -40,8 +43,25 @@ def test_what_the_docs_name_exists(page: Path) -> None:
         if not there:
             missing.append(name)
     assert not missing
-    for function in re.findall(r"`(test_\w+\.py)`", text):
-        assert list((ROOT / "tests").rglob(function)), function
+    for file in re.findall(r"`(test_\w+\.py)`", text):
+        assert list((ROOT / "tests").rglob(file)), file
+    tests = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "tests").rglob("test_*.py"))
+    for function in re.findall(r"`(test_\w+)`", text):
+        assert f"def {function}(" in tests or list((ROOT / "tests").rglob(f"{function}.py")), function
+    for link in re.findall(r"\]\(([\w./-]+\.\w+)(?:#[\w-]+)?\)", text):
+        assert (page.parent / link).exists(), link
+
+
+def test_the_verification_book_names_cases_that_exist() -> None:
+    book = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
+    folders = "|".join(place.name for place in (ROOT / "cases").iterdir())
+    named = set(re.findall(rf"^\| ((?:{folders})/[\w-]+) \|", book, re.M))
+    assert named and not [name for name in named if not (ROOT / "cases" / f"{name}.toml").exists()]
+
+
+@pytest.mark.parametrize("deck", DECKS, ids=lambda p: f"{p.parent.name}/{p.stem}")
+def test_every_case_has_expected_rows(deck: Path) -> None:
+    assert tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8"))["expect"]
 
 
 def test_the_deck_reference_is_up_to_date() -> None:

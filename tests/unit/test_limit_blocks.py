@@ -14,7 +14,16 @@ from extrados.building.geometry.builder import BadGeometry
 from extrados.building.geometry.contacts import Overlap, find_contacts
 from extrados.building.geometry.drawing import Drawing, read_json
 from extrados.building.geometry.inspection import inspect
-from extrados.building.geometry.polygons import below, crossing_edges, crossings, cut, inside, properties, signed_area
+from extrados.building.geometry.polygons import (
+    below,
+    crossing_edges,
+    crossings,
+    cut,
+    inside,
+    properties,
+    reach,
+    signed_area,
+)
 from extrados.building.templates.arch import make_arch
 from extrados.building.templates.blocks import Polygon, assemble, make_blocks
 from extrados.building.templates.brickwork import Bond, make_brickwork
@@ -72,6 +81,11 @@ def test_polygon_properties() -> None:
         expected = properties(part)[:2] if len(part) else (0.0, np.zeros(2))
         assert area == pytest.approx(expected[0]) and (first_x, first_y) == pytest.approx(tuple(area * expected[1]))
     assert crossings(SQUARE, 0.5) == pytest.approx([0.0, 1.0])
+    levels = np.array([-0.5, 0.25, 0.5, 2.0])
+    found = reach(SQUARE, levels)
+    for level, (low, high) in zip(levels.tolist(), found.tolist(), strict=True):
+        met = crossings(SQUARE, level)
+        assert (low, high) == ((np.inf, -np.inf) if not len(met) else pytest.approx((met[0], met[-1])))
     assert inside(SQUARE, np.array([[0.5, 0.5], [1.5, 0.5]])).tolist() == [True, False]
     assert crossing_edges(SQUARE[[0, 2, 1, 3]]) is not None and crossing_edges(SQUARE) is None
 

@@ -14,7 +14,7 @@ from extrados.building.templates.arch import make_arch
 from extrados.building.templates.vault import make_vault
 from extrados.limit.answer import assess
 from extrados.limit.fracture import crack, fractured_collapse, section_distance
-from extrados.limit.graphic import pier_line, thrust_of
+from extrados.limit.graphic import section_forces, thrust_of
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.limit.supports import support_movement
@@ -222,13 +222,16 @@ def test_fill_weighs_on_the_haunches() -> None:
     assert mass.sum() == pytest.approx(1600.0 * np.sum(0.5 * (depth[1:] + depth[:-1]) * np.diff(x)), rel=1e-6)
 
 
-def test_line_down_a_pier_ends_at_its_base() -> None:
-    """Sections a hair above the base must give the pressure point that the programme gives."""
+def test_thrust_in_a_pier_ends_at_its_base() -> None:
+    """A section a hair above the base must give the pressure point that the programme gives."""
     section = church(1.5)
     answer = assess(section)
     for block in section.buttresses:
-        line = pier_line(section, answer.loads, answer.collapse_state, block, 4000)
-        assert line[-2] == pytest.approx(line[-1], abs=5e-3)
+        state = answer.collapse_state
+        (base,) = (j for j in section.joints_of(block) if GROUND in (section.a[j], section.b[j]))
+        foot = state.points(section)[base]
+        force, x = section_forces(section, block, np.array([foot[1] + 1e-3]), state, answer.loads)
+        assert force[0, 1] < 0.0 and x[0] == pytest.approx(foot[0], abs=5e-3)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,9 @@ import pytest
 
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
-from extrados.core.sla import EVENT, Behaviour, Freedoms, Joints, Model, Monitor, Softening, Stop
+from extrados.analyses.sla.contact import SHUT, settle
+from extrados.analyses.sla.model import build
+from extrados.core.sla import EVENT, MODE, Behaviour, Freedoms, Joints, Model, Monitor, Softening, Stop
 from extrados.decks.reader import make_deck
 
 KN, KS, MU, C, GII = 82e9, 36e9, 0.75, 0.35e6, 125.0  # J4D: Pa/m, Pa/m, -, Pa, N/m
@@ -52,7 +54,7 @@ def test_a_joint_follows_coulomb_under_constant_pressure(pressure: float, law: s
     assert (found.load[peaks] >= raised[peaks] - 1.05 * ripple * C).all()
     assert found.load[0] == pytest.approx(C * (1.0 + ripple) + MU * pressure, rel=0.01)
     assert found.load[-1] == pytest.approx(MU * pressure, abs=1.05 * ripple * C) and not found.load[-1] < MU * pressure
-    assert found.reason == "no point limits the load"  # it slides on under its friction
+    assert found.reason == "mechanism"  # it slides on under its friction
     # Work: the energy of mode II, and friction over the slip
     slip = found.monitors[-1, 0] - found.load[-1] / KS
     assert found.dissipated[-1] == pytest.approx(GII + MU * pressure * slip, rel=0.03)
@@ -107,17 +109,57 @@ def capacity(structure: dict, friction: float | str, kind: str, **options):
         ("arch", 0.7, 1e-4, 1e-4),  # Oppenheim: hinges, as without sliding
         ("vault", 0.7, 1e-4, 1e-4),
         ("block", 0.7, 1e-4, 1e-4),  # rocks at width over height
-        ("block", 0.2, 0.005, 0.002),  # slides
-        ("column", 0.2, 0.005, 0.002),
-        ("brickwork", 0.7, 0.12, 0.005),  # the path is lost among states without equilibrium: docs/sla.md
+        ("block", 0.2, 1e-6, 1e-6),  # slides
+        ("column", 0.2, 1e-6, 1e-6),
+        ("brickwork", 0.5, 1e-5, 1e-5),
+        ("arch", 0.4, 1e-5, 1e-5),  # hinges and joints that slide
+        ("arch", 0.25, 5e-5, 5e-5),
     ],
 )
 def test_the_load_of_limit_analysis_with_friction(kind: str, friction: float, below: float, above: float) -> None:
     limit = capacity(STRUCTURES[kind], friction, "tilt").results["collapse_acceleration_g"]
     found = capacity(STRUCTURES[kind], friction, "sla")
     assert not found.reason
-    # brickwork ends by the number of events: what it reached is told, and told not to be a peak
-    assert (1.0 - below) * limit < found.results["greatest_acceleration_g"] < (1.0 + above) * limit
+    assert (1.0 - below) * limit < found.results["peak_acceleration_g"] < (1.0 + above) * limit
+    assert found.results["events_without_equilibrium"] <= 3  # of a mechanism that begins
+    # The last of a mechanism's displacements have no digits left
+    upto = slice(0, found.results["peak_event"] - 1)
+    external, stored, dissipated = (np.asarray(found[f"event_{n}"])[upto] for n in ("external", "stored", "dissipated"))
+    assert np.abs(external - stored - dissipated).max() < 1e-6 * external.max()
+    assert (np.diff(dissipated) > -1e-5 * external.max()).all()
+
+
+@pytest.mark.parametrize("friction", [0.7, 1.0])
+def test_head_joints_that_do_not_press_carry_nothing(friction: float) -> None:
+    """A wall under its weight has no pressure across its head joints; limit analysis, which lets joints dilate, puts some
+    there. Where it may not, it says the same."""
+    wall = STRUCTURES["brickwork"]
+    found = capacity(wall, friction, "sla").results["peak_acceleration_g"]
+    names = Context(make_deck({"structure": wall, "analysis": {"kind": "tilt"}})).building.blocks().joint_names
+    heads = {"joints": [name for name in names if name.startswith("head")], "friction": 0}
+    data = {"structure": wall, "joints": {"friction": friction, "types": [heads]}, "analysis": {"kind": "tilt"}}
+    level = run_analyses(Context(make_deck(data)))[0].results["collapse_acceleration_g"]
+    assert found == pytest.approx(level, rel=1e-5)
+    assert found < 0.96 * capacity(wall, friction, "tilt").results["collapse_acceleration_g"]
+
+
+def test_no_point_is_sheared_beyond_its_friction() -> None:
+    """In every state of a wall that slides and rocks."""
+    deck = make_deck({"structure": STRUCTURES["brickwork"], "joints": {"friction": 0.5}, "analysis": {"kind": "sla"}})
+    options = deck.analyses[0]
+    model = build(Context(deck).building.mesh(options.mesh), options)
+    slid = 0
+    with model.open(options, 1) as core:
+        settle(core, model, options, [])
+        core.loads(model.constant, model.reference)
+        for _ in range(15):
+            load = float(core.run(20, [model.control], Stop(compliance=1e5)).load[-1])
+            report = core.report(load)
+            at = np.flatnonzero((core.damage()[SHUT] > 0) & (report["volume"] > 0))
+            press = -report["stress_n"][at]
+            assert (np.abs(report["stress_ns"][at]) <= 0.5 * press + 1e-3 * press.max()).all()
+            slid = max(slid, int((core.damage()[MODE, at] % 4 > 0).sum()))
+    assert slid > 50
 
 
 def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
@@ -125,10 +167,12 @@ def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
     update, refactor = (
         capacity(STRUCTURES["brickwork"], 0.7, "sla", events=60, algorithm=name) for name in ("update", "refactor")
     )
+    grown = update["event_load"] > 1e-6 * update["event_load"].max()  # at none, points that slide at once have no order
+    assert grown.sum() > 40
     for name in ("event_point", "event_code"):
-        assert (update[name] == refactor[name]).all()
+        assert (update[name] == refactor[name])[grown].all()
     for name in ("event_load", "event_displacement"):
-        np.testing.assert_allclose(update[name], refactor[name], rtol=1e-6)
+        np.testing.assert_allclose(update[name][grown], refactor[name][grown], rtol=1e-6)
 
 
 @pytest.mark.parametrize("options", [{"solution": "incremental"}, {"without_equilibrium": "proportional"}])

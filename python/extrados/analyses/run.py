@@ -14,6 +14,7 @@ from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
+from extrados.schema.programs import ffmpeg
 
 
 def _check(result: Result) -> None:
@@ -40,14 +41,25 @@ def run_analyses(context: Context) -> list[Result]:
     return results
 
 
+def _who(what: str) -> str:
+    """Analyses that reckon with a thing, as words."""
+    able = [kind for kind, parts in kinds.ANALYSES.items() if what in kinds.load(parts.table).bears]
+    return " or ".join([", ".join(able[:3]), *able[3:4]]) if len(able) <= 4 else f"{', '.join(able[:3])} and others"
+
+
 def run_one(context: Context, options: Analysis, building: Building) -> Result:
     """One analysis of a building, without its verdict; what it refuses and what fails is told in its result."""
     begin = time.perf_counter()
     try:
         context.warnings, context.building = [], building
-        if building.ties and options.view and not options.bears_ties:
+        for what, there in building.special.items() if options.view or options.uses else ():
+            if there and what not in options.bears:
+                raise Refused(
+                    f"{options.kind} does not reckon with {what}: leave it out of its deck, or ask {_who(what)}"
+                )
+        if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
             raise Refused(
-                f"{options.kind} does not reckon with [[ties]]: leave them out of its deck, or ask limit analysis"
+                'animation = "mp4" needs the program ffmpeg or the package imageio-ffmpeg, and neither is here; "gif" needs nothing'
             )
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)

@@ -1,6 +1,6 @@
 """The base of the analysis tables."""
 
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.schema.table import Table, key, override_of
@@ -16,14 +16,29 @@ InitialOverride = override_of(Initial)
 OVERRIDES = ("material", "joints", "supports", "initial")
 
 
+class Animated(Table):
+    """Keys of the analyses whose answer moves."""
+
+    animation: Literal["none", "gif", "mp4"] = key(
+        "none",
+        "also write what moves as a film, 1280 x 720, among the figures; mp4 needs ffmpeg or the package imageio-ffmpeg",
+    )
+    animation_speed: float = key(
+        1.0,
+        "speed of the film: 1 is real time, 0.2 five times slower; what has no time of its own lasts 8 s at 1",
+        gt=0,
+        le=10,
+    )
+
+
 class Analysis(Table):
     """Base of the analysis kinds.
 
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
-    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears_ties: whether it
-    reckons with [[ties]]; one that looks at a building and does not is refused where there are any.
+    starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
+    Building.special it reckons with; one that looks at a building with more is refused.
     """
 
     kind: str
@@ -32,7 +47,7 @@ class Analysis(Table):
     uses: ClassVar[tuple[str, ...]] = ()
     method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False
-    bears_ties: ClassVar[bool] = False
+    bears: ClassVar[tuple[str, ...]] = ()
     starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = ""
 

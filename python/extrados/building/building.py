@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from extrados.building.devices import AddedHinge, Damper
 from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.anchors import Anchored, stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Building:
-    """Geometry, material, joints, supports, ties and the state at the start.
+    """Geometry, material, joints, supports, ties, dampers, added hinges and the state at the start.
 
     The views are made when first asked for and kept, also for buildings made from this one by `having`, as long as
     nothing that they depend on has changed. They raise BadGeometry with the part and the bound where they cannot
@@ -46,6 +47,8 @@ class Building:
     supports: Supports = field(default_factory=Supports)
     initial: Initial = field(default_factory=Initial)
     ties: tuple[Tie, ...] = ()
+    dampers: tuple[Damper, ...] = ()
+    hinges: tuple[AddedHinge, ...] = ()
     folder: Path = field(default_factory=Path.cwd)
     _views: dict[Any, Any] = field(default_factory=dict, repr=False, compare=False)
 
@@ -53,8 +56,21 @@ class Building:
         """Pickled without its views, which are made again where it arrives."""
         return {**self.__dict__, "_views": {}}
 
+    @property
+    def restraints(self) -> tuple[Tie | Damper | AddedHinge, ...]:
+        """Whatever holds it besides its weight and its joints."""
+        return (*self.ties, *self.dampers, *self.hinges)
+
+    @property
+    def special(self) -> dict[str, bool]:
+        """What only some strategies reckon with, as decks call it -> is there any?"""
+        return {
+            "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
+            "[supports] abutting_wall": self.supports.abutting_wall is not None,
+        }  # fmt: skip
+
     def having(self, **tables: Any) -> "Building":
-        """The same building with other tables: structure, material, joints, supports, initial, ties."""
+        """The same building with other tables: structure, material, joints, supports, initial, ties, dampers, hinges."""
         return replace(self, **tables)
 
     def apart(self) -> "Building":
@@ -102,7 +118,15 @@ class Building:
         """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations."""
         from extrados.building.rockers.rocker import make_rocker
 
-        tables = (self.structure, self.material, self.joints, self.initial.rotation_ratio, linear)
+        tables = (
+            self.structure,
+            self.material,
+            self.joints,
+            self.supports,
+            self.initial.rotation_ratio,
+            self.restraints,
+            linear,
+        )
         return self._view("rocker", tables, lambda: make_rocker(self, linear))
 
     def refuse_mixture(self) -> None:

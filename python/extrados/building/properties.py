@@ -189,6 +189,13 @@ class Supports(Table):
     """What the building stands on. Stones stand on the joints to the ground that the structure has."""
 
     stiffness: Stiffness | None = key(None, "stiffness of the ground per area, in series with the joints on it", gt=0)
+    abutting_wall: Literal["left", "right"] | None = key(
+        None, "a wall that stands against it on this side: it rocks away from it only, and is thrown back by it"
+    )
+    rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
+        None, "rate after over rate before it is thrown back by the wall; default, of a block, three impacts in a row: of the "
+        "far toe, of the top on the wall, of the near toe", source="Sorrentino and others 2011",
+    )  # fmt: skip
     held: list[Held] = key(
         [], "held nodes of finite-element meshes, [[supports.held]]; default the bottom edge, or the joints on the ground",
         max_length=1000,

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
 
-RocksAs = Literal["mechanism", "block", "piers"]
+RocksAs = Literal["mechanism", "block", "piers", "frame", "stack"]
 Crossed = Literal["arch", "top"]
 
 
@@ -22,7 +22,7 @@ class Structure(Table):
     """Base of the structure kinds. `word`: what answers call it, after "the"; `lacks`: views that the kind cannot
     have, with the reason in words.
 
-    rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, or its piers.
+    rocks_as: its stones by the mechanism that limit analysis finds, all of it as one block, its piers, as a frame, or as two stacked blocks.
     crossed: where a moving load goes unless a deck names a chain, over the first arch or along the whole top.
     starter_analysis: the analysis of the deck that `new` writes.
     """

@@ -16,7 +16,7 @@ from extrados.core.handles import Owner
 
 __all__ = [
     "EVENTS", "FAILED", "OUTCOMES", "Body", "BodyList", "Ensemble", "Ground", "MotionSet", "Response", "arch_body", "block_body",
-    "ensemble", "history",
+    "ensemble", "history", "limits",
 ]  # fmt: skip
 
 #: Outcomes by their number, from 0; events by theirs.
@@ -28,10 +28,11 @@ EVENTS = lists.words("rocking_event")
 
 @dataclass(frozen=True)
 class Body:
-    """A rocking structure as the core knows it: its kind and its flat parameter list."""
+    """A rocking structure as the core knows it: its kind, its flat parameter list, and how many restraints it has."""
 
     kind: int
     parameters: np.ndarray
+    restraints: int = 0
 
 
 def arch_body(mechanism: FourHinge, restitution: float) -> Body:
@@ -54,11 +55,12 @@ def block_body(
     toe_left: float,
     restitution: tuple[float, float],
     linear: bool = False,
+    slope: float = 0.0,
 ) -> Body:
     """A rigid block: mass [kg], inertia about its centre of mass [kg m^2], height of that centre and its
     distance from the toes [m], restitution of the impacts after which it rocks to +x and to -x; `linear` for
-    the slender form of the equations."""
-    values = [float(linear), mass, inertia, height, toe_right, toe_left, *restitution]
+    the slender form of the equations; slope of the base up to the right [rad], on which height and distances are counted."""
+    values = [float(linear), mass, inertia, height, toe_right, toe_left, *restitution, slope]
     if not (np.isfinite(values).all() and min(values[1:6]) > 0.0):
         raise ValueError(f"mass, inertia, height and toes of a block must be above zero, got {values[1:6]}")
     if not all(0.0 <= c <= 1.0 for c in restitution):
@@ -94,13 +96,23 @@ def _as_body_list(bodies: "Sequence[Body] | BodyList") -> BodyList:
     return bodies if isinstance(bodies, BodyList) else BodyList(bodies)
 
 
+def limits(body: Body) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Rotations of unstable equilibrium and those taken as collapse, each to +x and to -x [rad]."""
+    with BodyList([body]) as bodies:
+        critical, limit, status = _core.api_rocking.limits(bodies.handle, 1)
+    check(status, "rocking structure")
+    return (float(critical[0]), float(critical[1])), (float(limit[0]), float(limit[1]))
+
+
 @dataclass(frozen=True)
 class Response:
     """One response with its history.
 
     time (points) [s] and, at those times, rotation [rad], rate, acceleration, ground and vertical
     acceleration [m/s^2], kinetic and potential energy and the ledger (work of the ground minus loss at
-    impacts) [J]. events: (kind, time [s], value); see core.rocking.EVENTS.
+    impacts and what restraints took up, `spent`) [J]. events: (kind, time [s], value); see core.rocking.EVENTS.
+    Of restraints: `stored` energy (points) beyond that of their prestress [J], `forces` (restraints, points), the least
+    and greatest of them at any time, and the path that stays (restraints) [N, m; of turns N m, rad].
     """
 
     outcome: str
@@ -124,6 +136,12 @@ class Response:
     events_found: int  # may exceed the room for them
     work: float
     loss: float
+    spent: float
+    stored: np.ndarray
+    forces: np.ndarray
+    least_force: np.ndarray
+    greatest_force: np.ndarray
+    permanent: np.ndarray
     settled: bool  # it rests, has fallen, or can no longer fall
     interrupted: bool = False
 
@@ -157,17 +175,16 @@ def history(
     room_for(8, int(min(end_time / output_step, 1e12)))
     times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
     with MotionSet([ground]) as motions, BodyList([body]) as bodies:
-        counts, measures, state, kinds, event, status = long_call(
+        counts, measures, state, kept, kinds, event, status = long_call(
             _core.api_rocking.history,
             bodies.handle,
             motions.handle,
             np.array([1, 1], dtype=np.int32),
-            float(scale),
-            float(end_time),
-            float(tolerance),
+            np.array([scale, end_time, tolerance], dtype=float),
             real("start", [start_side, start_rotation, start_rate], (3,)),
             times,
             max(int(room), 1),
+            body.restraints,
         )
     outcome, half_cycles, impacts, steps, rejected, settled, points, events = (int(k) for k in counts)
     interrupted = status == status_code("cancelled")
@@ -177,8 +194,8 @@ def history(
     state = state[:, :points]
     if not (np.isfinite(state).all() and np.isfinite(measures).all()):
         check(status_code("not_finite"), "rocking response")
-    peak, peak_ratio, stop_time, work, loss = (float(x) for x in measures)
-    rotation, rate, acceleration, shaking, vertical, kinetic, potential, ledger = state
+    peak, peak_ratio, stop_time, work, loss, spent = (float(x) for x in measures)
+    rotation, rate, acceleration, shaking, vertical, kinetic, potential, ledger, stored = state[:9]
     return Response(
         outcome=OUTCOMES[outcome],
         half_cycles=half_cycles,
@@ -201,6 +218,12 @@ def history(
         events_found=events,
         work=work,
         loss=loss,
+        spent=spent,
+        stored=stored,
+        forces=state[9:],
+        least_force=kept[0],
+        greatest_force=kept[1],
+        permanent=kept[2],
         settled=bool(settled),
         interrupted=interrupted,
     )

@@ -67,7 +67,7 @@ REPORT = (
 MOST_TEETH = 4096
 #: Rows of the damage of a point of joints: friction that slides over the shear stiffness [m], constant and per multiplier;
 #: slip at which friction that sticks carries nothing [m]; how it is, 0 sticks, 1 and 2 slides up and down
-HELD, HELD_RATE, MARK, MODE = 1, 6, 8, 10
+START, HELD, HELD_RATE, MARK, MODE = 0, 1, 6, 8, 10
 #: What happens after a tooth and where equilibrium is lost, see Model.run
 VARIANTS = ("load-unload", "proportional", "force-release")
 #: Ratio of neighbouring bands where the band follows from the crack: the energy is right to a percent
@@ -433,8 +433,10 @@ class Model(Owner):
             if not isinstance(group, Joints):
                 continue
             at = first + np.flatnonzero(damage[MODE, first : first + per * len(group.connect)] % 4)
-            slip = (damage[HELD, at] + load * damage[HELD_RATE, at]) / (1.0 - report["ratio_s"][at])
-            damage[MARK, at] = report["strain_ns"][at] - slip
+            bond = report["ratio_s"][at]
+            stiffness = np.repeat(_each("shear stiffness", group.shear_stiffness, len(group.connect)), per)[at - first]
+            slip = report["stress_ns"][at] / stiffness - bond * (report["strain_ns"][at] - damage[START, at])
+            damage[MARK, at] = report["strain_ns"][at] - slip / (1.0 - bond)
             damage[HELD, at] = damage[HELD_RATE, at] = damage[MODE, at] = 0.0
         self.set_damage(damage)
 

@@ -8,8 +8,8 @@ from typing import Any, get_args
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
-from extrados.building.ties import Tie
 from extrados.decks.moved import MOVED_KINDS
+from extrados.decks.plural import PLURAL
 from extrados.schema import quantities
 from extrados.schema.table import Table
 
@@ -20,7 +20,7 @@ PLAIN: dict[str, type[Table]] = {"material": Material, "joints": Joints, "suppor
 def sections() -> dict[str, dict[str, type[Table]]]:
     """Section -> kind -> table; a section without kinds has one table, under no name."""
     found = {name: {kind: kinds.table(name, kind) for kind in there} for name, there in kinds.TABLES.items()}
-    return {"structure": found["structure"], **{n: {"": m} for n, m in PLAIN.items()}, "ties": {"": Tie},
+    return {"structure": found["structure"], **{n: {"": m} for n, m in {**PLAIN, **PLURAL}.items()},
             "motion": found["motion"], "analysis": found["analysis"]}  # fmt: skip
 
 
@@ -48,7 +48,7 @@ def json_schema() -> dict[str, Any]:
             "title": {"type": "string"},
             "note": {"type": "string"},
             **one,
-            "ties": {"type": "array", "items": one["ties"]},
+            **{name: {"type": "array", "items": one[name]} for name in PLURAL},
             "materials": {"type": "object", "additionalProperties": one["material"]},
             "analysis": {"anyOf": [one["analysis"], {"type": "array", "items": one["analysis"]}]},
         },
@@ -204,8 +204,8 @@ def _renamed(kind: str) -> None:
 
 
 def _header(section: str) -> str:
-    """The header of a section in a deck; ties are many tables."""
-    return f"[[{section}]]" if section == "ties" else f"[{section}]"
+    """The header of a section in a deck."""
+    return f"[[{section}]]" if section in PLURAL else f"[{section}]"
 
 
 def _summary(model: type[Table]) -> str:

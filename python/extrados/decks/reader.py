@@ -16,8 +16,8 @@ from extrados.analyses.table import OVERRIDES, Analysis
 from extrados.building.building import Building
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.building.structure import Structure
-from extrados.building.ties import Tie
 from extrados.decks.moved import MOVED, MOVED_KINDS
+from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import key_lines, line_of
 from extrados.schema import files
 from extrados.schema.table import Motion, Table
@@ -25,10 +25,9 @@ from extrados.schema.text import printable
 
 LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
-MOST_TIES = 1000
 #: Tables that say what the building is besides its geometry
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
-TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", "ties", "motion", "analysis"}
+TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
 
 
 class DeckError(Exception):
@@ -85,7 +84,7 @@ class Deck:
             "structure": self.structure.model_dump() if self.structure else None,
             **own,
             "materials": {name: m.model_dump() for name, m in self.building.materials.items()},
-            "ties": [tie.model_dump(exclude_none=True) for tie in self.building.ties],
+            **{name: [one.model_dump(exclude_none=True) for one in getattr(self.building, name)] for name in PLURAL},
             "motion": self.motion.model_dump() if self.motion else None,
             "analysis": [a.model_dump(exclude_none=True) for a in self.analyses],
         }
@@ -210,26 +209,28 @@ class _Checker:
             if part.material is not None and part.material not in named:
                 known = ", ".join(sorted(named)) or "none"
                 self.complain(("structure",), f"unknown material '{part.material}'; [materials] holds {known}")
+        many: dict[str, Any] = {name: self.named(name, data.get(name, [])) for name in PLURAL}
         return Building(
-            structure, materials={n: m for n, m in named.items() if m}, ties=self.ties(data.get("ties", [])), folder=folder,
+            structure, materials={n: m for n, m in named.items() if m}, folder=folder,
+            **many,
             **{name: table for name, table in own.items() if table},
         )  # fmt: skip
 
-    def ties(self, tables: Any) -> tuple[Tie, ...]:
-        """The ties of the deck, each with a name; what is wrong in them is complained of."""
-        if not isinstance(tables, list) or len(tables) > MOST_TIES:
-            self.complain(("ties",), f"expected tables [[ties]], {MOST_TIES} at most")
+    def named(self, section: str, tables: Any) -> tuple[Any, ...]:
+        """The ties, dampers or hinges of the deck, each with a name; what is wrong in them is complained of."""
+        if not isinstance(tables, list) or len(tables) > MOST:
+            self.complain((section,), f"expected tables [[{section}]], {MOST} at most")
             return ()
         made, names = [], set()
         for k, table in enumerate(tables):
-            tie = self.table(Tie, table, ("ties", k))
-            if tie is None:
+            one = self.table(PLURAL[section], table, (section, k))
+            if one is None:
                 continue
-            name = tie.name or f"tie {k + 1}"
+            name = one.name or f"{section[:-1]} {k + 1}"
             if name in names:
-                self.complain(("ties", k, "name"), f"two ties are called '{name}'")
+                self.complain((section, k, "name"), f"two {section} are called '{name}'")
             names.add(name)
-            made.append(tie.model_copy(update={"name": name}))
+            made.append(one.model_copy(update={"name": name}))
         return tuple(made)
 
     def overridden(self, building: Building, data: dict[str, Any], table: dict[str, Any], path: tuple) -> Building:

@@ -7,7 +7,8 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from extrados.plots.animation import ffmpeg
+from extrados.plots.animation import gif
+from extrados.schema.programs import ffmpeg
 
 MOST_PICTURES, LARGEST_SIDE = 1200, 2560
 TYPES = {"gif": "image/gif", "mp4": "video/mp4"}
@@ -69,24 +70,15 @@ def _gif(pictures: list[bytes], rate: int) -> bytes:
         except OSError:
             raise BadFilm("a picture cannot be read") from None
 
-    # One palette for all pictures, or their colours would flicker: that of a few of them side by side
-    some = pictures[:: max(1, len(pictures) // 6)]
-    strip = Image.new("RGB", (first[0] // 2 + 1, (first[1] // 2 + 1) * len(some)))
-    for k, picture in enumerate(some):
-        strip.paste(drawn(picture).reduce(2), (0, k * (first[1] // 2 + 1)))
-    palette = strip.quantize(128)
-    frames = [drawn(picture).quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures]
-    out = io.BytesIO()
-    frames[0].save(
-        out, "GIF", save_all=True, append_images=frames[1:], duration=max(20, round(1000 / rate)), loop=0, optimize=False
-    )
-    return out.getvalue()
+    return gif([drawn(picture) for picture in pictures], rate)
 
 
 def _mp4(pictures: list[bytes], rate: int) -> bytes:
     program = ffmpeg()
     if program is None:
-        raise BadFilm("mp4 needs the program ffmpeg, which is not here (pip install imageio-ffmpeg brings one); gif needs nothing")
+        raise BadFilm(
+            "mp4 needs the program ffmpeg, which is not here (pip install imageio-ffmpeg brings one); gif needs nothing"
+        )
     for size in {_size(p) for p in pictures}:
         if min(size) < 2:
             raise BadFilm("pictures are too small")

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from extrados.decks.reader import LARGEST
-from extrados.results.store import SUMMARY, StoreError, Stored, read
+from extrados.results.store import SUMMARY, Stored, StoreError, read
 from extrados.schema import files
 
 #: The decks with known answers: beside the sources, or within an installed package
@@ -55,7 +55,9 @@ class Folder:
         for here, folders, names in os.walk(self.root):
             count += 1
             depth = len(Path(here).relative_to(self.root).parts)
-            folders[:] = sorted(f for f in folders if not f.startswith(".") and f not in SKIPPED) if depth < DEEP else []
+            folders[:] = (
+                sorted(f for f in folders if not f.startswith(".") and f not in SKIPPED) if depth < DEEP else []
+            )
             yield Path(here), names
             if count >= MOST_FOLDERS:
                 return
@@ -86,7 +88,11 @@ class Folder:
         if target.suffix != ".toml":
             raise NotThere(f"{path}: a deck ends in .toml")
         try:
-            return files.read(target.relative_to(self.root).as_posix(), LARGEST, self.root).content, target.parent, target.name
+            return (
+                files.read(target.relative_to(self.root).as_posix(), LARGEST, self.root).content,
+                target.parent,
+                target.name,
+            )
         except files.BadFile as error:
             raise NotThere(str(error)) from None
 
@@ -148,7 +154,11 @@ class Folder:
     def run(self, path: str) -> Stored:
         """A stored run; StoreError where it is damaged or too large for a page."""
         target = self.inside(path)
-        size = sum(f.stat().st_size for f in target.glob("*") if f.is_file() and not f.is_symlink()) if target.is_dir() else 0
+        size = (
+            sum(f.stat().st_size for f in target.glob("*") if f.is_file() and not f.is_symlink())
+            if target.is_dir()
+            else 0
+        )
         if size > LARGEST_RUN:
             raise StoreError(f"{path}: holds {size / 1e6:.0f} MB, more than a page is shown ({LARGEST_RUN / 1e6:g} MB)")
         return read(target)

@@ -37,4 +37,3 @@ class Reply:
         head = json.dumps(plain({**self.words, "arrays": places}), ensure_ascii=False, allow_nan=False).encode()
         head += b" " * (-(len(head) + 4) % 8)
         return struct.pack("<I", len(head)) + head + b"".join(parts)
-

@@ -11,8 +11,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-#: Bytes of an address, of a message of a page, and of what may be sent to be filmed
-LONGEST_PATH, LARGEST_MESSAGE, LARGEST_BODY = 1024, 16_000_000, 64_000_000
+#: Bytes of an address, of the heads of a request, of a message of a page, and of what may be sent to be filmed
+LONGEST_PATH, LARGEST_HEADS, LARGEST_MESSAGE, LARGEST_BODY = 1024, 16_384, 16_000_000, 64_000_000
 #: Pages at a time
 MOST_PAGES = 12
 #: Messages a page may send in a burst, and in a second from then on: a hand moves 120 times a second at most
@@ -104,6 +104,8 @@ class Guard:
             return 405, "only GET and POST are known"
         if len(scope.get("raw_path") or b"") + len(scope.get("query_string") or b"") > LONGEST_PATH:
             return 414, "the address is too long"
+        if sum(len(name) + len(value) for name, value in scope["headers"]) > LARGEST_HEADS:
+            return 431, "the heads of the request are too long"
         lengths = heads.get(b"content-length", [b"0"])
         if len(lengths) != 1 or not lengths[0].isdigit() or int(lengths[0]) > LARGEST_BODY:
             return 413, "too much is sent"

@@ -90,7 +90,14 @@ def _arch(s: Any, _: Assembly) -> Iterator[Handle]:
         return {"structure.radius": radius, "structure.embrace": math.degrees(4.0 * math.atan2(2.0 * rise, span))}
 
     yield _length(
-        "thickness", "Thickness", 0.0, r + 0.5 * t, s.thickness, lambda x, y: 2.0 * (y - r) / s.thickness_factor, "y", True
+        "thickness",
+        "Thickness",
+        0.0,
+        r + 0.5 * t,
+        s.thickness,
+        lambda x, y: 2.0 * (y - r) / s.thickness_factor,
+        "y",
+        True,
     )
     at = -0.5 * half
     yield _length(
@@ -160,14 +167,29 @@ def _church(s: Any, _: Assembly) -> Iterator[Handle]:
     if s.aisle_span is not None:
         yield _length("aisle_span", "Clear span of the aisles", side * end, 0.0, span, lambda x, y: side * x - back)
         yield _length(
-            "buttress_width", "Width of the outer buttresses", side * (end + width), 0.0, width, lambda x, y: side * x - end
+            "buttress_width",
+            "Width of the outer buttresses",
+            side * (end + width),
+            0.0,
+            width,
+            lambda x, y: side * x - end,
         )
     else:
         yield _length(
-            "half_width", "From the axis to the outer faces", side * s.half_width, 0.0, s.half_width, lambda x, y: side * x
+            "half_width",
+            "From the axis to the outer faces",
+            side * s.half_width,
+            0.0,
+            s.half_width,
+            lambda x, y: side * x,
         )
         yield _length(
-            "buttress_width", "Width of the outer buttresses", side * end, 0.0, width, lambda x, y: s.half_width - side * x
+            "buttress_width",
+            "Width of the outer buttresses",
+            side * end,
+            0.0,
+            width,
+            lambda x, y: s.half_width - side * x,
         )
     aisle_outer = 0.5 * span + s.aisle_thickness
     high = s.buttress_top or low + aisle_outer * math.cos(0.5 * math.radians(s.aisle_embrace))
@@ -198,9 +220,7 @@ def _column(s: Any, assembly: Assembly) -> Iterator[Handle]:
 
 def _pointed(s: Any, _: Assembly) -> Iterator[Handle]:
     rise = math.sqrt(max(s.radius * s.span - 0.25 * s.span**2, 0.0))
-    yield _length(
-        "thickness", "Thickness", 0.5 * s.span + s.thickness, 0.0, s.thickness, lambda x, y: x - 0.5 * s.span
-    )
+    yield _length("thickness", "Thickness", 0.5 * s.span + s.thickness, 0.0, s.thickness, lambda x, y: x - 0.5 * s.span)
     yield _length("span", "Clear span", -0.5 * s.span, 0.0, s.span, lambda x, y: -2.0 * x)
     yield _length(
         "radius", "Radius of the intrados, by its rise", 0.0, rise, s.radius,
@@ -280,7 +300,9 @@ def load_handles(loads: list[Any], name: str, surfaces: list[tuple[float, float]
                 made[f"{key}.x_end"] = value + load.x_end - load.x
             return made
 
-        yield Handle(f"load-{i}-x", f"Place of load{number}", "m", x, y, load.x, lambda px, py: px, place, "x", least=-math.inf)
+        yield Handle(
+            f"load-{i}-x", f"Place of load{number}", "m", x, y, load.x, lambda px, py: px, place, "x", least=-math.inf
+        )
         yield Handle(
             f"load-{i}-force", f"Weight of load{number}", "N", x, y + scale * load.force, load.force,
             lambda px, py, y=y: max((py - y) / scale, 0.0), lambda value, key=key: {f"{key}.force": value}, "y",

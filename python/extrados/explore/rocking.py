@@ -45,7 +45,9 @@ def history(
     }  # fmt: skip
     moving = np.flatnonzero(response.rotation)
     last = float(response.time[moving[-1]]) if len(moving) else 0.0
-    words["active_s"] = min(max(1.05 * last, 1.2 * min(motion.end, end)), float(response.time[-1]) if len(response.time) else end)
+    words["active_s"] = min(
+        max(1.05 * last, 1.2 * min(motion.end, end)), float(response.time[-1]) if len(response.time) else end
+    )
     shown = min(int(np.searchsorted(response.time, words["active_s"])) + 1, len(response.time))
     keep = slice(0, shown, max(1, -(-shown // MOST_POINTS)))
     arrays = {
@@ -124,5 +126,3 @@ def domain_options(kind: str | None, asked: FailureDomain | None, uplift: float)
         return asked
     pulse = "sine" if kind == "sine-pulse" else "step"
     return FailureDomain(kind="failure-domain", pulse=pulse, max_amplitude=f"{max(1.5, 6.0 * uplift):.4g} g")
-
-

@@ -12,6 +12,8 @@ import logging
 import os
 import secrets
 import socket
+import threading
+import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -202,16 +204,16 @@ def hosts_of(port: int) -> list[str]:
     return [f"{name}:{port}" for name in ("127.0.0.1", "localhost", "[::1]")]
 
 
-def listen(port: int = 0) -> socket.socket:
-    """A socket that listens on loopback; at any free port where that one is taken or none is asked for."""
-    for wanted in dict.fromkeys((port, 0)):
+def listen(port: int = 0, strict: bool = False) -> socket.socket:
+    """A socket that listens on loopback; at any free port where that one is taken, unless `strict`: OSError then."""
+    for wanted in dict.fromkeys((port, port if strict else 0)):
         found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
         found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             found.bind(("127.0.0.1", wanted))
         except OSError:
             found.close()
-            if wanted == 0:
+            if wanted == 0 or strict:
                 raise
             continue
         found.listen(64)
@@ -248,6 +250,15 @@ def serve(sock: socket.socket, token: str, folder: Path, deck: str | None = None
 def main() -> None:
     """The process that serves, started by `supervisor` with the socket and what else it needs in its environment."""
     given = json.loads(os.environ.pop("EXTRADOS_EXPLORE"))
+    parent = os.getppid()
+
+    def watch() -> None:
+        """End with the process that watches this one, however that ended."""
+        while os.getppid() == parent:
+            time.sleep(1.0)
+        os._exit(0)
+
+    threading.Thread(target=watch, daemon=True).start()
     with socket.socket(fileno=given["socket"]) as sock:
         serve(sock, given["token"], Path(given["folder"]), given["deck"])
 

@@ -6,6 +6,7 @@ import copy
 import re
 import shutil
 import tempfile
+import time
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -16,7 +17,7 @@ import numpy as np
 
 from extrados import kinds
 from extrados._build_info import VERSION
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import block_under
 from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
 from extrados.analyses.rocking.tables import FailureDomain, Rocking
@@ -60,7 +61,7 @@ class BadMessage(ValueError):
 class Session:
     """The deck of one page; `answer` a message at a time, from one thread at a time.
 
-    A reply holds `of`, the number of the message it answers. What is wrong with a deck or has no answer comes as
+    A reply holds `of`, the number of the message it answers, and `ms`, the processor time of this thread that it took. What is wrong with a deck or has no answer comes as
     `complaints`, and then nothing has changed.
     """
 
@@ -91,9 +92,16 @@ class Session:
         try:
             if do is None:
                 raise BadMessage(f"nothing is known of '{str(message.get('do'))[:40]}'")
+            begin = time.thread_time()
             for reply in do(self, message):
-                reply.words = {"of": number, "to": message["do"], **reply.words}
+                reply.words = {
+                    "of": number,
+                    "to": message["do"],
+                    "ms": 1e3 * (time.thread_time() - begin),
+                    **reply.words,
+                }
                 yield reply
+                begin = time.thread_time()
         except TOLD as error:
             complaints = error.complaints if isinstance(error, DeckError) else [str(error)]
             yield Reply({"of": number, "to": message["do"], "complaints": [c[:2000] for c in complaints]})
@@ -239,6 +247,11 @@ class Session:
 
     def _save(self, message: dict[str, Any]) -> Iterator[Reply]:
         """The deck into the working folder, with the dropped files it names."""
+        saved = self._saved(message)
+        yield Reply({"saved": saved, "decks": self.folder.decks()})
+
+    def _saved(self, message: dict[str, Any]) -> str:
+        """Where the deck was saved in the working folder, at the path of a message, with the dropped files it names."""
         path = message.get("path")
         if not isinstance(path, str):
             raise BadMessage("expected a path")
@@ -246,8 +259,7 @@ class Session:
         if self.place != self.folder.root:
             for name in _files_of(self._there().deck.data):
                 beside[name] = self.folder.beside(self.place, name)
-        saved = self.folder.save(path, self.document.text, beside, message.get("replace") is True)
-        yield Reply({"saved": saved, "decks": self.folder.decks()})
+        return self.folder.save(path, self.document.text, beside, message.get("replace") is True)
 
     # Changes
 
@@ -265,7 +277,7 @@ class Session:
         try:
             reply = self._scene()
         except TOLD:
-            live._take(before)
+            live.back_to(before)
             raise
         for key, value in written.items():
             self.document.put(self._path(key), value)
@@ -305,7 +317,7 @@ class Session:
         table = {"structure": deck.structure, "motion": deck.motion}.get(way[0], getattr(deck.building, way[0], None))
         if way[0] == "analysis" and len(way) > 2:
             table, way = deck.analyses[self._there().names.index(way[1])], way[1:]
-        return stored.unit_of(table, way[1:]) if table is not None else ("", True)
+        return stored.unit_of(type(table), way[1:]) if table is not None else ("", True)
 
     def _drag(self, message: dict[str, Any]) -> Iterator[Reply]:
         """A handle led to a place (`to`), moved by steps, or given a value as text; `ends` lets go of it."""
@@ -319,7 +331,9 @@ class Session:
             value = handle.value_at(x, y)
             size = self.picture.assembly.size if self.picture else 1.0
             if handle.unit == "m":
-                value = [hands.rounded(v, size) for v in value] if isinstance(value, list) else hands.rounded(value, size)
+                value = (
+                    [hands.rounded(v, size) for v in value] if isinstance(value, list) else hands.rounded(value, size)
+                )
             else:
                 value = hands.rounded(value, max(abs(value), 1e-6))
         elif "by" in message:
@@ -436,7 +450,12 @@ class Session:
         live = self._there()
         structure = live.deck.structure
         if structure is None:
-            return Reply({"scene": {"empty": "The deck has no [structure]: there is nothing to draw."}, "deck": self._deck_words()})
+            return Reply(
+                {
+                    "scene": {"empty": "The deck has no [structure]: there is nothing to draw."},
+                    "deck": self._deck_words(),
+                }
+            )
         options, building, name = self._options(LimitAnalysisTable, lambda: Tilt(kind="tilt"))
         try:
             assembly = building.blocks()
@@ -464,7 +483,10 @@ class Session:
              "value": h.value, "along": h.along}
             for h in found
         ]  # fmt: skip
-        return Reply({"scene": made.words, "handles": words, "anchor": self.anchor.tolist(), "deck": self._deck_words()}, made.arrays)
+        return Reply(
+            {"scene": made.words, "handles": words, "anchor": self.anchor.tolist(), "deck": self._deck_words()},
+            made.arrays,
+        )
 
     def _deck_words(self) -> dict[str, Any]:
         live = self._there()
@@ -487,15 +509,11 @@ class Session:
 
     # Motion
 
-    def _context(self) -> Context:
-        live = self._there()
-        return Context(live.deck, live.threads, motions=live._motions)
-
     def _rocking(self, message: dict[str, Any]) -> Iterator[Reply]:
         """The response to the deck's motion, with shapes unless the page only looks for an amplitude."""
         if self._there().deck.motion is None:
             raise Refused("the deck has no [motion]")
-        context = self._context()
+        context = self._there().context()
         motion = context.motion
         drawn = rocking.curve(motion)
         options, building, _ = self._options(Rocking, lambda: Rocking(kind="rocking"))
@@ -506,7 +524,7 @@ class Session:
     def _impulse(self, _: dict[str, Any]) -> Iterator[Reply]:
         if self._there().deck.motion is None:
             raise Refused("the deck has no [motion]")
-        context = self._context()
+        context = self._there().context()
         yield Reply({"impulse": rocking.impulse(context, self._there().deck.building)})
 
     def _domain(self, message: dict[str, Any]) -> Iterator[Reply]:
@@ -527,7 +545,7 @@ class Session:
             yield Reply({"domain": words}, arrays)
             return
         self._maps = {k: v for k, v in list(self._maps.items())[-7:]}
-        for step in rocking.domain(self._context(), building, asked):
+        for step in rocking.domain(self._there().context(), building, asked):
             self._maps[mark] = [step]
             yield Reply({"domain": step[0]}, step[1])
 
@@ -545,14 +563,7 @@ class Session:
 
     def _compute(self, message: dict[str, Any]) -> Iterator[Reply]:
         """Save the deck and run all its analyses by the command line, in a process of its own; progress as it comes."""
-        path = message.get("path")
-        if not isinstance(path, str):
-            raise BadMessage("expected a path")
-        beside = {}
-        if self.place != self.folder.root:
-            for name in _files_of(self._there().deck.data):
-                beside[name] = self.folder.beside(self.place, name)
-        saved = self.folder.save(path, self.document.text, beside, message.get("replace") is True)
+        saved = self._saved(message)
         for line, done in self.folder.compute(saved):
             yield Reply({"computing": line, "done": done, "runs": self.folder.runs() if done else None, "saved": saved})
 
@@ -576,7 +587,9 @@ def _quantity(text: str, unit: str, label: str) -> float:
         pass
     found = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z%/^0-9*]+)", text[:60])
     if not found:
-        raise DeckError([f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"])
+        raise DeckError(
+            [f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"]
+        )
     try:
         return float(found[1]) * quantities.factor(found[2], unit)
     except ValueError as error:
@@ -588,7 +601,11 @@ def _files_of(data: Any) -> list[str]:
     found: list[str] = []
     if isinstance(data, dict):
         for key, value in data.items():
-            if key in ("file", "outline", "vertical", "other") and isinstance(value, str) and not value.startswith("extrados:"):
+            if (
+                key in ("file", "outline", "vertical", "other")
+                and isinstance(value, str)
+                and not value.startswith("extrados:")
+            ):
                 found.append(value)
             elif key == "files" and isinstance(value, list):
                 found += [v for v in value if isinstance(v, str)]

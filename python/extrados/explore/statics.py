@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Refused
-from extrados.analyses.limit.common import limit_of
+from extrados.analyses.limit.common import limit_of, tie_rows
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly
@@ -79,6 +79,8 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
         "joint_names": assembly.joint_names if len(assembly.a) <= 400 else [], "measures": assembly.measures,
     }  # fmt: skip
     made = Picture(words, geometry(assembly, anchor), assembly)
+    if building.ties:
+        made.arrays["ties"] = building.anchored().point.reshape(-1, 2) - anchor
     try:
         limit = limit_of(building, options)
         made.limit, words["weight_N"] = limit, limit.loads.scale
@@ -104,6 +106,8 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
         words[f"{name}_sliding"] = [
             {"name": assembly.joint_names[j], "at": (assembly.middle[j] - anchor).tolist()} for j in mechanism.sliding
         ]
+    for row in tie_rows(building, limit.loads, ends["plus"][0]).get("ties", []):
+        words.setdefault("ties", []).append({"name": row.name, "force_N": row.force_N})
     words["required_friction"] = float(ends["plus"][0].friction.max())
     if not -minus <= view.gamma <= plus:
         words["within"] = False
@@ -223,4 +227,3 @@ def nearest(assembly: Assembly, point: np.ndarray, chain: str | None) -> tuple[i
     share = np.clip(((point - p) * along).sum(axis=1) / (along**2).sum(axis=1), 0.0, 1.0)
     k = int(np.hypot(*(p + share[:, None] * along - point).T).argmin())
     return int(joints[k]), float(share[k])
-

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.decks.reader import Deck
+from extrados.kinds import STRUCTURES, table
 from extrados.plots.sla import CORNERS
 from extrados.results.store import Stored, StoreError
 from extrados.schema.constants import GRAVITY
@@ -32,9 +33,9 @@ def _branches(about: dict[str, Any]) -> list[dict[str, Any]]:
     return found + [b["items"] for b in found if isinstance(b.get("items"), dict)]
 
 
-def unit_of(table: Table, way: list[str]) -> tuple[str, bool]:
+def unit_of(table: type[Table], way: list[str]) -> tuple[str, bool]:
     """The unit of the key that a way leads to within a table, and whether a number may stand there without it."""
-    properties, definitions = _properties(type(table))
+    properties, definitions = _properties(table)
     about: dict[str, Any] = {}
     for part in way:
         if part.isdecimal():
@@ -145,7 +146,12 @@ class _Maker:
 
     def _lines(self, *names: str) -> list[dict[str, str]]:
         """Stored lines of thrust, of states that are named."""
-        words = {"collapse": "at collapse, load to +x", "least": "least thrust", "most": "greatest thrust", "central": "most central"}
+        words = {
+            "collapse": "at collapse, load to +x",
+            "least": "least thrust",
+            "most": "greatest thrust",
+            "central": "most central",
+        }
         found = []
         for name in names:
             if f"{name}_line" in self.arrays:
@@ -218,14 +224,30 @@ class _Maker:
         if "ground" in self.arrays:
             self.out["ground"] = self.arrays["ground"][fine]
             self.charts.append(
-                _chart("Ground", axis, _axis("", "acceleration", "g"), [_series("ground", "ground", factor=1 / GRAVITY)], cursor=True)
+                _chart(
+                    "Ground",
+                    axis,
+                    _axis("", "acceleration", "g"),
+                    [_series("ground", "ground", factor=1 / GRAVITY)],
+                    cursor=True,
+                )
             )
-        energies = [k for k in ("work", "kinetic", "potential", "elastic", "damping", "friction") if f"{k}_energy" in self.arrays]
+        energies = [
+            k
+            for k in ("work", "kinetic", "potential", "elastic", "damping", "friction")
+            if f"{k}_energy" in self.arrays
+        ]
         for kind in energies:
             self.out[f"{kind}_energy"] = self.arrays[f"{kind}_energy"][fine]
         if energies:
             self.charts.append(
-                _chart("Energy", axis, _axis("", "energy", "kJ"), [_series(f"{k}_energy", k, factor=1e-3) for k in energies], cursor=True)
+                _chart(
+                    "Energy",
+                    axis,
+                    _axis("", "energy", "kJ"),
+                    [_series(f"{k}_energy", k, factor=1e-3) for k in energies],
+                    cursor=True,
+                )
             )
 
     def supports(self) -> None:
@@ -234,16 +256,36 @@ class _Maker:
             self.out["force_x"], self.out["force_y"] = self.arrays["force"].T
             rows = [_series("force_x", "horizontal", factor=1e-3), _series("force_y", "vertical", factor=1e-3)]
             self.charts.append(
-                _chart("Force on the support", _axis("movement", "movement of the support", "mm", 1e3), _axis("", "force", "kN"), rows, cursor=True)
+                _chart(
+                    "Force on the support",
+                    _axis("movement", "movement of the support", "mm", 1e3),
+                    _axis("", "force", "kN"),
+                    rows,
+                    cursor=True,
+                )
             )
         if "film_movement" in self.arrays:
-            self._moving(1e3 * self.arrays["film_movement"], self.arrays["film_pose"], "mm", "movement", line=self.arrays["film_line"])
+            self._moving(
+                1e3 * self.arrays["film_movement"],
+                self.arrays["film_pose"],
+                "mm",
+                "movement",
+                line=self.arrays["film_line"],
+            )
         elif "shown_pose" in self.arrays:
-            self._moving(1e3 * self.arrays["shown_movement"], self.arrays["shown_pose"], "mm", "movement", line=self.arrays["shown_point"])
+            self._moving(
+                1e3 * self.arrays["shown_movement"],
+                self.arrays["shown_pose"],
+                "mm",
+                "movement",
+                line=self.arrays["shown_point"],
+            )
         elif "settled_pose" in self.arrays:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)
-            self._moving(share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement")
+            self._moving(
+                share, rest + share[:, None, None] * (self.arrays["settled_pose"] - rest), "", "share of the movement"
+            )
 
     def sla(self) -> None:
         self._curve()
@@ -251,9 +293,7 @@ class _Maker:
             return
         events = self.arrays["state_event"]
         pick = np.unique(np.linspace(0, len(events) - 1, min(len(events), MOST_STATES)).round().astype(int))
-        polygons = [
-            a.data[:, : CORNERS[a.data.shape[1]]] for a in self.run.series(self.name, "elements")
-        ]
+        polygons = [a.data[:, : CORNERS[a.data.shape[1]]] for a in self.run.series(self.name, "elements")]
         self.out["node"] = self.arrays["node"]
         self.out["element"] = np.concatenate([p.ravel() for p in polygons])
         self.out["element_start"] = np.cumsum([0, *(n for p in polygons for n in [p.shape[1]] * len(p))])
@@ -281,7 +321,14 @@ class _Maker:
         if "measured_displacement" in self.arrays:
             self.send("measured_displacement", "measured_least", "measured_greatest")
             series.append(
-                _series("measured_greatest", "measured", x="measured_displacement", lower="measured_least", factor=1e-3, sort="band")
+                _series(
+                    "measured_greatest",
+                    "measured",
+                    x="measured_displacement",
+                    lower="measured_least",
+                    factor=1e-3,
+                    sort="band",
+                )
             )
         self.charts.append(_chart("Load and displacement", axis, _axis("", "load", "kN"), series, trace="state"))
 
@@ -291,20 +338,35 @@ class _Maker:
             unit = self.run.arrays[self.name]["grid"].unit
             about = self.run.arrays[self.name]["grid"].about
             rows = []
-            for stage in ("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_"):
+            for colour, stage in enumerate(
+                ("", "first_collapse_", "uplift_", "overturning_given_uplift_", "two_stage_")
+            ):
                 words = stage.strip("_").replace("_", " ") or "collapse"
                 low = f"{stage}lower" if stage else "curve_lower"
                 high = low.replace("lower", "upper")
                 if low in a and high in a:
                     self.send(low, high)
-                    rows.append(_series(high, f"band of {words}", lower=low, sort="band"))
+                    rows.append(_series(high, f"band of {words}", lower=low, sort="band", colour=colour))
                 if f"{stage}curve" in a:
                     self.send(f"{stage}curve")
-                    rows.append(_series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_")))
+                    rows.append(
+                        _series(f"{stage}curve", words, dashed=stage not in ("", "first_collapse_"), colour=colour)
+                    )
             self.send("grid", "stripe_level", "stripe_collapse_probability")
             if "stripe_level" in a:
-                rows.append(_series("stripe_collapse_probability", "share that came down", x="stripe_level", sort="points"))
-            self.charts.append(_chart("Fragility", _axis("grid", about or "intensity", unit), _axis("", "probability", ""), rows, least=0.0, most=1.0))
+                rows.append(
+                    _series("stripe_collapse_probability", "share that came down", x="stripe_level", sort="points")
+                )
+            self.charts.append(
+                _chart(
+                    "Fragility",
+                    _axis("grid", about or "intensity", unit),
+                    _axis("", "probability", ""),
+                    rows,
+                    least=0.0,
+                    most=1.0,
+                )
+            )
         if "duration" in a and "lower" in a:
             self.send("duration", "lower", "upper")
             rows = [_series("upper", "95 % interval", lower="lower", sort="band")]
@@ -312,7 +374,16 @@ class _Maker:
                 if key not in ("duration", "lower", "upper") and np.shape(a[key]) == np.shape(a["duration"]):
                     self.send(key)
                     rows.append(_series(key, key.replace("_", " "), sort="both"))
-            self.charts.append(_chart("Over durations", _axis("duration", "duration", "s"), _axis("", "share", ""), rows, least=0.0, most=1.0))
+            self.charts.append(
+                _chart(
+                    "Over durations",
+                    _axis("duration", "duration", "s"),
+                    _axis("", "share", ""),
+                    rows,
+                    least=0.0,
+                    most=1.0,
+                )
+            )
         if "bin_edge" in a and "bin_count" in a:
             self.out["bin_middle"] = 0.5 * (a["bin_edge"][1:] + a["bin_edge"][:-1])
             self.send("bin_count")
@@ -337,7 +408,14 @@ class _Maker:
             self.send("amplitude")
             heat = {"codes": "codes", "x": "duration", "y": "amplitude"}
         self.charts.append(
-            _chart("Failure domain", _axis("duration", "duration of the pulse", "s"), _axis("", "amplitude", "g"), rows, heat=heat, least=0.0)
+            _chart(
+                "Failure domain",
+                _axis("duration", "duration of the pulse", "s"),
+                _axis("", "amplitude", "g"),
+                rows,
+                heat=heat,
+                least=0.0,
+            )
         )
 
     def dem_domain(self) -> None:
@@ -351,16 +429,26 @@ class _Maker:
                 rows.append(_series("amplitude", f"four hinges, {mode.replace('_', ' ')}", x=mode, dashed=True))
         self.send("amplitude")
         self.charts.append(
-            _chart("Shortest failing pulses", _axis("shortest_0", "duration", "s"), _axis("", "amplitude", "g"), rows, least=0.0)
+            _chart(
+                "Shortest failing pulses",
+                _axis("shortest_0", "duration", "s"),
+                _axis("", "amplitude", "g"),
+                rows,
+                least=0.0,
+            )
         )
 
     def sweep(self) -> None:
         self.send("value", "gamma", "fractured", "buttress_alone")
         words = {"gamma": "monolithic", "fractured": "leeward buttress cracked", "buttress_alone": "buttress alone"}
         rows = [_series(k, w) for k, w in words.items() if k in self.arrays]
-        about = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
-        unit = self.run.arrays[self.name]["value"].unit
-        self.charts.append(_chart("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows))
+        key = self.run.arrays[self.name]["value"].about.removeprefix("values of ")
+        kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
+        unit = unit_of(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
+        about = key.replace("_", " ")
+        self.charts.append(
+            _chart("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
+        )
 
     def moving_load(self) -> None:
         self.send("place", "capacity")
@@ -376,10 +464,16 @@ class _Maker:
     def others(self) -> None:
         """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""
         found = self.run.arrays[self.name]
-        axes = {n: a for n, a in found.items() if a.dims == (n,) and np.size(a.data) > 1 and np.asarray(a.data).dtype.kind in "fiu"}
+        axes = {
+            n: a
+            for n, a in found.items()
+            if a.dims == (n,) and np.size(a.data) > 1 and np.asarray(a.data).dtype.kind in "fiu"
+        }
         for axis, about in axes.items():
             rows = [
-                n for n, a in found.items() if a.dims == (axis,) and n != axis and np.asarray(a.data).dtype.kind in "fiu"
+                n
+                for n, a in found.items()
+                if a.dims == (axis,) and n != axis and np.asarray(a.data).dtype.kind in "fiu"
             ]
             keep = self._over_time(np.size(about.data))
             for unit in dict.fromkeys(found[n].unit for n in rows):

@@ -26,7 +26,12 @@ def explore(
 ) -> int:  # fmt: skip
     """Serve pages on a working folder until Ctrl-C; the exit code."""
     token = server.new_token()
-    with server.listen(PORT if port is None else port) as sock:
+    try:
+        opened = server.listen(PORT if port is None else port, strict=port is not None)
+    except OSError as error:
+        say(f"port {port} cannot be taken: {error.strerror or error}")
+        return 3
+    with opened as sock:
         address = f"http://127.0.0.1:{sock.getsockname()[1]}/{token}/"
         say(f"Page:    {address}")
         say(f"Folder:  {folder}")

@@ -191,11 +191,12 @@ def _proof(limit: LimitAnalysis) -> str:
 def why_not(limit: LimitAnalysis) -> str:
     """Why no thrust line is admissible upright: stones with nothing below, or the joints it leaves and by how much."""
     assembly = limit.assembly
-    hanging = hanging_stones(assembly)
-    if hanging and not LimitAnalysis(assembly, loads=limit.loads).stands():  # else friction alone would hold them
+    if hanging := hanging_stones(assembly):
         names = [assembly.block_names[i] for i in hanging]
-        more = f" and {len(names) - 4} more" if len(names) > 4 else ""
-        return f"nothing bears {', '.join(names[:4])}{more} from below"
+        told = ", ".join(names[:4]) + (f" and {len(names) - 4} more" if len(names) > 4 else "")
+        if not LimitAnalysis(assembly, loads=limit.loads).stands():
+            return f"nothing bears {told} from below"
+        return f"nothing but friction bears {told}, and {_slides(limit)}"
     try:
         interval = sorted(limit.collapse(d)[0].gamma for d in (1, -1))
     except NoEquilibrium:

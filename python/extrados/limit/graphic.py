@@ -102,20 +102,3 @@ def section_forces(
     side = sway * state.gamma
     total = total - np.column_stack([side * under[:, 0], -under[:, 0], -under[:, 1] - side * under[:, 2]])
     return total[:, :2], (total[:, 2] + levels * total[:, 0]) / total[:, 1]
-
-
-def pier_line(assembly: Assembly, loads: Loads, state: State, block: int, sections: int = 24) -> np.ndarray:
-    """Thrust line (k, 2) [m] down a block that stands on the ground, on horizontal sections above its base."""
-    joints = assembly.joints_of(block)
-    on_ground = (assembly.a[joints] == GROUND) | (assembly.b[joints] == GROUND)
-    base, joints = joints[on_ground], joints[~on_ground]
-    if len(base) != 1 or not len(joints) or abs(assembly.p[base[0], 1] - assembly.q[base[0], 1]) > 1e-9:
-        return np.empty((0, 2))
-    foot = float(assembly.middle[base[0], 1])
-    points = state.points(assembly)
-    start = points[joints[assembly.middle[joints, 1].argmax()]]
-    top = float(np.maximum(assembly.p[joints, 1], assembly.q[joints, 1]).max())
-    levels = np.linspace(top, foot, sections + 1)[1:-1]
-    force, x = section_forces(assembly, block, levels, state, loads)
-    shown = (levels < start[1]) & (force[:, 1] < 0.0)
-    return np.concatenate([[start], np.column_stack([x, levels])[shown], points[base]])

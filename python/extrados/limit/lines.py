@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.polygons import crossings
+from extrados.building.geometry.polygons import reach
 from extrados.limit.graphic import section_forces
 from extrados.limit.loads import Loads
 from extrados.limit.states import State
@@ -101,11 +101,9 @@ def _down(
     levels = np.linspace(top[1], foot[1], SECTIONS + 1)[1:-1]
     carried, x = section_forces(assembly, block, levels, state, loads, sway)
     outline = assembly.outlines[block]
-    shown = [
-        k for k in range(len(levels))
-        if carried[k, 1] < 0.0 and len(cut := crossings(outline, float(levels[k]))) and cut[0] <= x[k] <= cut[-1]
-    ]  # fmt: skip
-    if not shown:
+    left, right = reach(outline, levels).T
+    shown = np.flatnonzero((carried[:, 1] < 0.0) & (left <= x) & (x <= right))
+    if not len(shown):
         return []
     line = np.column_stack([x, levels])[shown]
     greatest = float(np.hypot(*carried[shown].T).max())

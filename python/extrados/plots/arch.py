@@ -2,10 +2,11 @@
 
 import itertools
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from extrados.plots import style
+from extrados.plots import animation, style
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -33,10 +34,18 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for sign in (1, -1):
             ground.axhline(sign * r.uplift_acceleration_g, color=style.EDGE, linestyle="--", linewidth=0.7)
         ground.set_ylabel("ground [g]")
-        rotation.plot(t, 1e3 * run.array(name, "rotation"), color=style.THRUST)
+        rotation.plot(
+            t, 1e3 * run.array(name, "rotation"), color=style.THRUST, label="lower block" if r.stack else None
+        )
+        if r.stack:
+            rotation.plot(
+                t, 1e3 * run.array(name, "rotation_upper"), color=style.GROUND, linewidth=0.9, label="upper block"
+            )
         for sign in (1, -1):
             rotation.axhline(1e3 * sign * r.critical_rotation_rad, color=style.EDGE, linestyle=":", linewidth=0.8)
         limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=0.0)
+        if r.stack:
+            limit = max(limit, 1.15e3 * np.abs(run.array(name, "rotation_upper")).max(initial=0.0))
         limit = limit or 1.15e3 * r.critical_rotation_rad  # it has not rocked
         rotation.set_ylim(-limit, limit)
         rotation.plot(
@@ -67,6 +76,9 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 f"Ground motion, rotation of {r.rotation_of} with impacts, energies, friction needed. Dashed: acceleration at which rocking starts; dotted: critical rotation.",
             )
         )
+    if r.restraints:
+        found.append(_draw_restraints(run, name, folder, t))
+    animation.draw_rocking(run, name, folder)
     moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
     if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))
@@ -104,6 +116,33 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 )
             )
     return found
+
+
+def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str, str]:
+    """Forces of ties and dampers, moments of added hinges, over time."""
+    arrays = [run.arrays[name][f"restraint_{k}"] for k in range(1, len(run[name].restraints) + 1)]
+    units = list(dict.fromkeys(a.unit for a in arrays))
+    moving = np.flatnonzero(np.abs(run.array(name, "rotation")) > 0.0)
+    with style.figure(8.0, 0.6 + 2.2 * len(units), rows=len(units), sharex=True) as (fig, axes):
+        for ax, unit in zip(axes, units, strict=True):
+            here = [a for a in arrays if a.unit == unit]
+            for a in here[:12]:
+                ax.plot(t, a.data / 1e3, linewidth=0.9, label=a.about)
+            ax.set_ylabel("force [kN]\n+ tension" if unit == "N" else "moment [kN m]")
+            if len({a.about for a in here}) <= 6:
+                ax.legend(*_once(ax), loc="upper right", ncols=2)
+        axes[-1].set_xlabel("time [s]")
+        if len(moving):
+            axes[-1].set_xlim(max(0.0, t[moving[0]] - 0.2), min(t[-1], t[moving[-1]] + 0.2))
+        saved = style.save(fig, folder, f"{name}-restraints")
+    return saved, "Forces of what holds it" + (", the first twelve of each kind." if len(arrays) > 12 else ".")
+
+
+def _once(ax: Any) -> tuple[list[Any], list[str]]:
+    """Lines and words of a legend in which each word stands once."""
+    lines, words = ax.get_legend_handles_labels()
+    first = {word: line for line, word in reversed(list(zip(lines, words, strict=True)))}
+    return list(first.values()), list(first)
 
 
 def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: np.ndarray) -> tuple[str, str]:

@@ -8,13 +8,14 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from extrados.plots import style
+from extrados.plots import animation, style
 from extrados.plots.arch import moved, outlines
-from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, DemRun
+from extrados.results.dem import HINGED_FIRST, HINGED_SECOND
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
 SHOWN = 6
+MOST_HINGES = 40
 
 
 def _at(run: Stored, name: str, time: float) -> int:
@@ -40,7 +41,7 @@ def _window(run: Stored, name: str, picks: list[int]) -> tuple[float, float, flo
     return low[0] - room, high[0] + room, low[1] - room, high[1] + room
 
 
-class _Scene:
+class Scene:
     """What stays the same from one picture of a run to the next."""
 
     def __init__(self, run: Stored, name: str, picks: list[int]):
@@ -56,6 +57,15 @@ class _Scene:
         left, right, bottom, top = self.window
         return (top - bottom) / (right - left)
 
+    def hinges(self, k: int) -> np.ndarray:
+        """Where joints are hinged at output k (points, 2); none where they are too many to be told apart."""
+        points = []
+        for j in np.flatnonzero(np.isin(self.hinge[k], (HINGED_FIRST, HINGED_SECOND))):
+            if self.owner[j] >= 0:
+                point = self.p[j] if self.hinge[k, j] == HINGED_FIRST else self.q[j]
+                points.append(moved(point[None], self.centroid[self.owner[j]], self.place[k, self.owner[j]])[0])
+        return np.array(points) if 0 < len(points) <= MOST_HINGES else np.empty((0, 2))
+
     def draw(self, ax: Axes, k: int, arrows: float) -> None:
         """Blocks at output k, hinges, and velocities as arrows (`arrows`: metres per m/s)."""
         place, rate = self.place[k], self.rate[k]
@@ -64,13 +74,9 @@ class _Scene:
             ax.fill(*support.T, facecolor="#d7d3cb", edgecolor="none", zorder=0)
         shapes = [moved(o, c, p) for o, c, p in zip(self.blocks, self.centroid, place, strict=True)]
         ax.add_collection(PolyCollection(shapes, facecolor=style.STONE, edgecolor=style.EDGE, linewidth=0.7))
-        points = []
-        for j in np.flatnonzero(np.isin(self.hinge[k], (HINGED_FIRST, HINGED_SECOND))):
-            if self.owner[j] >= 0:
-                point = self.p[j] if self.hinge[k, j] == HINGED_FIRST else self.q[j]
-                points.append(moved(point[None], self.centroid[self.owner[j]], place[self.owner[j]])[0])
-        if points and len(points) <= 40:
-            style.draw_hinges(ax, np.array(points))
+        points = self.hinges(k)
+        if len(points):
+            style.draw_hinges(ax, points)
         if arrows > 0.0:
             ax.quiver(
                 place[:, 0], place[:, 1], rate[:, 0] * arrows, rate[:, 1] * arrows, angles="xy", scale_units="xy",
@@ -111,7 +117,7 @@ def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             figures.append(_hinge_map(run, name, folder))
         if run[name].sensitivity:
             figures.append(_sensitivity(run, name, folder))
-    _animation(run, name, folder)
+    animation.draw_dem(run, name, folder)
     return figures
 
 
@@ -121,7 +127,7 @@ def _snapshots(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     rows = -(-len(times) // columns)
     rate = run.array(name, "rate")
     picks = [_at(run, name, t) for t in times]
-    scene = _Scene(run, name, picks)
+    scene = Scene(run, name, picks)
     fastest = max((float(np.hypot(*rate[k, :, :2].T).max()) for k in picks), default=0.0)
     left, right, bottom, top = scene.window
     arrows = 0.15 * max(right - left, top - bottom) / fastest if fastest > 1e-6 else 0.0
@@ -279,26 +285,3 @@ def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str
         ax.legend()
         saved = style.save(fig, folder, f"{name}-damping")
     return [(saved, "Fraction of critical damping at the impact frequencies of the joints.")]
-
-
-def _animation(run: Stored, name: str, folder: Path) -> None:
-    """figures/NAME.gif or .mp4, in real time, where the deck asks for one."""
-    kind = run[name].animation if isinstance(run[name], DemRun) else "none"
-    if kind == "none":
-        return
-    from matplotlib.animation import FFMpegWriter, PillowWriter
-
-    time = run.array(name, "time")
-    # Real time, but never more frames than draw in a few tens of seconds
-    step = max(1.0 / 15.0, (time[-1] - time[0]) / 150.0)
-    frames = [_at(run, name, t) for t in np.arange(time[0], time[-1], step)]
-    writer = (PillowWriter if kind == "gif" else FFMpegWriter)(fps=round(1.0 / step))
-    scene = _Scene(run, name, frames)
-    with style.figure(5.0, 5.0 * min(1.6, max(0.4, scene.aspect))) as (fig, (ax,)):
-        fig.set_layout_engine("none")  # frames must not wobble
-        with writer.saving(fig, str(folder / "figures" / f"{name}.{kind}"), dpi=80):
-            for k in frames:
-                ax.clear()
-                scene.draw(ax, k, 0.0)
-                ax.set_title(f"{time[k]:.2f} s")
-                writer.grab_frame()

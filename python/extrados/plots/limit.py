@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 
-from extrados.plots import style
+from extrados.plots import animation, style
 from extrados.results.limit import Hinge, MovingLoad, Tilt
 from extrados.results.store import Stored
 
@@ -222,6 +222,7 @@ def _standing(run: Stored, name: str) -> list[int]:
 
 def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Section at collapse, mechanism, force polygon; thrust upright; monolithic beside fractured."""
+    animation.draw_tilt(run, name, folder)
     r = run[name]
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
     points = np.concatenate(blocks)
@@ -490,6 +491,7 @@ def draw_imperfections(run: Stored, name: str, folder: Path) -> list[tuple[str, 
 
 def draw_supports(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The arch on the way to its fall, and how the thrust changes; of any structure, the joints that open."""
+    animation.draw_supports(run, name, folder)
     r = run[name]
     blocks, centroid = outlines(run, name), run.array(name, "centroid")
     if "settled_pose" in run.arrays[name]:

@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from extrados.plots import style
+from extrados.plots import animation, style
 from extrados.results.model import Array
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
@@ -60,6 +60,7 @@ def _outline(run: Stored, name: str) -> np.ndarray:
 def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
     figures = [_curve(run, name, folder)]
+    animation.draw_sla(run, name, folder)
     for prefix in PREFIXES:
         if f"{prefix}state_event" in run.arrays[name]:
             figures += [_cracks(run, name, folder, prefix), _stresses(run, name, folder, prefix)]

@@ -28,6 +28,39 @@ class RuleOutcome(ResultModel):
     outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
 
 
+class RestraintForces(ResultModel):
+    """A tie, damper or added hinge while the structure rocks."""
+
+    name: str = fact("as the deck calls it")
+    least_force_N: float = maybe("least force, tension positive; of a tie or damper", "N")
+    greatest_force_N: float = maybe("greatest force, tension positive; of a tie or damper", "N")
+    permanent_elongation_m: float = maybe("what it has yielded or slid in the end; of a tie or damper", "m")
+    least_moment_Nm: float = maybe(
+        "least moment, counter-clockwise turn of the first stone positive; of an added hinge", "N*m"
+    )
+    greatest_moment_Nm: float = maybe("greatest moment; of an added hinge", "N*m")
+    permanent_turn_rad: float = maybe("what it has yielded in the end; of an added hinge", "rad")
+
+
+class ModeShare(ResultModel):
+    """How long two stacked blocks rock in a mode."""
+
+    mode: str = fact("which contacts are open, and how", source="Psycharis 1990")
+    share: float = fact("share of the rocking time")
+
+
+class StackRocking(ResultModel):
+    """What two stacked blocks have besides the rotation of the lower one."""
+
+    peak_rotation_upper_rad: float = fact("greatest rotation of the upper block, positive to +x", "rad")
+    critical_rotation_upper_rad: float = fact("slenderness angle of the upper block by itself", "rad")
+    uplift_as_one_g: float = fact("horizontal acceleration at which both as one begin to rock", "g")
+    uplift_upper_g: float = fact("that at which the upper block begins to rock by itself", "g")
+    impacts_on_ground: int = fact("impacts on the ground")
+    impacts_between: int = fact("impacts at the joint between")
+    modes: list[ModeShare] = fact("how long it rocks in each mode")
+
+
 class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
@@ -44,6 +77,11 @@ class Rocking(KindResults):
     peak_ground_acceleration_g: float = fact("greatest horizontal acceleration of the motion", "g")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
+    energy_taken_up_J: float = maybe("what dampers and yielding have taken up, where something holds it", "J")
+    restraints: list[RestraintForces] = maybe("what holds it besides its weight")
+    rebound: float = maybe(
+        "against a wall: rate after over before it is thrown back", source="Sorrentino and others 2011"
+    )
     energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("steps that it tried and refused")
@@ -54,7 +92,7 @@ class Rocking(KindResults):
     energy_ratio: float = maybe("of a block: kinetic energy after over before an impact", source="thesis Eq. 6.2")
     critical_rotation_rad: float = fact("rotation to +x from which gravity takes it down", "rad")
     critical_rotation_left_rad: float = maybe("of a block or a mechanism: the critical rotation to -x", "rad")
-    frequency_parameter_rad_s: float = maybe("of a block: p", "rad/s", source="Housner 1963")
+    frequency_parameter_rad_s: float = maybe("of a block or a frame: p", "rad/s", source="Housner 1963")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     required_friction: float | None = fact(
         "greatest coefficient of friction needed; null where a joint comes under tension"
@@ -66,6 +104,7 @@ class Rocking(KindResults):
     restitution_inelastic: float = maybe("of an arch: by a blow without rebound at all joints", source="Moreau 1988")
     outcomes_by_rule: list[RuleOutcome] = maybe("under each impact rule, where their c_v differ by more than 1.3")
     decided_by_last_digits: bool = fact("whether the motion scaled by 1 +- 1e-6 ends in another outcome")
+    stack: StackRocking = maybe("of two stacked blocks")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -211,13 +211,9 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
         raise StoreError(f"{folder}: results could not be written: {reason(error)}") from None
 
 
-def csv_text(table: TableData) -> str:
-    """A table as CSV: the header carries the unit after the name; numbers round-trip."""
-    return "".join(csv_parts(table))
-
-
 def csv_parts(table: TableData) -> Iterator[str]:
-    """The same, some rows at a time: the text of many takes more memory than their numbers."""
+    """A table as CSV, some rows at a time, since the text of many takes more memory than their numbers: the header carries
+    the unit after the name; numbers round-trip."""
     names = list(table.columns)
     units = [table.units.get(name, "") for name in names]
     columns = [np.asarray(column) for column in table.columns.values()]

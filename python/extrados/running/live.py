@@ -48,6 +48,14 @@ class Live:
         self.deck = replace(deck, building=building, buildings=buildings)
         self.names = store.group_names([options.kind for options in deck.analyses])
 
+    def back_to(self, deck: Deck) -> None:
+        """Take again a deck that this model has had: what was computed for it is still known."""
+        self._take(deck)
+
+    def context(self, deck: Deck | None = None) -> Context:
+        """What drivers are given, with the motions that are kept; of another deck where one is given."""
+        return Context(deck or self.deck, self.threads, motions=self._motions)
+
     def __repr__(self) -> str:
         return f"<Live: {', '.join(self.names)}>"
 
@@ -94,7 +102,7 @@ class Live:
     def result(self, name: str) -> Result:
         """The result of an analysis by its name, computed unless it is known; KeyError where there is none."""
         found, i = self._computed(name), self.names.index(name)
-        context = Context(self.deck, self.threads, motions=self._motions)
+        context = self.context()
         return concluded(found, self.deck.analyses[i], context, self.deck.buildings[i])
 
     def _computed(self, name: str) -> Result:
@@ -110,7 +118,7 @@ class Live:
             if all(seen.value(part) == value for part, value in there.values.items()):
                 return there.result
         deck = seen.deck(options, _own_data(self.deck.data, i))
-        context = Context(deck, self.threads, motions=self._motions)
+        context = self.context(deck)
         result = run_one(context, options, deck.buildings[0])
         if result.status in ("ok", "refused"):
             kept.append(_Kept({part: seen.value(part) for part in seen.parts}, result))
@@ -145,7 +153,9 @@ class _Kept:
 
 
 #: What a building is said to be, table by table
-_TABLES = frozenset({"structure", "material", "materials", "joints", "supports", "initial", "ties"})
+_TABLES = frozenset(
+    {"structure", "material", "materials", "joints", "supports", "initial", "ties", "dampers", "hinges"}
+)
 
 
 class _Seen:

@@ -38,6 +38,12 @@ class Run(Stored):
         found = store.read(folder)
         return cls(found.folder, found.head, found.analyses, found.arrays)
 
+    def _repr_html_(self) -> str:
+        """In a notebook: a short table and the main figure, never the arrays."""
+        from extrados.running.notebook import page_of
+
+        return page_of(self)
+
     def write(self, folder: str | Path, figures: bool = True) -> Path:
         """Write the results into `folder`, in place of an earlier run there, and draw figures and report.
 

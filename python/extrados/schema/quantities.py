@@ -21,6 +21,7 @@ _EXAMPLE = {
     "m": "20 cm", "s": "0.2 s", "m/s^2": "0.5 g", "m/s": "12 cm/s", "Hz": "2 Hz", "deg": "157.5 deg",
     "kg/m^3": "2000 kg/m^3", "Pa": "3 MPa", "N": "55.6 kN", "N/m": "60 N/m", "Pa/m": "10 GPa/m",
     "rad/s": "3 rad/s", "kg*m^2": "12 kg*m^2", "m^2": "0.4 in^2", "m^3/s": "0.75 gallon/min",
+    "N*s/m": "40 kN*s/m", "N*m": "5 kN*m", "N*m*s": "30 kN*m*s",
 }  # fmt: skip
 
 
@@ -41,6 +42,9 @@ COMMON: dict[str, dict[str, float]] = {
     "Pa/m": {"Pa/m": 1.0, "MPa/m": 1000000.0, "GPa/m": 1000000000.0},
     "m^2": {"m^2": 1.0, "cm^2": 0.0001, "mm^2": 1e-06},
     "m^3/s": {"m^3/s": 1.0},
+    "N*s/m": {"N*s/m": 1.0, "kN*s/m": 1000.0},
+    "N*m": {"N*m": 1.0, "kN*m": 1000.0},
+    "N*m*s": {"N*m*s": 1.0, "kN*m*s": 1000.0},
 }
 
 
@@ -160,6 +164,9 @@ Inertia = quantity("kg*m^2")
 Force = quantity("N")
 LineForce = quantity("N/m")
 AxialStiffness = quantity("N/m")
+Damping = quantity("N*s/m")
+Moment = quantity("N*m")
+TurningDamping = quantity("N*m*s")
 Stress = quantity("Pa")
 Energy = quantity("N/m")
 Stiffness = quantity("Pa/m")

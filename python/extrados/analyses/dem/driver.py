@@ -1,7 +1,5 @@
 """dem: rigid blocks that rock, hinge, slide and fall under a motion, or in a tilt test (thesis chapter 7)."""
 
-import shutil
-
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem import motion, tilt
@@ -13,8 +11,6 @@ from extrados.results.model import Result
 
 def run(context: Context, options: Dem) -> Result:
     """A run with its variations, or a tilt test."""
-    if options.animation == "mp4" and shutil.which("ffmpeg") is None:
-        raise Refused('animation = "mp4" needs the program ffmpeg, which is not here; "gif" needs nothing')
     model = dem_model.make_model(context, options, options.floor)
     context.warnings += dem_model.warnings(model, options)
     try:

@@ -18,6 +18,7 @@ from extrados.analyses.dem.trial import Trial
 from extrados.analyses.dem.variations import vary
 from extrados.analyses.dem.words import motion_answer
 from extrados.analyses.limit.common import geometry_arrays
+from extrados.building.rockers.block import BlockModel
 from extrados.building.templates.block import BlockAssembly
 from extrados.core import dem
 from extrados.results import dem as out
@@ -112,7 +113,7 @@ def _numbers(trial: Trial, found: dem.Run, seen: Seen) -> dict[str, Any]:
         "restitution_measured": measures.restitution(found, seen.state, seen.ground)
         if model.rigid.count == 1
         else None,
-        "restitution_housner": 1.0 - 1.5 * float(np.sin(model.assembly.alpha[0]) ** 2)
+        "restitution_housner": float(BlockModel(model.assembly).housner[0])
         if isinstance(model.assembly, BlockAssembly)
         else None,
         "bounces": int(found.bounces[mobile].sum()),

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.table import BuildingAnalysis
+from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Gravities, Length, Time
 from extrados.schema.table import key
@@ -27,7 +27,7 @@ class DemTable(BuildingAnalysis):
     fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
 
 
-class Dem(DemTable):
+class Dem(DemTable, Animated):
     """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
 
     starter_motion: ClassVar = "step-pulse"
@@ -45,7 +45,6 @@ class Dem(DemTable):
     stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
     track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)
     snapshot_times: list[Time] = key([], "draw the structure at these times; default six telling ones", max_length=24)
-    animation: Literal["none", "gif", "mp4"] = key("none", "write an animation")
     vtk: bool = key(False, "write VTU files and a PVD collection")
     vary_damping: list[Positive] = key([], "also run with beta times these factors", max_length=50)
     vary_stiffness: list[Positive] = key([], "also run with joint stiffnesses times these factors", max_length=50)

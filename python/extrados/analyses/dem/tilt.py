@@ -26,7 +26,7 @@ RAMP = 2.0
 SENSES = (1.0, -1.0)  # pushed to +x, pushed to -x
 #: Keys of the deck that a tilt test does not look at.
 NOT_IN_TILT = (
-    "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "vtk",
+    "end_time", "output_step", "stop_at_collapse", "snapshot_times", "animation", "animation_speed", "vtk",
     "vary_damping", "vary_stiffness", "vary_friction", "find_friction", "slip",
 )  # fmt: skip
 

@@ -85,7 +85,7 @@ def start(context: Context, model: Model) -> np.ndarray | None:
 
 def _about_a_toe(block: BlockAssembly, side: int, ratio: float, bodies: int) -> np.ndarray:
     turn = -ratio * block.alpha[side]  # positive to +x is clockwise
-    toe = np.array([block.toe_right, 0.0]) if side == 0 else np.array([-block.toe_left, 0.0])
+    toe = block.q[0] if side == 0 else block.p[0]
     arm = block.centroid[0] - toe
     c, s = np.cos(turn), np.sin(turn)
     shift = np.zeros((bodies, 3))

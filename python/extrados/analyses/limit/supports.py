@@ -23,6 +23,7 @@ OPENS = 1e-7  # of the greatest opening: joints that move by less do not
 SMALL = 1e-3  # of the width: how far a support moves unless the deck says
 APART = 1e-3  # of the size: supports that are nearer are one
 LARGE = 0.05  # rad: beyond, motions of first order are coarse
+FILM = 150  # movements of an animation
 SHOWN = (0.0, 0.25, 0.5, 0.75, 1.0)  # of the movement at the fall
 
 
@@ -86,6 +87,13 @@ def run(context: Context, options: Supports) -> Result:
         "shown_pose": Array(np.array([states[i].pose for i in shown]), ("shown", "block", "component"), "m, m, rad", "places of the centroids, rotations"),
         "shown_point": Array(np.array([states[i].points for i in shown]), ("shown", "joint", "axis"), "m", "thrust line on the displaced joints"),
     }  # fmt: skip
+    if options.animation != "none":
+        film = np.unique(np.linspace(0, len(states) - 1, FILM).astype(int))
+        result.arrays |= {
+            "film_movement": Array(movement[film], ("film",), "m", "movements in the animation"),
+            "film_pose": Array(np.array([states[i].pose for i in film]), ("film", "block", "component"), "m, m, rad", "places of the centroids, rotations"),
+            "film_line": Array(np.array([states[i].points for i in film]), ("film", "joint", "axis"), "m", "thrust line on the displaced joints"),
+        }  # fmt: skip
     result.tables = {
         "supports": TableData(
             {"movement": movement, "horizontal": force[:, 0], "vertical": force[:, 1],

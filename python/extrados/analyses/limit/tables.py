@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import model_validator
 
-from extrados.analyses.table import BuildingAnalysis
+from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.schema.quantities import Force, Gravities, Length, LineForce
 from extrados.schema.table import Table, key
 
@@ -37,7 +37,7 @@ class LimitAnalysisTable(BuildingAnalysis):
     """What all questions of limit analysis ask."""
 
     uses: ClassVar = ("material.density", "material.compressive_strength", "joints.friction")
-    bears_ties: ClassVar = True
+    bears: ClassVar = ("[[ties]]",)
     friction_rule: Literal["associated", "non-associated"] = key(
         "associated",
         "associated sliding dilates (an upper bound); non-associated does not: of its many states the least is sought",
@@ -47,7 +47,7 @@ class LimitAnalysisTable(BuildingAnalysis):
     load: list[AppliedLoad] = key([], "loads at rest beside weight and fill, of which some may sway", max_length=1000)
 
 
-class Tilt(LimitAnalysisTable):
+class Tilt(LimitAnalysisTable, Animated):
     """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
 
     kind: Literal["tilt"]
@@ -112,14 +112,14 @@ class Imperfections(LimitAnalysisTable):
     seed: int = key(1, "seed of the random numbers", ge=0)
 
 
-class Supports(BuildingAnalysis):
+class Supports(BuildingAnalysis, Animated):
     """Supports that give way: the joints that open in any structure; an arch through its three-hinge states to its fall.
 
     What gives way is said by [[initial.movements]]; without them it is the right support.
     """
 
     kind: Literal["supports"]
-    bears_ties: ClassVar = True
+    bears: ClassVar = ("[[ties]]",)
     spread: float = key(1.0, "outward movement of the right support, relative to the other component", ge=-10, le=10)
     settle: float = key(0.0, "downward movement of the right support, relative to the other component", ge=-10, le=10)
     movement: Length | None = key(

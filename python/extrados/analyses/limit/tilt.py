@@ -31,6 +31,8 @@ from extrados.results.model import Array, Result
 
 __all__ = ["geometry_arrays", "run", "state_arrays"]
 
+FILM = 90  # tilts of an animation
+
 MOST_NAMED = 6  # hinges and sliding joints told in words
 
 SETTLED = 1e-7  # residual of a state without dilatancy that is worth a word
@@ -99,6 +101,8 @@ def run(context: Context, options: Tilt) -> Result:
             result.arrays.update(state_arrays(assembly, word, state_of, about))
             result.arrays.update(graphic_arrays(answer, word, state_of, about))
             result.arrays.update(tie_arrays(building, answer.loads, {word: state_of}))
+    if options.animation != "none":
+        result.arrays |= _film(limit, answer)
     result.answer = _words(building.structure.word, assembly, answer, found)
     result.warnings += answer.warnings
     if closed := mended_capacity(building, options, answer.gamma):
@@ -114,6 +118,29 @@ def run(context: Context, options: Tilt) -> Result:
             f'the sizes of preset "{context.deck.structure.preset}" are inferred or guessed, not taken from a survey'
         )
     return result
+
+
+def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
+    """Lines of least and greatest thrust of the first chain as the ground is tilted to collapse; none without a chain."""
+    if not answer.least or answer.gamma <= 0.0:
+        return {}
+    joints = answer.assembly.chains[next(iter(answer.least))]
+    rows = []
+    for gamma in np.linspace(0.0, answer.gamma * (1.0 - 1e-6), FILM).tolist():
+        pair = limit.thrust(joints, gamma)
+        rows.append([(s.points(answer.assembly)[joints], thrust_of(answer.assembly, s, joints)) for s in pair])
+    about = "of the first chain as the ground is tilted to collapse"
+    return {
+        "film_tilt": Array(np.linspace(0.0, degrees(answer.gamma), FILM), ("film",), "deg", "tilt of the ground in the animation"),
+        **{
+            f"film_{name}": Array(np.array([row[k][0] for row in rows]), ("film", "chain_joint", "axis"), "m", f"{name} thrust {about}")
+            for k, name in enumerate(("least", "most"))
+        },
+        **{
+            f"film_thrust_{name}": Array(np.array([row[k][1] for row in rows]), ("film",), "N", f"{name} thrust {about}")
+            for k, name in enumerate(("min", "max"))
+        },
+    }  # fmt: skip
 
 
 def _thrusts(answer: Answer) -> dict[str, object]:

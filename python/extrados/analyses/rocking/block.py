@@ -8,6 +8,7 @@ from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.block import BlockModel
+from extrados.building.rockers.restraints import Restraints
 from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.results.model import Array, Result
@@ -24,26 +25,29 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
             "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
         )
     end_time = options.end_time or context.motion.end + rest_time(rocker)
-    response = run_history(context, options, model.body, end_time, 12, rocker.start_rotation)
+    response = run_history(context, options, rocker.body, end_time, 12, rocker.start_rotation)
 
-    tangential, normal = toe_forces(model, response)
-    friction = np.abs(tangential) / np.maximum(normal, 1e-300)
-    flying = normal <= 0.0
+    tangential, normal = toe_forces(model, response, rocker.restraints)
+    c, s = np.cos(model.block.slope), np.sin(model.block.slope)
+    along, across = c * tangential + s * normal, c * normal - s * tangential  # on a sloping base
+    friction = np.abs(along) / np.maximum(across, 1e-300)
+    flying = across <= 0.0
     c_v = model.restitution
     needed = float(friction[~flying].max(initial=0.0))
     result = rocking_result(
         context,
         response,
         doubts(context, options, rocker, response, end_time),
+        rocker,
         f"the {rocker.word}",
         friction[:, None],
         restitution=c_v[0],
         restitution_to_left=c_v[1],
         energy_ratio=c_v[0] ** 2 * model.block.toe_inertia[0] / model.block.toe_inertia[1],
-        critical_rotation_rad=model.alpha[0],
-        critical_rotation_left_rad=model.alpha[1],
+        critical_rotation_rad=rocker.critical[0],
+        critical_rotation_left_rad=rocker.critical[1],
         frequency_parameter_rad_s=model.frequency[0],
-        uplift_acceleration_g=model.uplift.min(),
+        uplift_acceleration_g=rocker.uplift,
         required_friction=needed,
     )
     if flying.any():
@@ -54,14 +58,16 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     index = snapshot_index(response, options, result.warnings)
     result.arrays |= {**geometry_arrays(model.block), **_snapshots(model, response, tangential, normal, index)}
     result.answer = (
-        answer(context, response, f"The {rocker.word}", "overturns", float(model.uplift.min()))
+        answer(context, response, f"The {rocker.word}", "overturns", rocker.uplift)
         + f" It slides instead where friction is below {needed:.2f}."
     )
     return result
 
 
-def toe_forces(model: BlockModel, response: core_rocking.Response) -> tuple[np.ndarray, np.ndarray]:
-    """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]."""
+def toe_forces(
+    model: BlockModel, response: core_rocking.Response, held: Restraints | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Horizontal (to +x) and vertical (up) force of the ground on the block at the output times [N]; held: what holds it."""
     b = model.block
     side = np.where(response.rotation < 0.0, -1.0, 1.0)
     i = (side < 0.0).astype(int)
@@ -73,7 +79,11 @@ def toe_forces(model: BlockModel, response: core_rocking.Response) -> tuple[np.n
     x = side * radius * (np.cos(rest) * acceleration + np.sin(rest) * rate**2)
     y = radius * (np.sin(rest) * acceleration - np.cos(rest) * rate**2)
     mass = b.mass[0]
-    return mass * (response.ground + x), mass * (GRAVITY + response.vertical + y)
+    tangential, normal = mass * (response.ground + x), mass * (GRAVITY + response.vertical + y)
+    if held is not None:
+        pull = held.pull(response.rotation, response.forces)
+        tangential, normal = tangential - pull[:, 0], normal - pull[:, 1]
+    return tangential, normal
 
 
 def pose(model: BlockModel, rotation: np.ndarray) -> np.ndarray:
@@ -84,7 +94,8 @@ def pose(model: BlockModel, rotation: np.ndarray) -> np.ndarray:
     side = np.where(left, -1.0, 1.0)
     toe = side * b.toes[i]
     rest = b.alpha[i] - np.abs(rotation)
-    return np.stack([toe - side * b.radius[i] * np.sin(rest), b.radius[i] * np.cos(rest), -rotation], axis=1)
+    x, y = toe * np.cos(b.slope), toe * np.sin(b.slope)
+    return np.stack([x - side * b.radius[i] * np.sin(rest), y + b.radius[i] * np.cos(rest), -rotation], axis=1)
 
 
 def _snapshots(
@@ -96,11 +107,11 @@ def _snapshots(
     toe = np.where(rotation < 0.0, -b.toe_left, b.toe_right)
     # From the toe along the force, as far up as the centre of mass; at rest through the middle of the base.
     toe = np.where(rotation == 0.0, 0.0, toe)
+    foot = toe * np.sin(b.slope)
+    toe = toe * np.cos(b.slope)
     rise = b.centre_height
     lean = np.clip(tangential[index] / np.maximum(normal[index], 1e-300), -3.0, 3.0)
-    line = np.stack(
-        [np.stack([toe, 0.0 * toe], axis=1), np.stack([toe + lean * rise, 0.0 * toe + rise], axis=1)], axis=1
-    )
+    line = np.stack([np.stack([toe, foot], axis=1), np.stack([toe + lean * rise, foot + rise], axis=1)], axis=1)
     return {
         "snapshot_time": Array(response.time[index], ("snapshot",), "s"),
         "snapshot_pose": Array(

@@ -1,12 +1,54 @@
 """What all analyses of rocking share."""
 
-from extrados.analyses.context import Context
+from dataclasses import replace
+
+from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.tables import RockingTable
+from extrados.building.geometry.assembly import GROUND
 from extrados.building.rockers.rocker import Rocker
+from extrados.motions.supports import Shift, with_shifts
 
 
 def rocker_of(context: Context, options: RockingTable) -> Rocker:
     """The building as one rocking mechanism; its warnings go to the context."""
+    if context.building.initial.movements:
+        raise Refused(
+            "supports that move while it rocks are followed by `rocking` and `dem`: leave out [[initial.movements]]"
+        )
     rocker = context.building.rocker(options.form == "linear")
     context.warnings += rocker.warnings
     return rocker
+
+
+def with_moving_supports(context: Context) -> Context:
+    """The context with a motion that holds the movements of [[initial.movements]], where there are any.
+
+    All supports must move alike, and not turn: then the structure feels one more acceleration of its ground. Refused else.
+    """
+    movements = context.building.initial.movements
+    if not movements:
+        return context
+    assembly = context.building.blocks()
+    names = assembly.joint_names
+    grounded = {n for n, a, b in zip(names, assembly.a, assembly.b, strict=True) if GROUND in (a, b)}
+    for one in movements:
+        if one.joint not in grounded:
+            raise Refused(
+                f"initial.movements: '{one.joint}' is no joint on the ground; there are {', '.join(sorted(grounded)[:8])}"
+            )
+        if one.turn:
+            raise Refused(
+                f"initial.movements: the support at '{one.joint}' turns; what rocks meanwhile is followed by `dem`"
+            )
+    shifts = {Shift(one.dx, one.dy, one.start, one.duration) for one in movements}
+    for shift in shifts:
+        moved = {m.joint for m in movements if Shift(m.dx, m.dy, m.start, m.duration) == shift}
+        if moved != grounded:
+            raise Refused(
+                f"initial.movements: the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the others; "
+                "what rocks while its supports part is followed by `dem`"
+            )
+    made = replace(context)
+    order = sorted(shifts, key=lambda s: (s.start, s.duration, s.dx, s.dy))
+    vars(made)["motion"] = with_shifts(context.motion, order)
+    return made

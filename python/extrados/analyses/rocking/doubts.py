@@ -30,7 +30,7 @@ def doubts(context: Context, options: Rocking, rocker: Rocker, response: Respons
     if response.interrupted:
         return Doubts([], False, [])
     rivals: dict[str, tuple[float, Body]] = rocker.model.rivals(DIFFER)
-    bodies = [rocker.body, *(body for _, body in rivals.values())]
+    bodies = [rocker.body, *(rocker.held(body) for _, body in rivals.values())]
     count = len(rivals)
     which = np.array([0, 0, *range(1, count + 1)], dtype=int)
     scale = np.array([1.0 - NUDGE, 1.0 + NUDGE, *[1.0] * count])

@@ -2,10 +2,12 @@
 
 import numpy as np
 
-from extrados.analyses.context import Context
+from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
+from extrados.analyses.rocking import stack as stack_rocking
+from extrados.analyses.rocking.common import with_moving_supports
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
@@ -25,9 +27,19 @@ OUTSIDE = 0.01
 
 def run(context: Context, options: Rocking) -> Result:
     """History, impacts, energies, friction needed; of an arch the dynamic thrust line too."""
+    context = with_moving_supports(context)
+    structure = context.building.structure
+    if structure is not None and structure.rocks_as == "stack":
+        if options.animation != "none":
+            raise Refused("rocking draws no film of a stack: dem does")
+        return stack_rocking.run(context, options)
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
-    result = kinds[type(rocker.model)](context, options, rocker)
+    result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)
+    if options.animation != "none":
+        from extrados.analyses.rocking.shapes import film_arrays
+
+        result.arrays |= film_arrays(rocker, result)
     needed, given = result.results.required_friction, context.building.joints.coefficient
     if given is not None and needed is not None and needed > given:
         result.warnings.append(
@@ -43,7 +55,7 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
     gamma = model.collapse[0].gamma
     end_time = options.end_time or context.motion.end + rest_time(rocker)
     joints = model.arch.voussoirs + 1
-    response = run_history(context, options, model.body, end_time, 8 + 6 * joints, rocker.start_rotation)
+    response = run_history(context, options, rocker.body, end_time, 8 + 6 * joints, rocker.start_rotation)
 
     thrust = _thrust(model, response)
     needed = max(float(thrust.friction.max(initial=0.0)), _onset_friction(model, context, response))
@@ -52,6 +64,7 @@ def _arch(context: Context, options: Rocking, rocker: Rocker) -> Result:
         context,
         response,
         doubt,
+        rocker,
         "link AB",
         thrust.friction,
         restitution=model.restitution,

@@ -142,7 +142,7 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
             structure = read_table(type(building.structure), table)
             rocker = building.apart().having(structure=structure).rocker(linear)
         except (BadGeometry, NoView, ValueError) as error:
-            raise Refused(f"variants[{number}]: {error}") from None
+            raise Refused(f"variants[{number}]: {error}" if options.variants else str(error)) from None
         parts = [_said(structure, name) for name in names]
         told = f"{', '.join(parts)}: " if parts else ""
         context.warnings += [told + warning for warning in rocker.warnings]

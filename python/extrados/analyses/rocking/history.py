@@ -10,6 +10,7 @@ from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel
 from extrados.building.rockers.rocker import Rocker
+from extrados.core.restraints import LENGTH
 from extrados.core.rocking import Body, Response, history
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
@@ -58,7 +59,13 @@ def run_history(
 
 
 def rocking_result(
-    context: Context, response: Response, doubt: Doubts, of: str, friction: np.ndarray, **further: Any
+    context: Context,
+    response: Response,
+    doubt: Doubts,
+    rocker: Rocker,
+    of: str,
+    friction: np.ndarray,
+    **further: Any,
 ) -> Result:
     """Results, tables and arrays that every rocking structure has; `of` says whose rotation it is.
 
@@ -66,8 +73,8 @@ def rocking_result(
     """
     impacts = [(t, v) for kind, t, v in response.events if kind == "impact"]
     collapse = response.outcome == "collapse"
-    energy = response.kinetic + response.potential
-    scale = max(float(energy.max(initial=0.0)), abs(response.work), 1e-300)
+    energy = response.kinetic + response.potential + response.stored
+    scale = max(float(np.abs(energy).max(initial=0.0)), abs(response.work), 1e-300)
     result = Result("rocking", status="interrupted" if response.interrupted else "ok")
     result.reason = f"interrupted at {response.stop_time:.3f} s" if response.interrupted else ""
     if response.events_found > len(response.events):
@@ -90,11 +97,12 @@ def rocking_result(
         peak_ground_acceleration_g=context.motion.peak / GRAVITY,
         energy_supplied_J=response.work,
         energy_lost_at_impacts_J=response.loss,
-        energy_residual_ratio=float(np.abs(energy - response.ledger).max(initial=0.0)) / scale,
+        energy_residual_ratio=float(np.abs(energy - energy[:1] - response.ledger).max(initial=0.0)) / scale,
         steps=response.steps,
         rejected_steps=response.rejected,
         decided_by_last_digits=doubt.on_the_edge,
         **({"outcomes_by_rule": doubt.rules} if doubt.rules else {}),
+        **_held(rocker, response),
         **further,
     )
     result.results = r
@@ -130,11 +138,52 @@ def rocking_result(
         "vertical": Array(response.vertical, ("time",), "m/s^2", "vertical ground acceleration"),
         "kinetic": Array(response.kinetic, ("time",), "J"),
         "potential": Array(response.potential, ("time",), "J"),
-        "ledger": Array(response.ledger, ("time",), "J", "work of the ground less the energy lost at impacts"),
+        "ledger": Array(
+            response.ledger,
+            ("time",),
+            "J",
+            "work of the ground less the energy lost at impacts and taken up by what holds it",
+        ),
         "impact_time": Array(np.array([t for t, _ in impacts]), ("impact",), "s"),
         "required_friction": Array(friction, ("time", "joint"), "", "coefficient of friction needed"),
+        **restraint_arrays(rocker, response),
     }
     return result
+
+
+def _held(rocker: Rocker, response: Response) -> dict[str, Any]:
+    """Results of what holds the structure; none where nothing does."""
+    held = rocker.restraints
+    if held is None:
+        return {}
+    found: dict[str, Any] = {"energy_taken_up_J": response.spent}
+    wall = [e for e, is_open in zip(held.rebound, held.open_sides, strict=True) if is_open]
+    if len(wall) == 1:
+        found["rebound"] = wall[0]
+    rows = zip(held.members, response.least_force, response.greatest_force, response.permanent, strict=True)
+    if held.members:
+        found["restraints"] = [
+            out.RestraintForces(name=m.name, least_force_N=low, greatest_force_N=high, permanent_elongation_m=stays)
+            if m.sort == LENGTH
+            else out.RestraintForces(
+                name=m.name, least_moment_Nm=low, greatest_moment_Nm=high, permanent_turn_rad=stays
+            )
+            for m, low, high, stays in rows
+        ]
+    return found
+
+
+def restraint_arrays(rocker: Rocker, response: Response) -> dict[str, Array]:
+    """Forces of what holds the structure over time, and the energy stored in it."""
+    if rocker.restraints is None or not rocker.restraints.members:
+        return {}
+    return {
+        "stored": Array(response.stored, ("time",), "J", "energy of ties, springs and added hinges"),
+        **{
+            f"restraint_{k}": Array(force, ("time",), "N" if m.sort == LENGTH else "N*m", m.name)
+            for k, (m, force) in enumerate(zip(rocker.restraints.members, response.forces, strict=True), start=1)
+        },
+    }
 
 
 def snapshot_index(response: Response, options: Rocking, warnings: list[str]) -> np.ndarray:

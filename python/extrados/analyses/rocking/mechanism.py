@@ -7,6 +7,7 @@ from extrados.analyses.limit.common import geometry_arrays
 from extrados.analyses.rocking.doubts import doubts
 from extrados.analyses.rocking.history import answer, rest_time, rocking_result, run_history, snapshot_index
 from extrados.analyses.rocking.tables import Rocking
+from extrados.building.rockers.frame import FrameModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.results.model import Array, Result
@@ -23,22 +24,24 @@ def run(context: Context, options: Rocking, rocker: Rocker) -> Result:
     response = run_history(context, options, rocker.body, end_time, 8 + joints, rocker.start_rotation)
 
     forces = model.hinge_forces(
-        response.rotation, response.rate, response.acceleration, response.ground, response.vertical
-    )
+        response.rotation, response.rate, response.acceleration, response.ground, response.vertical,
+        None if rocker.restraints is None else (rocker.restraints, response.forces),
+    )  # fmt: skip
     friction = np.where(np.isnan(forces.normal), 0.0, forces.friction)
     needed = float(friction.max(initial=0.0))
     known = any(one.determinate for one in model.linkages)
     side = 0 if response.peak >= 0.0 else 1
     result = rocking_result(
-        context, response, doubts(context, options, rocker, response, end_time), model.driver(side), friction,
+        context, response, doubts(context, options, rocker, response, end_time), rocker, model.driver(side), friction,
         restitution=model.restitution[0],
         restitution_to_left=model.restitution[1],
-        critical_rotation_rad=model.critical[0],
-        critical_rotation_left_rad=model.critical[1],
+        critical_rotation_rad=rocker.critical[0],
+        critical_rotation_left_rad=rocker.critical[1],
         uplift_acceleration_g=rocker.uplift,
         required_friction=needed if known and np.isfinite(needed) else None,
         hinges=_hinges(model, 0),
         hinges_opposite=_hinges(model, 1),
+        **({"frequency_parameter_rad_s": model.frequency} if isinstance(model, FrameModel) else {}),
     )  # fmt: skip
     if not np.isfinite(needed):
         result.warnings.append(

@@ -47,7 +47,9 @@ def shapes(rocker: Rocker, states: States) -> Shapes:
         return Shapes(placed, thrust.point, thrust.friction)
     if isinstance(model, BlockModel):
         tangential, normal = block.toe_forces(model, states)
-        lines = block._snapshots(model, _Timed(*states, np.zeros(len(rotation))), tangential, normal, np.arange(len(rotation)))
+        lines = block._snapshots(
+            model, _Timed(*states, np.zeros(len(rotation))), tangential, normal, np.arange(len(rotation))
+        )
         friction = np.abs(tangential) / np.where(normal > 0.0, normal, np.nan)
         return Shapes(lines["snapshot_pose"].data, lines["snapshot_thrust"].data, friction[:, None])
     assert isinstance(model, MechanismModel)
@@ -78,5 +80,7 @@ def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
         "film_pose": Array(made.pose, ("film", "block", "component"), "m, m, rad", "x, y, rotation of the stones"),
     }
     if made.line is not None:
-        arrays["film_line"] = Array(made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force")
+        arrays["film_line"] = Array(
+            made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force"
+        )
     return arrays

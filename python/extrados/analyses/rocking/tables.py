@@ -4,11 +4,14 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.table import BuildingAnalysis
+from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.building.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
 from extrados.schema.table import key
+
+#: What a rocking structure may be held by
+HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
 
 
 class RockingTable(BuildingAnalysis):
@@ -17,12 +20,13 @@ class RockingTable(BuildingAnalysis):
     view: ClassVar = "rocker"
     uses: ClassVar = ("material.density", "joints.restitution", "joints.friction", "initial.rotation_ratio")
     method: ClassVar = {"joints.friction": NO_SLIDING}
+    bears: ClassVar = HOLDS
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963"
     )
 
 
-class Rocking(RockingTable):
+class Rocking(RockingTable, Animated):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]
@@ -93,6 +97,7 @@ class Assessment(RockingTable):
     """Eq. 5.8: does the primary impulse of the motion fall above the failure curve of the arch?"""
 
     kind: Literal["assessment"]
+    bears: ClassVar = ()
     needs_motion: ClassVar = True
     impulses: int = key(3, "how many of the strongest impulses are tried", ge=1, le=20)
     min_period: Time | None = key(None, "shortest impulse sought; default 4 sampling steps", gt=0)

@@ -8,10 +8,10 @@ from extrados.analyses.context import Refused
 from extrados.analyses.sla.model import SlaModel
 from extrados.analyses.sla.tables import Sla
 from extrados.core import sla as core
+from extrados.core.errors import CoreError, status_code
 
 MOST_ROUNDS = 400
 TOUCH = 1e-9  # of the greatest joint stress: less is rounding
-FOLLOWS = 5e-3  # of the friction: as near as the friction of sliding points must be to what the normal stress allows
 WORST = 0.9  # of the greatest shear stress over its strength: what begins to slide in a round
 #: Rows of the damage of a point: cracked, tension tooth, shut
 CRACKED, TOOTH, SHUT = 2, 3, 7
@@ -50,8 +50,7 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     Unilateral contact by its active set: points in tension open, points that overlap close, all at once, until none
     changes. Without friction the problem has one solution, since the stiffness is positive definite with any set of open
     points; a round that brings back an earlier set is followed by rounds that change the worst point alone. Then points
-    beyond their friction slide under the force that it allows, which follows the normal stress from round to round; the
-    solution is one of those that friction may leave. Where the rounds find none, all points stick and a warning says so.
+    beyond their friction slide; the solution is one of those that friction may leave. Where the rounds find none, all points stick and a warning says so.
     True where joints can slide.
     """
     dry = dry_points(core_model, model)
@@ -62,8 +61,8 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     damage[CRACKED, at] = 1.0
     damage[TOOTH, at] = core.MOST_TEETH + 1.0  # beyond the last tooth, whatever their number
     touching, mode = np.ones(len(at), dtype=bool), np.full(len(at), STICKS)
-    held, mark = np.zeros(len(at)), np.zeros(len(at))
-    can_slide = np.isfinite(dry.friction)
+    mark = np.zeros(len(at))
+    can_slide, fresh = np.isfinite(dry.friction), np.empty(0, dtype=int)
     seen, single, first, slides, sticking = set(), False, None, can_slide.any(), damage
     if slides:
         # What touches without sliding is a sound beginning
@@ -76,10 +75,18 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     for _ in range(MOST_ROUNDS):
         damage[SHUT, at] = touching
         if can_slide.any():
-            damage[core.HELD, at] = held / dry.stiffness
             damage[core.MARK, at], damage[core.MODE, at] = mark, mode
         core_model.set_damage(damage)
-        core_model.loads(np.zeros_like(model.constant), model.constant)
+        try:
+            core_model.loads(np.zeros_like(model.constant), model.constant)
+        except CoreError as error:
+            if error.status != status_code("not_positive_definite") or not len(fresh):
+                raise
+            # All that slide at once drift off: the worst of those that began alone; if that drifts too, it sticks
+            mode[fresh[1:] if len(fresh) > 1 else fresh] = STICKS
+            can_slide[fresh] &= len(fresh) > 1
+            fresh = fresh[:1] if len(fresh) > 1 else fresh[:0]
+            continue
         report = core_model.report(1.0)
         stress = report["stress_n"][at] / np.where(touching, 1.0, core_model.behaviour.floor)
         noise = TOUCH * float(np.abs(stress[touching]).max(initial=0.0))
@@ -102,15 +109,13 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
             beyond = np.where(begins, np.abs(tau) / (strength + dry.small), 0.0)
             begins &= beyond >= WORST * beyond.max()
             back = touching & ~stuck & (sense * (slip - mark) < 0.0)
-            follows = touching & ~stuck & ~back & (np.abs(np.abs(held) - strength) > FOLLOWS * strength + dry.small)
-            if not (wrong | begins | back | follows).any():
+            if not (wrong | begins | back).any():
                 core_model.end_stage(1.0)
                 return True
-            mark = np.where(begins, slip, np.where(back, mark - held / dry.stiffness, mark))
+            fresh = np.flatnonzero(begins)[np.argsort(-beyond[begins])]
+            mark = np.where(begins, slip, np.where(back, slip - tau / dry.stiffness, mark))
             mode = np.where(begins, np.where(tau > 0.0, SLIDES_UP, SLIDES_DOWN), np.where(back, STICKS, mode))
-            held = np.where(begins, np.sign(tau) * strength, np.where(back, 0.0, held))
-            held = np.where(follows, sense * np.maximum(strength, 0.0), held)
-            mode, held = np.where(wrong, STICKS, mode), np.where(wrong, 0.0, held)
+            mode = np.where(wrong, STICKS, mode)
             mark = np.where(wrong, np.where(touching, mark, slip), mark)
         state = touching.tobytes()
         single |= wrong.any() and state in seen

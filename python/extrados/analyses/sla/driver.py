@@ -3,6 +3,8 @@
 from dataclasses import replace
 from typing import Any
 
+import numpy as np
+
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Context
 from extrados.analyses.sla.events import Curve, run_curves
@@ -20,11 +22,21 @@ from extrados.results import sla as out
 from extrados.results.model import Result
 from extrados.results.sla import PREFIXES
 
+#: States that an animation shows
+FILM = 80
+
 
 def run(context: Context, options: Sla) -> Result:
     """All curves: both senses of the load, and the repetitions with other seeds."""
+    if options.animation != "none" and options.solution != "incremental" and not options.states:
+        options = options.model_copy(update={"states": _film_events(options.events)})
     with interruptible():  # Ctrl-C between two batches too only ends the events: what was found is kept
         return _run(context, options)
+
+
+def _film_events(events: int) -> list[int]:
+    """Events whose states an animation shows: each at first, ever fewer later, as cracks grow."""
+    return np.unique(np.geomspace(1.0, max(events, 1), FILM).astype(int)).tolist()
 
 
 def _run(context: Context, options: Sla) -> Result:

@@ -305,7 +305,7 @@ def run_reference_loads(
             if load.max() > way.best:
                 way.best, way.before_best = float(load.max()), start
         done += len(part)
-        if done and done - 1 in wanted:
+        if len(part) and done - 1 in wanted:
             way.states.append(_state(core_model, done - 1, part))
         load = (part.pull if model.driven else model.already + part.load * model.unit)[-1:]
         progress(done, options.events, f"event {done}, load {load[0]:.4g} N" if len(part) else "")

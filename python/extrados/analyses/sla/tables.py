@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
-from extrados.analyses.table import BuildingAnalysis
+from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.places import Placed, Range
 from extrados.building.properties import NO_SLIDING
@@ -134,7 +134,7 @@ class Stage(Table):
         return any(load.kind == "displacement" for load in self.reference)
 
 
-class Sla(BuildingAnalysis):
+class Sla(BuildingAnalysis, Animated):
     """Sequentially linear analysis: cracks event by event under constant loads A and growing loads lambda B."""
 
     kind: Literal["sla"]
@@ -201,7 +201,7 @@ class Sla(BuildingAnalysis):
     )
     friction_ripple: float = key(
         0.02,
-        "half-width of the steps by which friction follows the normal stress of joints, over the friction",
+        "a quarter of the slip back after which a joint that slides sticks, over the elastic slip of its friction",
         ge=0.001,
         le=0.1,
     )

@@ -166,6 +166,7 @@ class Resonance(RockingTable):
     """The motion under a cap that feeds most energy to a block, and the least cap that can overturn it."""
 
     kind: Literal["resonance"]
+    bears: ClassVar = ()
     cap: Acceleration | None = key(
         None, "cap of the ground acceleration; default 0.6 of uplift", gt=0, source="thesis Eq. 6.5"
     )
@@ -179,6 +180,7 @@ class RockingSpectrum(RockingTable):
     """Rocking spectra of a motion: greatest rotation of blocks over 2 pi/p and alpha, or of the deck's arch in all sizes."""
 
     kind: Literal["rocking-spectrum"]
+    bears: ClassVar = ()
     view: ClassVar = ""
     needs_motion: ClassVar = True
     periods: list[Time] | None = key(

@@ -50,6 +50,17 @@ def crossings(outline: np.ndarray, y: float) -> np.ndarray:
     return np.sort(x0[met] + (y - y0[met]) / (y1[met] - y0[met]) * (x1[met] - x0[met]))
 
 
+def reach(outline: np.ndarray, levels: np.ndarray) -> np.ndarray:
+    """Least and greatest x (k, 2) where the horizontal lines at some levels meet the outline; infinite, the greater first,
+    where they do not."""
+    x0, y0 = outline.T
+    x1, y1 = following(x0), following(y0)
+    level = levels[:, None]
+    met = (np.minimum(y0, y1) <= level) & (level < np.maximum(y0, y1))
+    x = x0 + (level - y0) / np.where(y1 == y0, 1.0, y1 - y0) * (x1 - x0)
+    return np.column_stack([np.where(met, x, np.inf).min(axis=1), np.where(met, x, -np.inf).max(axis=1)])
+
+
 def below(outline: np.ndarray, levels: np.ndarray) -> np.ndarray:
     """Area and its first moments, integrals of x and of y (k, 3), of what lies below each level.
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +21,9 @@ from extrados.limit.loads import tilt_loads
 from extrados.limit.programme import LimitAnalysis, Mechanism, State
 from extrados.limit.solver import Immovable, NoEquilibrium
 from extrados.schema.constants import GRAVITY
+
+if TYPE_CHECKING:
+    from extrados.building.rockers.restraints import Restraints
 
 SIDES = (1, -1)
 WORD = {1: "+x", -1: "-x"}
@@ -280,12 +284,13 @@ class MechanismModel:
 
     def hinge_forces(
         self, rotation: npt.ArrayLike, rate: npt.ArrayLike, acceleration: npt.ArrayLike, horizontal: npt.ArrayLike,
-        vertical: npt.ArrayLike,
+        vertical: npt.ArrayLike, held: "tuple[Restraints, np.ndarray] | None" = None,
     ) -> HingeForces:  # fmt: skip
         """Forces at the hinges while it rocks, by the equations of motion of the parts (Newton and Euler).
 
         rotation [rad], its rate and acceleration are signed, positive to +x; horizontal, vertical: acceleration of
-        the ground [m/s^2]. All (states). The forces inside the parts are statically indeterminate.
+        the ground [m/s^2]. All (states). held: what holds it, with its forces (members, states) [N, N m]. The forces inside
+        the parts are statically indeterminate.
         """
         a = self.assembly
         given = [
@@ -304,6 +309,8 @@ class MechanismModel:
             needed[..., 0] += ground[:, None]
             needed[..., 1] += (up + GRAVITY)[:, None]
             load = needed * np.stack([one.mass, one.mass, one.inertia], axis=1)
+            if held is not None and held[0].members:
+                load = load - held[0].wrenches(0 if side > 0 else 1, place, held[1][:, here])
             matrix = np.zeros((len(q), len(one.mass), 3, len(one.joint), 2))
             for h, pair in enumerate(one.joined):
                 for k, sign in zip(pair, (1.0, -1.0), strict=True):

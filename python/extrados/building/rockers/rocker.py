@@ -9,9 +9,12 @@ from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.block import BlockModel, block_model
+from extrados.building.rockers.frame import FrameModel
 from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.rockers.restraints import Restraints, block_linkages, block_reach, members_of, three_impacts
 from extrados.building.templates.arch import ArchAssembly
-from extrados.core.rocking import Body
+from extrados.building.templates.frame import FrameAssembly
+from extrados.core.rocking import Body, limits
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -24,7 +27,7 @@ class Rocker:
 
     what: its kind; word: what answers call it; model: what it was made from. uplift: horizontal acceleration at which it starts to rock [g]; critical: rotation
     of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
-    arch [m]; start_rotation [rad], > 0 to +x.
+    arch [m]; start_rotation [rad], > 0 to +x. restraints: what holds it besides its weight, None where nothing does.
     """
 
     what: str
@@ -38,13 +41,20 @@ class Rocker:
     length: float
     start_rotation: float = 0.0
     warnings: tuple[str, ...] = ()
+    restraints: Restraints | None = None
 
     def __repr__(self) -> str:
         return f"<Rocker: {self.what}, rocks from {self.uplift:.4g} g>"
 
+    def held(self, body: Body) -> Body:
+        """Another body of the same structure, of other impacts, with what holds this one."""
+        return body if self.restraints is None else self.restraints.hold(body)
+
     def rebounding(self, factor: float) -> "Rocker":
         """The same with c_v times a factor, as long as an impact creates no energy."""
-        return replace(self, body=self.model.rebounding(factor), restitution=min(1.0, factor * self.restitution))
+        return replace(
+            self, body=self.held(self.model.rebounding(factor)), restitution=min(1.0, factor * self.restitution)
+        )
 
     @property
     def scale(self) -> float:
@@ -62,31 +72,79 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
     structure, ratio = building.structure, building.initial.rotation_ratio
     if structure is None:
         raise NoView("the deck has no [structure]")
+    if structure.rocks_as == "stack":
+        raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow")
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
     if structure.rocks_as == "block" or (piers is not None and len(piers.mass) == 1):
         block = block_model(building, linear, stones)
         alpha = block.alpha
-        return Rocker(
+        made = Rocker(
             structure.kind, structure.word, block, block.body, float(block.uplift.min()), (float(alpha[0]), float(alpha[1])),
             float(block.restitution[0]), float(1.0 / block.frequency[0]), float(block.block.radius[0]),
             ratio * float(alpha[0 if ratio >= 0.0 else 1]), tuple(block.warnings),
         )  # fmt: skip
-    made = stones or (building.blocks() if piers is None else piers)
+        return _restrained(made, building)
+    given, stones = stones is not None, stones or (building.blocks() if piers is None else piers)
     if linear:
         raise NoView('form = "linear" is known of blocks and columns only')
-    if stones is None and isinstance(made, ArchAssembly):
-        arch = ArchModel(made, building.joints.restitution)
+    if not given and isinstance(stones, ArchAssembly) and not _is_restrained(building):
+        arch = ArchModel(stones, building.joints.restitution)
         limits = arch.limits
         # V' falls from its value at rest to zero at the critical rotation, as m g R (alpha - q) does for a block
         unit = float(np.sqrt(limits.mass * limits.critical / limits.gravity_moment))
         return Rocker(
             "arch", structure.word, arch, arch.body, arch.collapse[0].gamma, (limits.critical, limits.critical), arch.restitution, unit,
-            made.radius, ratio * limits.critical, tuple(arch.warnings),
+            stones.radius, ratio * limits.critical, tuple(arch.warnings),
         )  # fmt: skip
     rule = building.joints.restitution
-    model = MechanismModel(made, "energy-safe" if rule == "thesis" else rule)
+    known = FrameModel if isinstance(stones, FrameAssembly) else MechanismModel
+    model = known(stones, "energy-safe" if rule == "thesis" else rule)  # type: ignore[arg-type]
     critical = model.critical
-    return Rocker(
+    made = Rocker(
         structure.kind, structure.word, model, model.body, min(model.uplift), critical, model.restitution[0],
         model.time_unit, model.length, ratio * critical[0 if ratio >= 0.0 else 1], tuple(model.warnings),
+    )  # fmt: skip
+    return _restrained(made, building)
+
+
+def _is_restrained(building: "Building") -> bool:
+    return bool(building.restraints) or building.supports.abutting_wall is not None
+
+
+def _restrained(free: Rocker, building: "Building") -> Rocker:
+    """The rocker with the ties, dampers, added hinges and the wall of its building."""
+    if not _is_restrained(building):
+        return free
+    model = free.model
+    assert not isinstance(model, ArchModel) and building.structure is not None
+    wall = building.supports.abutting_wall
+    sides = (wall != "right", wall != "left")
+    rebound = (0.0, 0.0)
+    if isinstance(model, BlockModel):
+        stones = building.pier_blocks() if building.structure.rocks_as == "piers" else building.blocks()
+        linkages, reach = block_linkages(model, stones), block_reach(model)
+        drive = model.block.mass[0] * model.block.radius * (1.0 if model.linear else np.cos(model.alpha))
+        weight = GRAVITY * drive * model.uplift
+        if wall is not None:
+            rebound = (three_impacts(model, 0), three_impacts(model, 1))
+    else:
+        linkages, stones = model.linkages, model.assembly
+        right, left = (table.numbers[2:4] for table in model.tables)
+        reach = (float(right[0]), float(right[1])), (float(left[0]), float(left[1]))
+        weight = np.array([t.gravity_moment for t in model.tables])
+        drive = np.array([t.drive for t in model.tables])
+        if wall is not None and building.supports.rebound is None:
+            raise NoView("what throws it back from a wall is known of blocks only: give [supports] rebound")
+    if building.supports.rebound is not None:
+        rebound = (building.supports.rebound, building.supports.rebound)
+    held = Restraints(members_of(building, stones, linkages), linkages, reach, sides, rebound)
+    uplift = (weight + held.moment_at_rest) / (GRAVITY * drive)
+    body = held.hold(free.body)
+    critical, _ = limits(body)
+    ratio = building.initial.rotation_ratio
+    if ratio and not sides[0 if ratio > 0.0 else 1]:
+        raise NoView(f"it cannot start turned to the {wall}, where the wall stands")
+    return replace(
+        free, body=body, restraints=held, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
+        uplift=float(uplift[list(sides)].min()),
     )  # fmt: skip

@@ -7,10 +7,11 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
+from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.mass import together
 from extrados.building.structure import RocksAs, Structure
-from extrados.schema.quantities import Inertia, Length, Mass
+from extrados.schema.quantities import Angle, Inertia, Length, Mass
 from extrados.schema.table import key
 
 _BODY = ("mass", "inertia", "centre_height", "toe_right", "toe_left")
@@ -21,12 +22,14 @@ SIZES = {"width", "height", "depth", *_BODY}
 class BlockAssembly(Assembly):
     """One block on the ground; the origin lies on the ground below its centre of mass, x to the right, y up.
 
-    centre_height, toe_right, toe_left [m]: height of the centre of mass and its distances from the toes.
+    centre_height, toe_right, toe_left [m]: height of the centre of mass and its distances from the toes, on a base that
+    slopes up to the right by `slope` [rad], about the origin.
     """
 
     centre_height: float
     toe_right: float
     toe_left: float
+    slope: float = 0.0
 
     @property
     def toes(self) -> np.ndarray:
@@ -41,7 +44,7 @@ class BlockAssembly(Assembly):
     @property
     def alpha(self) -> np.ndarray:
         """theta_cr, rocking to +x and to -x [rad]."""
-        return np.arctan2(self.toes, self.centre_height)
+        return np.arctan2(self.toes, self.centre_height) + self.slope * np.array([1.0, -1.0])
 
     @property
     def toe_inertia(self) -> np.ndarray:
@@ -78,26 +81,39 @@ def make_block(
     centre_height: float | None = None,
     toe_right: float | None = None,
     toe_left: float | None = None,
+    head_mass: float = 0.0,
+    slope: float = 0.0,
 ) -> BlockAssembly:
     """A rectangle by width and height [m] and density [kg/m^3], or a body by mass [kg], inertia [kg m^2], height
-    of its centre and distances of its toes [m], drawn as a rectangle on its toes of twice that height."""
+    of its centre and distances of its toes [m], drawn as a rectangle on its toes of twice that height. head_mass [kg] moves with
+    the middle of the head of a rectangle and turns freely on it; the base slopes up to the right by `slope` [rad]."""
+    top = height
     if width is not None and height is not None:
         mass = density * width * height * depth
         inertia = mass * (width**2 + height**2) / 12.0
         centre_height, toe_right, toe_left = 0.5 * height, 0.5 * width, 0.5 * width
+        inertia += head_mass * mass / (mass + head_mass) * (0.5 * height) ** 2
+        centre_height = (mass * centre_height + head_mass * height) / (mass + head_mass)
+        mass += head_mass
     toe_left = toe_right if toe_left is None else toe_left
     if mass is None or inertia is None or centre_height is None or toe_right is None or toe_left is None:
         raise ValueError("a block is given by width and height, or by mass, inertia, centre_height and toe_right")
     if not min(mass, inertia, centre_height, toe_right, toe_left) > 0.0:
         raise ValueError("mass, inertia, height of the centre and toes of a block must be above zero")
-    top = 2.0 * centre_height
+    top = 2.0 * centre_height if top is None else top
+    c, s = np.cos(slope), np.sin(slope)
+    turn = np.array([[c, s], [-s, c]])
+    if not min(np.arctan2([toe_right, toe_left], centre_height) + slope * np.array([1.0, -1.0])) > 0.0:
+        raise BadGeometry(
+            f"structure: on a base that slopes by {np.degrees(slope):.4g} degrees the block falls over by itself"
+        )
     return BlockAssembly(
-        outlines=[np.array([[-toe_left, 0.0], [toe_right, 0.0], [toe_right, top], [-toe_left, top]])],
+        outlines=[np.array([[-toe_left, 0.0], [toe_right, 0.0], [toe_right, top], [-toe_left, top]]) @ turn],
         mass=np.array([float(mass)]),
-        centroid=np.array([[0.0, centre_height]]),
+        centroid=np.array([[0.0, centre_height]]) @ turn,
         inertia=np.array([float(inertia)]),
-        p=np.array([[-toe_left, 0.0]]),
-        q=np.array([[toe_right, 0.0]]),
+        p=np.array([[-toe_left, 0.0]]) @ turn,
+        q=np.array([[toe_right, 0.0]]) @ turn,
         a=np.array([0]),
         b=np.array([GROUND]),
         depth=depth,
@@ -107,6 +123,7 @@ def make_block(
         centre_height=float(centre_height),
         toe_right=float(toe_right),
         toe_left=float(toe_left),
+        slope=float(slope),
     )
 
 
@@ -125,6 +142,12 @@ class Block(Structure):
     centre_height: Length | None = key(None, "height of its centre of mass above the toes", gt=0)
     toe_right: Length | None = key(None, "horizontal distance of the right toe from the centre of mass", gt=0)
     toe_left: Length | None = key(None, "the same of the left toe; default as the right one", gt=0)
+    head_mass: Mass = key(
+        0.0,
+        "of a pier with a free head: mass that moves with the middle of its head and turns freely on it; of a rectangle",
+        ge=0,
+    )
+    base_slope: Angle = key(0.0, "slope of the ground that it stands on, up to the right", gt=-60, lt=60)
 
     @model_validator(mode="after")
     def _complete(self) -> "Block":
@@ -138,7 +161,14 @@ class Block(Structure):
                 raise ValueError("a rectangle needs width and height")
         elif missing := [name for name in _BODY[:-1] if getattr(self, name) is None]:
             raise ValueError(f"give width and height, or {', '.join(_BODY[:-1])} ({', '.join(missing)} missing)")
+        if self.head_mass and self.width is None:
+            raise ValueError("head_mass is of a rectangle of width and height; of another body count it in its mass")
         return self
 
     def assembly(self, density: float, folder: Path) -> BlockAssembly:
-        return make_block(density=density, **self.model_dump(include=SIZES))
+        return make_block(
+            density=density,
+            head_mass=self.head_mass,
+            slope=float(np.radians(self.base_slope)),
+            **self.model_dump(include=SIZES),
+        )

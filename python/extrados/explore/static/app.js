@@ -151,7 +151,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       app.turned();
       drawing.show(app.scene, arrays, app.handles, words.opened === true);
       if (["drag", "set"].includes(words.to)) dirty = true;
-      tell("scene", words.opened === true, entry?.message);
+      tell("scene", words.opened === true, entry?.when);
       if (!["open", "hello"].includes(words.to)) say("");
       rest();
     }
@@ -161,15 +161,15 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     entry?.reply?.(words, arrays);
     if (entry) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
-      if (words.scene && entry.when && ["drag", "show", "set"].includes(entry.message.do)) painted(entry);
-      if (words.rocking && entry.message.measured) painted({ ...entry, when: entry.message.measured });
+      if (words.scene && entry.when && ["drag", "show", "set"].includes(entry.message.do)) painted(entry, words.ms);
+      if (words.rocking || words.domain?.stride > 1) painted(entry, words.ms);
     }
   };
   /** From the event to the picture that the next frame has put on the screen. */
-  function painted(entry) {
+  function painted(entry, server) {
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
-      channel.port1.onmessage = () => { app.timings.push({ do: entry.message.do, ms: performance.now() - entry.when }); if (app.timings.length > 5000) app.timings.shift(); };
+      channel.port1.onmessage = () => { app.timings.push({ do: entry.message.do, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); };
       channel.port2.postMessage(0);
     });
   }
@@ -351,6 +351,13 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     }
     return out;
   }
+  /** The mechanism at a share of its way, for films; null where there is none. */
+  app.mechanismAt = (share) => {
+    const way = app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus";
+    if (!app.arrays[`${way}_velocity`]) return false;
+    if (share !== undefined) drawing.pose(share === null ? null : between(way, share));
+    return true;
+  };
   app.stopMechanism = () => { if (swing) mechanism(true); };
   app.mechanismShown = () => swing !== null;
   stageBox.addEventListener("pointerdown", (e) => {

@@ -97,6 +97,7 @@ export function chart(box, options = {}) {
       if (row.lower) range(get(row.lower), row.factor ?? 1, ys);
     }
     if (spec.heat) { range(get(spec.heat.x), fx, xs); range(get(spec.heat.y), 1, ys); xs[0] = 0; ys[0] = 0; }
+    if (rows.some((r) => r.sort === "points" || r.sort === "bars") && !spec.heat) { const room = 0.03 * (xs[1] - xs[0]); xs[0] -= room; xs[1] += room; }
     if (spec.span) { xs[0] = spec.span[0]; xs[1] = spec.span[1]; }
     if (spec.least !== undefined) ys[0] = Math.min(ys[0], spec.least);
     if (spec.most !== undefined) ys[1] = Math.max(ys[1], spec.most);
@@ -131,7 +132,7 @@ export function chart(box, options = {}) {
     options.ondraw?.(it);
   }
   const get = (name) => (typeof name === "string" ? arrays[name] : name);
-  const colour = (row, rows) => row.colour ?? rows.filter((r) => !r.faint && !r.colour).indexOf(row) % 6;
+  const colour = (row, rows) => row.colour ?? (row.faint ? 5 : null) ?? rows.filter((r) => !r.faint && !r.colour).indexOf(row) % 6;
   function words(spec) {
     const ys = spec.series.filter((r) => get(r.array)?.length).map((r) => {
       const [low, high] = range(get(r.array), r.factor ?? 1);

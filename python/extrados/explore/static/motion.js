@@ -51,19 +51,19 @@ export function motionPanel(app, lower, frame) {
     frame.classList.toggle("with-player", there);
     if (there) { refresh(); requestAnimationFrame(draw); } else { pause(); app.drawing.pose(null); }
   });
-  app.on("scene", (opened, message) => {
+  app.on("scene", (opened, when) => {
     if (opened) { it.earlier = []; it.arrays = it.words = it.map = null; impulse.textContent = ""; }
     const motion = app.deck?.motion;
     kinds.value = motion ? ([...kinds.options].some((o) => o.value === motion.kind) ? motion.kind : "") : "";
-    if (app.tab === "motion") refresh(message);
+    if (app.tab === "motion") refresh(when);
   });
   app.on("theme", () => draw());
   app.on("complaint", (told, message) => { if (app.tab === "motion" && ["rocking", "domain"].includes(message?.do)) { words.textContent = (told.complaints ?? [told.bad]).join(" "); it.arrays = null; draw(); } });
 
   let slow = null;
-  function refresh(message) {
+  function refresh(when) {
     if (!app.scene || app.scene.empty) { words.textContent = app.scene?.empty ?? ""; return; }
-    if (app.deck?.motion) ask({ do: "rocking", lane: "rocking", measured: message?.began ?? performance.now() });
+    if (app.deck?.motion) app.ask({ do: "rocking", lane: "rocking" }, { when: when ?? performance.now() });
     else { words.textContent = "There is no motion yet: choose one below, or drop a record on the page."; charts.pulse.draw(blank("Motion"), {}); }
     clearTimeout(slow);
     slow = setTimeout(() => {
@@ -71,7 +71,6 @@ export function motionPanel(app, lower, frame) {
       if (app.deck?.motion?.kind === "record") app.ask({ do: "impulse", lane: "impulse" });
     }, 60);
   }
-  const ask = (message) => app.ask(message);
   const blank = (title) => ({ title, x: { label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [], span: [0, 1] });
   function begin(kind) {
     const g = app.scene?.capacity ? Math.max(1.6 * app.scene.capacity.plus_g, 0.02) : 0.3;
@@ -99,7 +98,7 @@ export function motionPanel(app, lower, frame) {
     const { arrays, words: told } = it;
     if (!arrays) { for (const key of ["history", "energy", "friction"]) charts[key].draw({ ...blank({ history: "Rotation", energy: "Energy", friction: "Friction along the joints" }[key]), y: { label: "", unit: "" } }, {}); }
     else {
-      charts.pulse.draw({ title: "Ground acceleration", x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: 0 }, arrays);
+      charts.pulse.draw({ title: "Ground acceleration", x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: 0, most: 1.22 * arrays.motion.reduce((m, v) => Math.max(m, v), 0) }, arrays);
       const critical = 1e3 * told.critical_rad[0], most = 1e3 * Math.abs(told.peak_rotation_rad);
       const flat = (v) => ({ x: Float32Array.of(0, arrays.time.at(-1) || 1), y: Float32Array.of(v, v) });
       const level = flat(critical), under = flat(-1e3 * told.critical_rad[1]);
@@ -238,7 +237,7 @@ export function motionPanel(app, lower, frame) {
       const n = it.arrays.friction.shape[1], k = it.frame ?? 0;
       const now = it.arrays.friction.subarray(k * n, (k + 1) * n), joint = Float32Array.from({ length: n }, (_, j) => j), most = new Float32Array(n);
       for (let i = 0; i < it.arrays.friction.length; i += 1) { const v = it.arrays.friction[i]; if (Number.isFinite(v) && v > most[i % n]) most[i % n] = Math.min(v, 2); }
-      charts.friction.draw({ title: `Friction needed along the joints at ${it.time.toFixed(2)} s`, x: { array: "joint", label: "joint", unit: "" }, y: { label: "coefficient", unit: "" }, series: [{ array: "now", label: "now", sort: n > 60 ? "line" : "both" }, { array: "most", label: "greatest so far", dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
+      charts.friction.draw({ title: `Friction needed at ${it.time.toFixed(2)} s`, x: { array: "joint", label: "joint", unit: "" }, y: { label: "coefficient", unit: "" }, series: [{ array: "now", label: "now", sort: n > 60 ? "line" : "both" }, { array: "most", label: "greatest so far", dashed: true }], least: 0, most: 1 }, { joint, now: now.map((v) => Math.min(v, 2)), most });
     }
   }
   function toggle() { if (it.playing) pause(); else run(); }

@@ -37,9 +37,14 @@ async function picture({ text, w, h: hgt }, canvas, width, height) {
 
 export function outMenu(app) {
   const paper = () => getComputedStyle(app.root).getPropertyValue("--paper").trim();
-  const seen = () => (app.tab === "results" ? app.results.columns[0].svg : app.drawing.svg);
+  const shown = (svg) => svg.getBoundingClientRect().width > 0;
+  const charts = () => [...app.root.querySelectorAll("svg.chart, svg.polygon, svg.gauge")].filter(shown);
+  const seen = () => (app.tab !== "results" ? app.drawing.svg : shown(app.results.columns[0].svg) ? app.results.columns[0].svg : charts()[0]);
   const stem = () => app.name.replace(/\.toml$/, "") || "extrados";
   const svg = () => download(new Blob([alone(seen(), paper()).text], { type: "image/svg+xml" }), `${stem()}.svg`);
+  function all() {
+    charts().forEach((chart, k) => download(new Blob([alone(chart, paper()).text], { type: "image/svg+xml" }), `${stem()}-chart-${k + 1}.svg`));
+  }
   async function png() {
     const canvas = document.createElement("canvas"), drawn = alone(seen(), paper());
     await picture(drawn, canvas, Math.round(2 * drawn.w), Math.round(2 * drawn.h));
@@ -48,7 +53,7 @@ export function outMenu(app) {
   /** Every picture of what moves, drawn in turn at 1280 x 720 and sent to be filmed. */
   async function film(kind, slow) {
     const moves = movement();
-    if (!moves) { app.say("Nothing moves here: open Motion, or a stored run that moves, first.", true); return; }
+    if (!moves) { app.say("Nothing moves here: a mechanism, a motion or a stored run that moves can be filmed.", true); return; }
     const rate = kind === "gif" ? 15 : 30, length = Math.min(moves.real ? (moves.end - moves.start) / slow : 6, 40);
     const count = Math.max(2, Math.round(length * rate)), canvas = document.createElement("canvas"), parts = [new TextEncoder().encode(kind), Uint8Array.of(rate)];
     if (count > 1200) { app.say("That film would be too long.", true); return; }
@@ -75,13 +80,17 @@ export function outMenu(app) {
       const a = app.motion.arrays;
       return { start: 0, end: app.motion.end, real: true, seek: app.motion.seek, label: () => `${app.motion.time.toFixed(2)} s` };
     }
+    if (app.tab === "structure" && app.mechanismAt()) {
+      app.stopMechanism();
+      return { start: 0, end: 1, real: false, seek: (t) => app.mechanismAt(t < 1 ? Math.sin(Math.PI * t) ** 2 : null), label: () => "mechanism" };
+    }
     const column = app.results.columns[0], times = column.arrays.body_time;
     if (app.tab === "results" && times?.length > 1) return { start: times[0], end: times[times.length - 1], real: column.words.body.unit === "s", seek: (t) => column.seek(t, false), label: () => `${column.words.body.label} ${column.time.toPrecision(3)} ${column.words.body.unit}` };
     return null;
   }
   const menu = h("div", { class: "menu", hidden: true, role: "menu" });
   const entry = (label, act) => h("button", { role: "menuitem", onclick: () => { menu.hidden = true; button.setAttribute("aria-expanded", "false"); Promise.resolve(act()).catch((error) => app.say(String(error), true)); } }, label);
-  menu.append(entry("Picture, PNG", png), entry("Drawing, SVG", svg), ...(app.embedded ? [] : [entry("Film, MP4, real time", () => film("mp4", 1)), entry("Film, MP4, a fifth of the speed", () => film("mp4", 0.2)), entry("Film, GIF, real time", () => film("gif", 1)), entry("Film, GIF, a fifth of the speed", () => film("gif", 0.2))]));
+  menu.append(entry("Picture, PNG", png), entry("Drawing, SVG", svg), entry("Charts, SVG", all), ...(app.embedded ? [] : [entry("Film, MP4, real time", () => film("mp4", 1)), entry("Film, MP4, a fifth of the speed", () => film("mp4", 0.2)), entry("Film, GIF, real time", () => film("gif", 1)), entry("Film, GIF, a fifth of the speed", () => film("gif", 0.2))]));
   const button = h("button", { class: "out", "aria-haspopup": "menu", "aria-expanded": "false", onclick: () => { menu.hidden = !menu.hidden; button.setAttribute("aria-expanded", String(!menu.hidden)); if (!menu.hidden) menu.querySelector("button").focus(); } }, "Export");
   const box = h("div", { class: "menu-box", onkeydown: (e) => { if (e.key === "Escape") { menu.hidden = true; button.focus(); } } }, button, menu);
   app.root.addEventListener("pointerdown", (e) => { if (!e.composedPath().includes(box)) menu.hidden = true; });

@@ -104,7 +104,7 @@ export function resultsPanel(app, wide) {
       const times = arrays.body_time;
       figure.hidden = !words.body; player.hidden = !words.body || !times || times.length < 2;
       scale.hidden = words.body?.sort !== "mesh";
-      if (times) { set(slider, { min: times[0], max: times[times.length - 1] }); it.time = words.body?.swings ? times[times.length - 1] : times[0]; }
+      if (times) { set(slider, { min: times[0], max: times[times.length - 1] }); it.time = times[0]; }
       if (words.body?.sort === "mesh") { scale.value = 100; it.time = times[times.length - 1]; }
       redraw();
     }
@@ -162,7 +162,7 @@ export function resultsPanel(app, wide) {
         world.append(s("path", { class: "ghost", d: stonesPath(a.outline, a.outline_start) }), s("path", { class: "stones", d: stonesPath(a.outline, a.outline_start, a.centroid, a.body_pose, off) }));
         if (a.body_line) { const n = a.body_line.shape[1], line = a.body_line.subarray(2 * n * it.k, 2 * n * (it.k + 1)); world.append(s("path", { class: "thrust dynamic", d: piecesPath(line, [0, n]) })); }
       } else world.append(s("path", { class: "stones", d: stonesPath(a.outline, a.outline_start) }));
-      const still = !a.body_pose || body.swings;
+      const still = !a.body_pose || (body.swings && it.k === 0);
       if (still) for (const l of body.lines ?? []) world.append(s("path", { class: `thrust ${l.name === "collapse" ? "plus" : l.name}`, d: piecesPath(a[`${l.name}_line`], a[`${l.name}_start`]) }));
     }
     function mesh(world, a) {

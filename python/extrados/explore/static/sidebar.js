@@ -43,6 +43,7 @@ export function sidebar(app, box) {
     if (scene.through) rows.push(row("Through the point", quantity(scene.through.thrust_N, "N")));
     if (app.detail && "safety" in app.detail) rows.push(row("Geometric safety", app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), "one over the least part of the joints that holds a thrust line upright"));
     if (scene.required_friction !== undefined) rows.push(row("Friction needed", number(scene.required_friction, 3), "coefficient of friction needed at collapse to +x"));
+    for (const tie of scene.ties ?? []) rows.push(row(`${tie.name}, at collapse`, quantity(tie.force_N, "N"), "tension of the tie at collapse to +x"));
     rows.push(row("Weight", `${quantity(scene.weight_N, "N")} for ${number(scene.depth_m, 3)} m of depth`));
     rows.push(row("Stones, joints", `${scene.blocks}, ${scene.joints}`));
     for (const [key, value] of Object.entries(scene.measures ?? {})) rows.push(row(key.replace(/_m$/, "").replaceAll("_", " "), quantity(value, key.endsWith("_m") ? "m" : "")));

@@ -44,12 +44,12 @@ export function stage(box, hands) {
   const svg = s("svg", { class: "stage", role: "group", "aria-label": "Drawing of the structure" });
   const world = s("g"), screen = s("g"), overlay = s("g");
   const ground = s("path", { class: "ground" }), earth = s("path", { class: "earth" });
-  const stones = s("path", { class: "stones" }), ghost = s("path", { class: "ghost" });
+  const ties = s("path", { class: "tie" }), stones = s("path", { class: "stones" }), ghost = s("path", { class: "ghost" });
   const joints = s("path", { class: "joints" }), supports = s("path", { class: "supports" });
   const lines = Object.fromEntries(LINES.map(([name]) => [name, s("path", { class: `thrust ${name}` })]));
   const dynamic = s("path", { class: "thrust dynamic" });
   const marks = s("g", { class: "marks" }), loads = s("g"), knobs = s("g", { class: "knobs" }), ruler = s("g", { class: "ruler" });
-  world.append(earth, supports, ghost, stones, joints, ...Object.values(lines), dynamic);
+  world.append(earth, supports, ghost, stones, joints, ties, ...Object.values(lines), dynamic);
   svg.append(ground, world, screen, overlay);
   screen.append(ruler, loads, marks, knobs);
   box.append(svg);
@@ -120,7 +120,7 @@ export function stage(box, hands) {
   }
   function clear() {
     it.bounds = null; shownPose = null;
-    for (const part of [stones, ghost, joints, supports, earth, dynamic, ground, ...Object.values(lines)]) set(part, { d: "" });
+    for (const part of [stones, ties, ghost, joints, supports, earth, dynamic, ground, ...Object.values(lines)]) set(part, { d: "" });
     marks.replaceChildren(); loads.replaceChildren(); ruler.replaceChildren();
     for (const element of knob.values()) element.remove();
     knob.clear();
@@ -138,6 +138,9 @@ export function stage(box, hands) {
     if (layers.joints !== false && !shownPose) for (let j = 0; j < arrays.joint_p.length; j += 2) d += `M${f(arrays.joint_p[j])} ${f(arrays.joint_p[j + 1])}L${f(arrays.joint_q[j])} ${f(arrays.joint_q[j + 1])}`;
     set(joints, { d });
     set(earth, { d: arrays.earth ? `M${Array.from({ length: arrays.earth.length / 2 }, (_, i) => `${f(arrays.earth[2 * i])} ${f(arrays.earth[2 * i + 1])}`).join("L")}Z` : "" });
+    d = "";
+    if (arrays.ties && !shownPose) for (let i = 0; i < arrays.ties.length; i += 4) d += `M${f(arrays.ties[i])} ${f(arrays.ties[i + 1])}L${f(arrays.ties[i + 2])} ${f(arrays.ties[i + 3])}`;
+    set(ties, { d });
     for (const [name, path] of Object.entries(lines)) {
       const drawn = layers[name] && !shownPose && arrays[`${name}_line`];
       set(path, { d: drawn ? piecesPath(arrays[`${name}_line`], arrays[`${name}_start`]) : "" });

@@ -1,0 +1,109 @@
+"""Two stacked blocks that rock, in the core (fortran/rocking/stack)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from extrados import _core
+from extrados.core.calls import long_call, real, room_for
+from extrados.core.errors import check, status_code
+from extrados.core.ground import Ground, MotionSet
+from extrados.core.rocking import EVENTS, OUTCOMES
+
+
+@dataclass(frozen=True)
+class Stack:
+    """Masses [kg], inertias about the centres [kg m^2] and heights of the centres above the feet [m] of the lower and the
+    upper block; half width of the lower foot, height of the lower block, half width of the contact between them [m]."""
+
+    mass: tuple[float, float]
+    inertia: tuple[float, float]
+    centre: tuple[float, float]
+    half_foot: float
+    height: float
+    half_contact: float
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """The flat list of the core."""
+        rows = [v for pair in zip(self.mass, self.inertia, self.centre, strict=True) for v in pair]
+        return np.array([*rows, self.half_foot, self.height, self.half_contact])
+
+
+@dataclass(frozen=True)
+class StackResponse:
+    """A response: at `time` (points) [s] rotation (points, 2) of the lower and the upper block, positive to +x [rad], their
+    rates, ground and vertical acceleration [m/s^2], kinetic and potential energy and the ledger, work of the ground less
+    loss at impacts [J]; state (points, 2) of the contacts on the ground and between, 0 shut, 1 and -1 open about the right
+    and the left edge; force (points, 2, 2) on the lower block from the ground and on the upper from the lower, x, y [N].
+    events: (kind, time [s], contact), 1 on the ground, 2 between.
+    """
+
+    outcome: str
+    impacts: tuple[int, int]
+    peak: tuple[float, float]
+    stop_time: float
+    steps: int
+    settled: bool
+    time: np.ndarray
+    rotation: np.ndarray
+    rate: np.ndarray
+    ground: np.ndarray
+    vertical: np.ndarray
+    kinetic: np.ndarray
+    potential: np.ndarray
+    ledger: np.ndarray
+    state: np.ndarray
+    force: np.ndarray
+    events: list[tuple[str, float, int]]
+    work: float
+    loss: float
+    interrupted: bool = False
+
+
+def stack_history(
+    stack: Stack, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
+    start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
+) -> StackResponse:  # fmt: skip
+    """Rock the stack under `ground` times `scale` until collapse or `end_time` [s]; start: rotations [rad]
+    of the lower and the upper block, then their rates [rad/s]; output_step [s]; room: most events that are kept."""
+    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
+        raise ValueError("end time, output step and tolerance must be positive, the scale a number")
+    if not 1 <= room <= 10**7:
+        raise ValueError(f"room is {room}, expected 1 to 10,000,000 events")
+    rows = int(_core.api_stack.rows())
+    room_for(rows, int(min(end_time / output_step, 1e12)))
+    times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
+    with MotionSet([ground]) as motions:
+        counts, measures, state, kinds, event, status = long_call(
+            _core.api_stack.history, real("stack", stack.numbers, (9,)), motions.handle, 1,
+            np.array([scale, end_time, tolerance], dtype=float), real("start", start, (4,)), times, rows, int(room),
+        )  # fmt: skip
+    interrupted = status == status_code("cancelled")
+    if not interrupted:
+        check(status, "rocking of two blocks")
+    outcome, low, high, steps, settled, points, events = (int(k) for k in counts)
+    s = state[:, :points].T
+    if not (np.isfinite(s).all() and np.isfinite(measures).all()):
+        check(status_code("not_finite"), "rocking of two blocks")
+    found = min(events, room)
+    first, second, stop, work, loss = (float(x) for x in measures)
+    return StackResponse(
+        OUTCOMES[outcome], (low, high), (first, second), stop, steps, bool(settled), times[:points], s[:, 0:2], s[:, 2:4],
+        s[:, 4], s[:, 5], s[:, 6], s[:, 7], s[:, 8], s[:, 9:11].astype(int), s[:, 11:15].reshape(-1, 2, 2),
+        [(EVENTS[int(k)], float(t), int(c)) for k, (t, c) in zip(kinds[:found], event.T[:found], strict=True)],
+        work, loss, interrupted,
+    )  # fmt: skip
+
+
+def stack_impact(
+    stack: Stack, pivots: npt.ArrayLike, rotation: npt.ArrayLike, rate: npt.ArrayLike, closing: npt.ArrayLike
+) -> tuple[np.ndarray, np.ndarray]:
+    """Pivots and rates after contacts close without rebound; pivots (2): 1, -1, or 0 shut, on the ground and between."""
+    after, rates, status = _core.api_stack.impact(
+        real("stack", stack.numbers, (9,)), np.asarray(pivots, dtype=np.int32), real("rotation", rotation, (2,)),
+        real("rate", rate, (2,)), np.asarray(closing, dtype=np.int32),
+    )  # fmt: skip
+    check(status, "impact of two blocks")
+    return after, rates

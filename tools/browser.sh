@@ -1,0 +1,22 @@
+#!/bin/sh
+# A browser for the tests of the interactive page: chromium by apt where that may be, Playwright into .venv. Without them
+# these tests are skipped and say so; nothing else needs them.
+set -u
+
+.venv/bin/python -c 'import playwright' 2>/dev/null \
+  || .venv/bin/python -m pip install -q --disable-pip-version-check \
+    "$(.venv/bin/python -c 'import tomllib; print(*tomllib.load(open("pyproject.toml", "rb"))["project"]["optional-dependencies"]["browser"])')" \
+    2>/dev/null \
+  || echo "Playwright could not be installed: tests in a browser are skipped" >&2
+for name in chromium chromium-browser google-chrome; do
+  command -v "$name" >/dev/null 2>&1 && exit 0
+done
+if command -v apt-get >/dev/null 2>&1; then
+  become=""
+  [ "$(id -u)" = 0 ] || become="sudo -n"
+  $become apt-get update -qq 2>/dev/null
+  $become env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends chromium fonts-dejavu-core \
+    >/dev/null 2>&1 && exit 0
+fi
+echo "no chromium: tests in a browser are skipped (apt-get install chromium)" >&2
+exit 0
