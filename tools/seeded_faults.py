@@ -124,7 +124,6 @@ def faults_of(path: Path) -> list[Fault]:
 
 def draw(count: int, seed: int) -> list[Fault]:
     """Faults of all rooms and kinds: each room by the root of what it holds, its kinds in turn."""
-    rng = random.Random(seed)
     by_room = {}
     for room in ROOMS:
         files = sorted([*(apart.ROOT / room).glob("*.f90"), *(apart.ROOT / room).glob("*.c")])
@@ -132,6 +131,7 @@ def draw(count: int, seed: int) -> list[Fault]:
     weight = {room: len(there) ** 0.5 for room, there in by_room.items()}
     chosen = []
     for room, there in by_room.items():
+        rng = random.Random(f"{seed} {room}")  # of its own: what changes in a room draws nothing else in the others
         share = max(2, round(count * weight[room] / sum(weight.values())))
         kinds = {kind: [f for f in there if f.kind == kind] for kind in FAULTS}
         for options in kinds.values():

@@ -144,7 +144,7 @@ contains
       pure function body_force(voussoir) result(load)
          integer, intent(in) :: voussoir
          real(wp) :: load(3)
-         real(wp) :: acceleration(2), spin, lever(2), place(2)
+         real(wp) :: acceleration(2), spin, lever(2), across(2), place(2)
          integer :: part
 
          part = link_of(voussoir, joint)
@@ -153,8 +153,9 @@ contains
          spin = 0.0_wp
          if (part > 0) then
             lever = place - state%pivot(:, part)
-            acceleration = a * (state%pivot1(:, part) + state%turn(part) * normal(lever)) &
-               + v**2 * (state%pivot2(:, part) + state%turn2(part) * normal(lever) - state%turn(part)**2 * lever)
+            across = normal(lever)  ! once: of two calls the compiler makes one whose result it allocates unchecked
+            acceleration = a * (state%pivot1(:, part) + state%turn(part) * across) &
+               + v**2 * (state%pivot2(:, part) + state%turn2(part) * across - state%turn(part)**2 * lever)
             spin = a * state%turn(part) + v**2 * state%turn2(part)
          end if
          load(1:2) = -mass(voussoir) * (acceleration + [horizontal, vertical + gravity])

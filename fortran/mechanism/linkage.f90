@@ -10,14 +10,20 @@ module mechanism_linkage
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: linkage, linkage_new, linkage_state, linkage_coefficients, linkage_path, part_place
+   public :: coordinate, copy_state, linkage, linkage_new, linkage_state, linkage_coefficients, linkage_path, &
+      part_place
+
+   !> What q is
+   type :: coordinate
+      integer :: driver = 1              !! the part whose rotation is q
+      real(wp) :: sense = 1.0_wp         !! +1: the driver turns counter-clockwise for q > 0
+      real(wp) :: sign_at_rest = 0.0_wp  !! of the determinant of the equations; 0 until known
+   end type coordinate
 
    type :: linkage
       integer :: parts = 0                     !! moving rigid parts; 0 names the ground
       real(wp) :: size = 1.0_wp                !! scale of lengths [m]
-      integer :: driver = 1                    !! the part whose rotation is q
-      real(wp) :: sense = 1.0_wp               !! +1: the driver turns counter-clockwise for q > 0
-      real(wp) :: sign_at_rest = 0.0_wp        !! of the determinant; 0 until known
+      type(coordinate) :: by                   !! the degree of freedom
       real(wp), allocatable :: mass(:)         !! (parts) [kg]
       real(wp), allocatable :: centroid(:, :)  !! (2, parts) at rest [m]
       real(wp), allocatable :: inertia(:)      !! (parts) about the centroids [kg m^2]
@@ -91,8 +97,7 @@ contains
       if (any(row(2, :) < 1) .or. any(row(2, :) > 2)) return
       if (any(mass <= 0.0_wp) .or. any(inertia < 0.0_wp) .or. abs(abs(sense) - 1.0_wp) > 0.0_wp) return
       built%parts = n
-      built%driver = driver
-      built%sense = sense
+      built%by = coordinate(driver, sense)
       allocate (built%mass(n), built%centroid(2, n), built%inertia(n), built%side(2, size(side, 2)), &
          built%point(2, size(point, 2)), built%row(2, size(row, 2)), &
          rest%place(3, n), rest%first(3, n), rest%second(3, n), stat=stat)
@@ -111,20 +116,40 @@ contains
          - min(minval(centroid(2, :)), minval(point(2, :))))
       rest%place(1:2, :) = centroid
       rest%place(3, :) = 0.0_wp
-      call built%solve(rest, status)
+      call built%solve(built%by, rest, status)
       if (status == status_ok .and. .not. rest%closed) status = status_bad_geometry
-      if (status == status_ok) built%sign_at_rest = rest%determinant
+      if (status == status_ok) built%by%sign_at_rest = rest%determinant
    end subroutine linkage_new
 
+   !> A copy of a state. The assignment of the language would end the process where memory fails.
+   pure subroutine copy_state(from, to, status)
+      type(linkage_state), intent(in) :: from
+      type(linkage_state), intent(inout) :: to  !! empty, or a state of the same linkage
+      integer(c_int), intent(out) :: status     !! status_out_of_memory, else ok
+      integer :: stat
+
+      stat = 0
+      if (.not. allocated(to%second)) allocate (to%place, to%first, to%second, mold=from%place, stat=stat)
+      status = merge(status_ok, status_out_of_memory, stat == 0)
+      if (stat /= 0) return
+      to%q = from%q
+      to%closed = from%closed
+      to%determinant = from%determinant
+      to%place(:, :) = from%place
+      to%first(:, :) = from%first
+      to%second(:, :) = from%second
+   end subroutine copy_state
+
    !> Close the hinges at state%q, starting from the places given, and find the derivatives
-   subroutine solve(chain, state, status)
+   subroutine solve(chain, by, state, status)
       class(linkage), intent(in) :: chain
+      type(coordinate), intent(in) :: by     !! what q is
       type(linkage_state), intent(inout) :: state
       integer(c_int), intent(out) :: status  !! status_out_of_memory, else ok: see state%closed
       real(wp), allocatable :: matrix(:, :), right(:)
       integer, allocatable :: pivot(:)
       real(wp) :: change, misfit, misfit_before
-      integer :: n, iteration, info, stat
+      integer :: n, iteration, info, stat, k
 
       n = 3 * chain%parts
       state%closed = .false.
@@ -134,7 +159,7 @@ contains
       change = huge(change)
       misfit_before = huge(misfit)
       do iteration = 1, most_iterations
-         call equations(chain, state, matrix, right)
+         call equations(chain, by, state, matrix, right)
          misfit = maxval(abs(right))
          if (.not. misfit <= huge(misfit)) return
          call dgetrf(n, n, matrix, n, pivot, info)
@@ -150,43 +175,50 @@ contains
       if (iteration > most_iterations) return
       if (parted(chain, state) > closed_apart) return
       state%determinant = determinant_sign(matrix, pivot)
-      if (chain%sign_at_rest * state%determinant < 0.0_wp) return  ! past the lock, on another branch
+      if (by%sign_at_rest * state%determinant < 0.0_wp) return  ! past the lock, on another branch
 
       right = 0.0_wp
-      right(n) = chain%sense
+      right(n) = by%sense
       call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
-      state%first(:, :) = reshape(right, [3, chain%parts])
-      state%first(1:2, :) = state%first(1:2, :) * chain%size
+      do k = 1, chain%parts
+         state%first(1:2, k) = right(3 * k - 2:3 * k - 1) * chain%size
+         state%first(3, k) = right(3 * k)
+      end do
       call bending(chain, state, right)
       call dgetrs('N', n, 1, matrix, n, pivot, right, n, info)
-      state%second(:, :) = reshape(right, [3, chain%parts])
-      state%second(1:2, :) = state%second(1:2, :) * chain%size
+      do k = 1, chain%parts
+         state%second(1:2, k) = right(3 * k - 2:3 * k - 1) * chain%size
+         state%second(3, k) = right(3 * k)
+      end do
       state%closed = .true.
    end subroutine solve
 
    !> Carry the mechanism from a state to another q; steps that do not close are halved a few times
    subroutine advance(chain, from, q, to, status)
       class(linkage), intent(in) :: chain
-      type(linkage_state), intent(in) :: from  !! closed
-      real(wp), intent(in) :: q                !! [rad]
-      type(linkage_state), intent(out) :: to   !! to%closed is false where q is out of reach
-      integer(c_int), intent(out) :: status
+      type(linkage_state), intent(in) :: from   !! closed
+      real(wp), intent(in) :: q                 !! [rad]
+      type(linkage_state), intent(inout) :: to  !! see copy_state; to%closed is false where q is out of reach
+      integer(c_int), intent(out) :: status     !! status_out_of_memory, else ok
       type(linkage_state) :: here
       real(wp) :: step
       integer :: halvings
 
-      here = from
+      call copy_state(from, here, status)
+      if (status /= status_ok) return
+      call copy_state(from, to, status)
+      if (status /= status_ok) return
       step = q - from%q
       halvings = 0
       do
-         to = here
          to%q = merge(q, here%q + step, halvings == 0 .or. abs(q - here%q) <= abs(step))
-         to%place = here%place + (to%q - here%q) * (here%first + 0.5_wp * (to%q - here%q) * here%second)
-         call chain%solve(to, status)
+         to%place(:, :) = here%place + (to%q - here%q) * (here%first + 0.5_wp * (to%q - here%q) * here%second)
+         call chain%solve(chain%by, to, status)
          if (status /= status_ok) return
          if (to%closed) then
             if (abs(to%q - q) <= 0.0_wp) return
-            here = to
+            call copy_state(to, here, status)
+            if (status /= status_ok) return
          else
             halvings = halvings + 1
             if (halvings > most_halvings) return
@@ -209,15 +241,16 @@ contains
       type(linkage_state) :: here, next
       integer :: k, pieces, piece
 
-      here = rest
       reached = 0
-      status = status_ok
+      call copy_state(rest, here, status)
+      if (status /= status_ok) return
       do k = 1, size(q)
          pieces = max(1, ceiling(abs(q(k) - here%q) / longest))
          do piece = pieces - 1, 0, -1
             call mechanism%advance(here, q(k) - piece * (q(k) - here%q) / (piece + 1), next, status)
             if (status /= status_ok .or. .not. next%closed) return
-            here = next
+            call copy_state(next, here, status)
+            if (status /= status_ok) return
          end do
          place(:, :, k) = here%place
          first(:, :, k) = here%first
@@ -227,8 +260,9 @@ contains
    end subroutine linkage_path
 
    !> The equations, divided by the size of the mechanism, and what is still missing to fulfil them
-   pure subroutine equations(chain, state, matrix, missing)
+   pure subroutine equations(chain, by, state, matrix, missing)
       type(linkage), intent(in) :: chain
+      type(coordinate), intent(in) :: by
       type(linkage_state), intent(in) :: state
       real(wp), intent(out) :: matrix(:, :)  !! by the places over the size, and the rotations
       real(wp), intent(out) :: missing(:)
@@ -253,8 +287,8 @@ contains
          missing(r) = (place(axis, 2) - place(axis, 1)) / chain%size
       end do
       r = 3 * chain%parts
-      matrix(r, 3 * chain%driver) = 1.0_wp
-      missing(r) = chain%sense * state%q - state%place(3, chain%driver)
+      matrix(r, 3 * by%driver) = 1.0_wp
+      missing(r) = by%sense * state%q - state%place(3, by%driver)
    end subroutine equations
 
    !> Right-hand side of the second derivatives: the centripetal part of the hinge points

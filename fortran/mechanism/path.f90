@@ -5,7 +5,7 @@
 module mechanism_path
    use common_kinds, only : wp, pi
    use common_status, only : status_ok, status_bad_geometry, status_invalid_argument, status_out_of_memory
-   use mechanism_linkage, only : linkage, linkage_state, part_place
+   use mechanism_linkage, only : copy_state, linkage, linkage_state, part_place
    use mechanism_table, only : degree, fit, lowest, panels
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -61,7 +61,8 @@ contains
       width = (1.0_wp - sqrt(1.0_wp - last / scale)) / real(panels, wp)
       table%per_panel = 1.0_wp / width
       angle = [(pi * (real(k, wp) - 0.5_wp) / real(degree + 1, wp), k = degree + 1, 1, -1)]
-      here = rest
+      call copy_state(rest, here, status)
+      if (status /= status_ok) return
       do i = 1, panels
          do k = 1, degree + 1
             w = width * (real(i, wp) - 0.5_wp + 0.5_wp * cos(angle(k)))
@@ -71,7 +72,8 @@ contains
                status = status_bad_geometry
                return
             end if
-            here = next
+            call copy_state(next, here, status)
+            if (status /= status_ok) return
             do j = 1, table%count
                value(j, k) = measured(mechanism, here, sort(j), ends(:, j), point(:, :, j))
             end do

@@ -12,7 +12,7 @@ module mechanism_table
    use common_kinds, only : wp, pi
    use common_status, only : status_ok, status_bad_geometry, status_energy_lost, status_invalid_argument, &
       status_out_of_memory
-   use mechanism_linkage, only : linkage, linkage_coefficients, linkage_state
+   use mechanism_linkage, only : coordinate, copy_state, linkage, linkage_coefficients, linkage_state
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -96,7 +96,8 @@ contains
       end if
 
       angle = [(pi * (real(k, wp) - 0.5_wp) / real(degree + 1, wp), k = degree + 1, 1, -1)]
-      here = rest
+      call copy_state(rest, here, status)
+      if (status /= status_ok) return
       table%start(1) = 0.0_wp
       do i = 1, panels
          do k = 1, degree + 1
@@ -107,7 +108,8 @@ contains
                status = status_bad_geometry
                return
             end if
-            here = next
+            call copy_state(next, here, status)
+            if (status /= status_ok) return
             call linkage_coefficients(mechanism, here, value(mass, k), exact(k), value(gravity_moment, k), &
                value(drive, k), v)
             per_w = 2.0_wp * table%scale * (1.0_wp - w)
@@ -125,7 +127,8 @@ contains
             status = status_bad_geometry
             return
          end if
-         here = next
+         call copy_state(next, here, status)
+         if (status /= status_ok) return
          if (i < panels) table%start(i + 1) = table%start(i) + climb(table, i, 1.0_wp)
          call compare(mechanism, here, side, table, i, barrier, facts)
       end do
@@ -147,7 +150,8 @@ contains
       critical = 0.0_wp
       barrier = 0.0_wp
       lock = reach
-      here = rest
+      call copy_state(rest, here, status)
+      if (status /= status_ok) return
       do i = 1, scan
          q = reach * real(i, wp) / real(scan, wp)
          call mechanism%advance(here, q, next, status)
@@ -160,14 +164,18 @@ contains
          end if
          if (critical <= 0.0_wp .and. .not. (lock >= reach .and. resists(mechanism, next))) then
             ! Where gravity resists up to the lock itself, the structure snaps through there.
-            balanced = next
-            if (.not. resists(mechanism, next)) call bisect(mechanism, here, next%q, .false., balanced, status)
+            if (resists(mechanism, next)) then
+               call copy_state(next, balanced, status)
+            else
+               call bisect(mechanism, here, next%q, .false., balanced, status)
+            end if
             if (status /= status_ok) return
             critical = min(balanced%q, lock)
             barrier = energy(mechanism, balanced)
          end if
          if (lock < reach) exit
-         here = next
+         call copy_state(next, here, status)
+         if (status /= status_ok) return
       end do
    end subroutine find_limits
 
@@ -177,14 +185,15 @@ contains
       type(linkage_state), intent(in) :: from
       real(wp), intent(in) :: high
       logical, intent(in) :: for_lock
-      type(linkage_state), intent(out) :: last
+      type(linkage_state), intent(inout) :: last  !! see copy_state
       integer(c_int), intent(out) :: status
       type(linkage_state) :: next
       real(wp) :: top
       logical :: before
       integer :: i
 
-      last = from
+      call copy_state(from, last, status)
+      if (status /= status_ok) return
       top = high
       do i = 1, 60
          call mechanism%advance(last, 0.5_wp * (last%q + top), next, status)
@@ -192,7 +201,8 @@ contains
          before = next%closed
          if (before .and. .not. for_lock) before = resists(mechanism, next)
          if (before) then
-            last = next
+            call copy_state(next, last, status)
+            if (status /= status_ok) return
          else
             top = 0.5_wp * (last%q + top)
          end if
@@ -208,28 +218,27 @@ contains
       type(linkage_state), intent(in) :: before
       real(wp), intent(out) :: lock
       integer(c_int), intent(out) :: status
-      type(linkage) :: other
+      type(coordinate) :: fastest
       type(linkage_state) :: here
       real(wp) :: step
       integer :: k
 
       lock = before%q
-      other = mechanism
-      other%driver = maxloc(abs(before%first(3, :)), 1)
-      other%sense = sign(1.0_wp, before%first(3, other%driver))
-      other%sign_at_rest = 0.0_wp
-      here = before
-      here%q = other%sense * here%place(3, other%driver)
+      call copy_state(before, here, status)
+      if (status /= status_ok) return
+      fastest%driver = maxloc(abs(before%first(3, :)), 1)
+      fastest%sense = sign(1.0_wp, before%first(3, fastest%driver))
+      here%q = fastest%sense * here%place(3, fastest%driver)
       do k = 1, 20
-         call other%solve(here, status)
+         call mechanism%solve(fastest, here, status)
          if (status /= status_ok .or. .not. here%closed) return
-         step = -here%first(3, mechanism%driver) / here%second(3, mechanism%driver)
+         step = -here%first(3, mechanism%by%driver) / here%second(3, mechanism%by%driver)
          if (.not. abs(step) <= 0.1_wp) return
          if (abs(step) <= 1.0e-14_wp) exit
-         here%place = here%place + step * here%first
+         here%place(:, :) = here%place + step * here%first
          here%q = here%q + step
       end do
-      lock = mechanism%sense * here%place(3, mechanism%driver)
+      lock = mechanism%by%sense * here%place(3, mechanism%by%driver)
    end subroutine lock_of
 
    !> Does gravity still push back to rest?

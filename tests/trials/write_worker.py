@@ -12,6 +12,7 @@ import os
 import shutil
 import sys
 import tempfile
+import traceback
 from pathlib import Path
 
 import extrados.plots.report
@@ -38,6 +39,8 @@ def child(words: list[str], k: int) -> tuple[int, str, int]:
                 cli.main()
             except SystemExit as left:
                 code = int(left.code or 0)
+            except BaseException:
+                traceback.print_exc()
             finally:
                 count = shim.shim_writes(-1)
                 os.write(counted.fileno(), str(count).encode())

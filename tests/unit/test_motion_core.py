@@ -77,6 +77,12 @@ def test_free_vibration_after_the_end_counts() -> None:
     assert s.sd[0, 0] == pytest.approx(0.01 / (2.0 * np.pi / 4.0), rel=1e-4)
 
 
+def test_free_vibration_is_not_sampled_without_end() -> None:
+    """A motion of a nanosecond under periods of seconds: the half cycle after it has 1e10 of its steps, and the same peak."""
+    s = core.response_spectra(np.array([1.0, 1.0]), 1e-9, [0.5, 10.0], [0.0])
+    np.testing.assert_allclose(s.sd[0], 1e-9 * np.array([0.5, 10.0]) / (2.0 * np.pi), rtol=1e-11)
+
+
 def test_long_periods_keep_their_digits() -> None:
     """The displacement spectrum tends to the peak ground displacement; closed forms lose it to cancellation."""
     t = 0.001 * np.arange(2001)

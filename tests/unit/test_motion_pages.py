@@ -90,6 +90,8 @@ def test_why_a_motion_is_not_pulse_like() -> None:
     noise = classify(np.random.default_rng(1).normal(0.0, 3.0, 4000), step)
     assert any("the indicator" in why and "not above 0.85" in why for why in noise.fails)
     assert late.pulse_like == (late.fails == ())
+    over = classify(pulse[:2000], 1e-12)
+    assert not over.pulse_like and over.fails == ("the motion is over within 2e-09 s, much before any pulse",)
 
 
 def test_the_page_says_why_which_station_and_which_event(tmp_path: Path) -> None:

@@ -65,7 +65,9 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
     velocity, _ = core.kinematics(acceleration, step)
     pgv = float(np.abs(velocity).max())
     if pgv == 0.0:
-        return PulseClass(0.0, 0.0, 0.0, 1.0, 1.0, False, False, np.zeros_like(velocity), ("nothing moves",))
+        return _none(velocity, "nothing moves")
+    if step * len(velocity) < 0.1 * shortest:  # a wavelet would have samples without end
+        return _none(velocity, f"the motion is over within {step * len(velocity):.3g} s, much before any pulse")
     # energy off the time grid's ends: a wavelet may reach beyond the record
     top = min(longest, 0.9 * step * len(velocity) * _CENTRE)
     periods = np.geomspace(shortest, max(top, 1.01 * shortest), 80)
@@ -102,6 +104,11 @@ def classify(acceleration: np.ndarray, step: float, shortest: float = 0.25, long
         indicator, float(length * step / (7.0 * _CENTRE)), float(np.abs(pulse).max()), pgv_ratio, energy_ratio, early,
         not fails, pulse, tuple(fails),
     )  # fmt: skip
+
+
+def _none(velocity: np.ndarray, reason: str) -> PulseClass:
+    """No pulse at all, and why."""
+    return PulseClass(0.0, 0.0, 0.0, 1.0, 1.0, False, False, np.zeros_like(velocity), (reason,))
 
 
 def _time_of(velocity: np.ndarray, share: float) -> int:
