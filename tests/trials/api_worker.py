@@ -20,7 +20,7 @@ from extrados import _core
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import arch, dem, mechanism, motion, rocking, sla
+from extrados.core import arch, dem, mechanism, motion, restraints, rocking, sla, stack
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -142,6 +142,39 @@ def hinges(hinge, joint, mass, centroid, inertia, masses, places, inertias, intr
     return limit.critical, limit.drive, arch.pose(four, places, q), line.normal, line.point, run.rotation
 
 
+def held(mass, centroid, inertia, joined, point, row, driver, sense, side, sort, ends, points, reach, stiffness, most, viscous,
+         power, sides, rebound, restitution, samples, dt) -> Any:  # fmt: skip
+    """A mechanism on hinges that a tie holds and a wall stands beside."""
+    linkage = SimpleNamespace(
+        mass=mass, centroid=centroid, inertia=inertia, joined=joined, point=point, row=row, driver=driver, sense=sense, side=side
+    )  # fmt: skip
+    table = mechanism.table(linkage)
+    way = restraints.paths(linkage, sort, ends, points, reach)
+    law = restraints.Law(stiffness=stiffness, most=most, viscous=viscous, power=power)
+    body = restraints.restrained_body(
+        mechanism.table_body(table, table, restitution), [law], (way, way), open_sides=sides, rebound=rebound
+    )
+    run = rocking.history(body, Ground(samples=samples, step=dt), 1.0, 0.1)
+    return run.rotation, way, rocking.limits(body)
+
+
+def stacks(mass, inertia, centre, foot, height, contact, samples, dt, end_time, output_step, scale, tolerance, start, room, pivots,
+           rotation, rate, closing) -> Any:  # fmt: skip
+    """Two blocks upon each other, shaken, and a blow between them."""
+    two = stack.Stack(mass, inertia, centre, foot, height, contact)
+    run = stack.stack_history(
+        two,
+        Ground(samples=samples, step=dt),
+        end_time,
+        output_step,
+        scale=scale,
+        tolerance=tolerance,
+        start=start,
+        room=room,
+    )
+    return run.rotation, run.force, *stack.stack_impact(two, pivots, rotation, rate, closing)
+
+
 def motions(kind, parameters, points, step, intensity, frequency, amplitude, wanted, lines, spacing, scaling, factor, duration, seed,
             first, count, window, periods, dampings, series, length, period, threads) -> Any:  # fmt: skip
     """Everything that is computed of motions."""
@@ -195,6 +228,18 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             dt=0.05, bodies=stones.mass, inertias=stones.inertia, places=stones.centroid, sides=np.column_stack([stones.a, stones.b]),
             ends=np.stack([stones.p, stones.q], axis=1), frame=np.stack([stones.normal, stones.tangent], axis=1),
             before=table.fields[0],
+        )),
+        (held, dict(
+            mass=link.mass, centroid=link.centroid, inertia=link.inertia, joined=link.joined, point=link.point, row=link.row,
+            driver=link.driver, sense=link.sense, side=link.side, sort=np.array([restraints.LENGTH]), ends=np.array([[0, 1]]),
+            points=np.array([[[-12.0, 0.0], link.centroid[0]]]), reach=mechanism.table(link).numbers[1:3],
+            stiffness=1e6, most=1e5, viscous=1e3, power=1.0, sides=(True, True), rebound=(0.0, 0.0), restitution=(0.8, 0.8),
+            samples=shaken, dt=0.05,
+        )),
+        (stacks, dict(
+            mass=(4000.0, 2000.0), inertia=(2000.0, 700.0), centre=(0.75, 1.0), foot=0.5, height=1.5, contact=0.3,
+            samples=4.0 * rng.normal(size=(1, 9)), dt=0.05, end_time=1.0, output_step=0.1, scale=1.0, tolerance=1e-8,
+            start=(0.01, 0.02, 0.0, 0.0), room=100, pivots=[1, 0], rotation=[0.0, 0.01], rate=[-0.1, -0.2], closing=[1, 0],
         )),
         (hinges, dict(
             hinge=four.hinge, joint=four.joint, mass=four.mass, centroid=four.centroid, inertia=four.inertia, masses=stones.mass,
