@@ -15,6 +15,7 @@ from extrados.motions.measures import fourier_spectrum, konno_ohmachi
 from extrados.motions.records import Treatment, read_record, record_motion
 from extrados.motions.wavelet_pulse import classify
 from extrados.results.model import Result
+from extrados.running.run import compute
 
 
 def column_file(path: Path, name: str, times: list[str], unit: str = "g") -> Path:
@@ -92,6 +93,12 @@ def test_why_a_motion_is_not_pulse_like() -> None:
     assert late.pulse_like == (late.fails == ())
     over = classify(pulse[:2000], 1e-12)
     assert not over.pulse_like and over.fails == ("the motion is over within 2e-09 s, much before any pulse",)
+
+
+def test_a_motion_too_slow_for_its_spectra_is_refused() -> None:
+    data = {"motion": {"kind": "step-pulse", "amplitude": "1 g", "duration": 1e9}, "analysis": {"kind": "motion"}}
+    (row,) = compute(Context(make_deck(data), threads=1)).analyses
+    assert row["status"] == "refused" and "time step of 3e+03 s is too long" in row["reason"]
 
 
 def test_the_page_says_why_which_station_and_which_event(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ from extrados.motions import tables as models
 from extrados.motions.formats.record import RecordError
 from extrados.motions.from_deck import compatible_motion, compatible_set, generated_set, is_set, suite_motions
 from extrados.motions.impulse import Impulse, primary_impulses
-from extrados.motions.measures import BANDWIDTH, fourier_spectrum, konno_ohmachi, spectral_measures
+from extrados.motions.measures import BANDWIDTH, HOUSNER_BAND, fourier_spectrum, konno_ohmachi, spectral_measures
 from extrados.motions.motion import Motion
 from extrados.motions.wavelet_pulse import classify
 from extrados.results import motion as out
@@ -50,7 +50,11 @@ def run(context: Context, options: MotionStudy) -> Result:
 
 
 def _periods(options: MotionStudy, step: float) -> np.ndarray:
-    return np.geomspace(max(options.shortest, core.POINTS_PER_CYCLE * step / 4096.0), options.longest, options.periods)
+    """Of a spectrum [s]; Refused where the time step is too long for those that are asked for or of a measure."""
+    shortest = core.POINTS_PER_CYCLE * step / 4096.0
+    if shortest > (needed := min(options.longest, HOUSNER_BAND[0])):
+        raise Refused(f"a time step of {step:.3g} s is too long for the spectrum at a period of {needed:g} s")
+    return np.geomspace(max(options.shortest, shortest), options.longest, options.periods)
 
 
 def _impulse(i: Impulse) -> out.Impulse:
