@@ -66,7 +66,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         friction.plot(t, np.minimum(needed, 2.0), color=style.HINGE, linewidth=0.8)
         friction.set_ylabel("friction\nneeded")
         friction.set_xlabel("time [s]")
-        moving = np.flatnonzero(np.abs(run.array(name, "rotation")) > 0.0)
+        moving = np.flatnonzero(_rocks(run, name))
         if len(moving):
             pad = 0.5 + 0.05 * (t[moving[-1]] - t[moving[0]])
             friction.set_xlim(max(0.0, t[moving[0]] - pad), min(t[-1], t[moving[-1]] + pad))
@@ -79,7 +79,7 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     if r.restraints:
         found.append(_draw_restraints(run, name, folder, t))
     animation.draw_rocking(run, name, folder)
-    moving = np.abs(run.array(name, "rotation")) > 0.0 if len(t) else np.zeros(0, dtype=bool)
+    moving = _rocks(run, name)
     if moving.any() and run.array(name, "required_friction").shape[1] > 1:
         found.append(_draw_friction(run, name, folder, t, moving))
     times = run.arrays[name].get("snapshot_time")
@@ -145,6 +145,12 @@ def _once(ax: Any) -> tuple[list[Any], list[str]]:
     return list(first.values()), list(first)
 
 
+def _rocks(run: Stored, name: str) -> np.ndarray:
+    """Whether it is off rest, of each time; of stacked blocks whether either is."""
+    rocks = np.abs(run.array(name, "rotation")) > 0.0
+    return rocks | (np.abs(run.array(name, "rotation_upper")) > 0.0) if run[name].stack else rocks
+
+
 def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: np.ndarray) -> tuple[str, str]:
     """Friction needed at the joints over time, and its greatest value at each."""
     friction = run.array(name, "required_friction")
@@ -156,7 +162,7 @@ def _draw_friction(run: Stored, name: str, folder: Path, t: np.ndarray, moving: 
         mesh = over_time.pcolormesh(
             t[part], joints, shown.T, cmap="YlOrBr", vmin=0.0, vmax=1.0, shading="nearest", rasterized=True
         )
-        fig.colorbar(mesh, ax=over_time, label="coefficient of friction needed (1 and above)")
+        fig.colorbar(mesh, ax=over_time, label="friction needed (1 and above)")
         over_time.set_xlabel("time [s]")
         over_time.set_ylabel("joint")
         over_time.grid(False)

@@ -560,7 +560,7 @@ def _draw_settled(run: Stored, name: str, folder: Path, blocks, centroid) -> tup
             )  # fmt: skip
         ax.set_title(f"Supports that give way: movements and openings {factor:g} times as large")
         style.section_axes(ax)
-        ax.margins(0.08)
+        ax.margins(0.12)  # room for the openings beside the outermost stones
         return (
             style.save(fig, folder, f"{name}-openings"),
             f"Where supports give way joints open; movements and openings are drawn {factor:g} times as large, dotted: before.",
