@@ -63,6 +63,8 @@ def test_good_deck() -> None:
         ("embrace = 157.5", "embrace = 157.5\nfloat = 1", 7, ["unknown key"]),
         ("voussoirs = 7", 'voussoirs = 7\n[joints]\nrestitution = "thess"', 9, ["'energy-safe' or 'inelastic', or", "number"]),
         ("voussoirs = 7", "voussoirs = 7\n[joints]\nrestitution = 1.2", 9, ["less than or equal to 1"]),
+        ("voussoirs = 7", "voussoirs = 7\n[supports]\nrebound = 0.4", 9, ["rebound needs abutting_wall"]),
+        ("voussoirs = 7", "voussoirs = 7\n[[ties]]\nstart = [1.0, 2.0, 3.0]\nground = [0, 0]", 9, ["expected 2 at most, found 3"]),
         ("radius = 10.0", "radius = 1e308", 4, ["less than or equal to 10000 m"]),
         ("embrace = 157.5", "", 2, ["embrace is missing", "angle of embrace"]),
         ('amplitude = "1.0 g"', "amplitude = 1.0", 10, ["bare number", "g"]),
@@ -78,6 +80,12 @@ def test_good_deck() -> None:
 def test_complaint(old: str, new: str, line: int, words: list[str]) -> None:
     found = complaints(GOOD.replace(old, new, 1))
     assert any(c.startswith(f"deck.toml:{line}:") and all(w in c for w in words) for c in found), found
+
+
+def test_columns_of_a_frame_do_not_overlap() -> None:
+    frame = '[structure]\nkind = "frame"\nwidth = 0.5\nheight = 4\nspacing = 0.4\nlintel_height = 0.5\n[analysis]\nkind = "tilt"'
+    (found,) = complaints(frame)
+    assert found.startswith("deck.toml:5:") and "overlap" in found
 
 
 def test_all_complaints_at_once() -> None:

@@ -201,6 +201,12 @@ class Supports(Table):
         max_length=1000,
     )  # fmt: skip
 
+    @model_validator(mode="after")
+    def _thrown_back_by_a_wall(self) -> "Supports":
+        if self.rebound is not None and self.abutting_wall is None:
+            raise ValueError("rebound needs abutting_wall, the side on which the wall stands")
+        return self
+
 
 class Movement(Table):
     """A support that gives way, slowly, starting and ending at rest."""

@@ -305,6 +305,10 @@ class _Checker:
                 named = min(((match.start(), key) for match, key in found if match), default=None)
                 at = (*path, named[1]) if named else at
             self.complain(at, text)
+        elif sort in ("too_short", "too_long") and len(problems) == 1:
+            limits = problem["ctx"]
+            wanted = f"{limits['min_length']} at least" if sort == "too_short" else f"{limits['max_length']} at most"
+            self.complain(at, f"{_shown(problem.get('input'))}: expected {wanted}, found {limits['actual_length']}")
         else:
             unit = _unit(model, place)
             texts = dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems)

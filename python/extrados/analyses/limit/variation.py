@@ -118,6 +118,8 @@ def read_table(model: type[Table], data: dict[str, Any]) -> Any:
         first = error.errors()[0]
         where = ".".join(str(p) for p in first["loc"])
         text = str(first.get("ctx", {}).get("error", first["msg"]))
+        if first["type"] == "extra_forbidden":
+            text = f"unknown key; known are {', '.join(model.model_fields)}"
         raise BadGeometry(f"{where}: {text}" if where else text) from None
 
 

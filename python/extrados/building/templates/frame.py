@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import ClassVar, Literal
 
 import numpy as np
+from pydantic import model_validator
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
@@ -90,6 +91,14 @@ class Frame(Structure):
         None, "mass of the lintel with what rests on it; default by its size and the density", gt=0
     )
     depth: Length = key(1.0, "depth out of plane", gt=0)
+
+    @model_validator(mode="after")
+    def _columns_apart(self) -> "Frame":
+        if self.spacing <= self.width:
+            raise ValueError(
+                f"spacing of {self.spacing:g} m lets columns of {self.width:g} m overlap; it must exceed their width"
+            )
+        return self
 
     def assembly(self, density: float, folder: Path) -> FrameAssembly:
         return make_frame(density=density, **self.model_dump(exclude={"kind"}))
