@@ -117,7 +117,9 @@ def test_stopped_at_any_time_and_resumed(tmp_path, number) -> None:
             said = told.read()
         # a shell tells of a process that the signal itself ended, before Python was there, as of 128 + number
         right = (0, -sent) if sent == signal.SIGKILL else (0, 128 + sent, -sent)
-        if "Traceback" in said or process.returncode not in right:
+        # an interpreter that is still starting tells its own place, and no code of ours has run yet
+        ours = "Traceback" in said and "/extrados/" in said
+        if ours or process.returncode not in right:
             trial.fail(f"{name}: ended with {process.returncode}: {said[-300:]}")
         if process.returncode == 0:
             finished += 1
