@@ -440,7 +440,7 @@ def test_refusals(path, value, says) -> None:
     ("structure.openings", [{"x": [1, 1], "y": [0, 1]}], "needs a width and a height"),
     ("analysis.0.reference", [{"kind": "spread", "fx": 1.0}], "the place of the spread load is missing"),
     ("analysis.0.reference", [{"kind": "gravity", "fx": 1.0}], "gravity takes ax, ay, not fx"),
-    ("analysis.0.reference", [], "at least 1 item"),
+    ("analysis.0.reference", [], "at least 1, found 0"),
     ("material", {"young": 1e9, "tensile_strength": 1e5}, "go together"),
     ("material", {"young": 1e9, "tensile_strenght": 1e5}, "did you mean 'tensile_strength'?"),
     ("supports.held", [{"fix": "x"}], "the place is missing"),

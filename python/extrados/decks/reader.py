@@ -307,7 +307,7 @@ class _Checker:
             self.complain(at, text)
         elif sort in ("too_short", "too_long") and len(problems) == 1:
             limits = problem["ctx"]
-            wanted = f"{limits['min_length']} at least" if sort == "too_short" else f"{limits['max_length']} at most"
+            wanted = f"at least {limits['min_length']}" if sort == "too_short" else f"at most {limits['max_length']}"
             self.complain(at, f"{_shown(problem.get('input'))}: expected {wanted}, found {limits['actual_length']}")
         else:
             unit = _unit(model, place)
