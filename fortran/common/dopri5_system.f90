@@ -1,7 +1,7 @@
 !> One step of the Dormand-Prince 5(4) pair for a system of first order, y' = f(t, y).
 !>
-!> Source: J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19-26. What has one coordinate of second order
-!> is integrated by common_dopri5, which keeps a dense output.
+!> Source: J. R. Dormand and P. J. Prince, J. Comput. Appl. Math. 6 (1980) 19-26. What has one coordinate of second
+!> order is integrated by common_dopri5, which keeps a dense output.
 module common_dopri5_system
    use common_kinds, only : wp
    implicit none

@@ -1,9 +1,9 @@
-!> The response of a structure of several coordinates whose equation changes from mode to mode: two stacked blocks, a block
-!> on a base that gives way.
+!> The response of a structure of several coordinates whose equation changes from mode to mode: two stacked blocks,
+!> a block on a base that gives way.
 !>
-!> Within a mode the equation is smooth. A step ends where its mode does, found by bisection of the step itself, so that the
-!> order of the method holds; what comes then, another mode or an impact, the structure says. The integrator stops at
-!> every break of the ground motion and at every output time.
+!> Within a mode the equation is smooth. A step ends where its mode does, found by bisection of the step itself, so that
+!> the order of the method holds; what comes then, another mode or an impact, the structure says. The integrator stops
+!> at every break of the ground motion and at every output time.
 module rocking_modes
    use common_cancel, only : cancel_requested
    use common_dopri5_system, only : dopri5_system_step, first_order_system
@@ -32,11 +32,11 @@ module rocking_modes
       procedure :: ground
       procedure(inside), deferred :: inside
       procedure(leave), deferred :: leave
-      procedure(renew), deferred :: renew
-      procedure(trim_state), deferred :: trim_state
       procedure(fallen), deferred :: fallen
-      procedure(resting), deferred :: resting
       procedure(row), deferred :: row
+      procedure :: renew
+      procedure :: trim_state
+      procedure :: resting
    end type mode_rocker
 
    !> In the caller's arrays
@@ -79,24 +79,6 @@ module rocking_modes
          type(mode_history), intent(inout) :: history
       end subroutine leave
 
-      !> The ground may have jumped: the mode that follows
-      subroutine renew(body, t, y, history)
-         import :: mode_rocker, mode_history, wp
-         implicit none (type, external)
-         class(mode_rocker), intent(inout) :: body
-         real(wp), intent(in) :: t
-         real(wp), intent(in) :: y(:)
-         type(mode_history), intent(inout) :: history
-      end subroutine renew
-
-      !> Numbers that the mode fixes, without the error of the step
-      subroutine trim_state(body, y)
-         import :: mode_rocker, wp
-         implicit none (type, external)
-         class(mode_rocker), intent(in) :: body
-         real(wp), intent(inout) :: y(:)
-      end subroutine trim_state
-
       !> The place about which it has turned past recall, 0 where it stands
       pure function fallen(body, y) result(place)
          import :: mode_rocker, wp
@@ -105,14 +87,6 @@ module rocking_modes
          real(wp), intent(in) :: y(:)
          integer :: place
       end function fallen
-
-      !> Does it stay as it is where the ground is quiet?
-      pure function resting(body) result(answer)
-         import :: mode_rocker
-         implicit none (type, external)
-         class(mode_rocker), intent(in) :: body
-         logical :: answer
-      end function resting
 
       !> What is stored of a state
       function row(body, t, y, loss, rows) result(values)
@@ -136,6 +110,33 @@ contains
       real(wp) :: a(2)
       call body%motion%value_at(body%segment, t, a(1), a(2))
    end function ground
+
+   !> The ground may have jumped: the mode that follows; the same, unless a structure says otherwise
+   subroutine renew(body, t, y, history)
+      class(mode_rocker), intent(inout) :: body
+      real(wp), intent(in) :: t
+      real(wp), intent(in) :: y(:)
+      type(mode_history), intent(inout) :: history
+      associate (unused => body%moved, unused_t => t, unused_y => y, unused_history => history%events)
+      end associate
+   end subroutine renew
+
+   !> Numbers that the mode fixes, without the error of the step; none, unless a structure says otherwise
+   subroutine trim_state(body, y)
+      class(mode_rocker), intent(in) :: body
+      real(wp), intent(inout) :: y(:)
+      associate (unused => body%moved, unused_y => y)
+      end associate
+   end subroutine trim_state
+
+   !> Does it stay as it is where the ground is quiet? Never, unless a structure says otherwise
+   pure function resting(body) result(answer)
+      class(mode_rocker), intent(in) :: body
+      logical :: answer
+      answer = .false.
+      associate (unused => body%moved)
+      end associate
+   end function resting
 
    !> Keep an event, as far as there is room
    subroutine note(history, kind, t, place)

@@ -5,7 +5,8 @@ module rocking_stack_response
       event_uplift => rocking_event_uplift
    use common_signal, only : signal
    use rocking_modes, only : mode_history, mode_rocker, respond_in_modes
-   use rocking_stack, only : choose, contact_forces, energies, motion_about, power, pressing, solved, stack, stack_impact
+   use rocking_stack, only : choose, contact_forces, energies, motion_about, power, pressing, solved, stack, &
+      stack_impact
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -16,8 +17,8 @@ module rocking_stack_response
    !> and of the lower on the upper block, each x and y [N]
    integer, parameter :: stack_rows = 15
 
-   !> A stack in one of its modes. Its state: q1, q2 [rad], their rates [rad/s], work of the ground [J]; contacts are 1 on
-   !> the ground and 2 between.
+   !> A stack in one of its modes. Its state: q1, q2 [rad], their rates [rad/s], work of the ground [J]; contacts are
+   !> 1 on the ground and 2 between.
    type, extends(mode_rocker) :: stack_rocker
       type(stack) :: body
       integer :: s(2) = 0                !! pivots
