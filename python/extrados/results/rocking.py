@@ -99,7 +99,7 @@ class Rocking(KindResults):
     energy_taken_up_J: float = maybe("what dampers and yielding have taken up, where something holds it", "J")
     restraints: list[RestraintForces] = maybe("what holds it besides its weight")
     rebound: float = maybe(
-        "against a wall: rate after over before it is thrown back", source="Sorrentino and others 2011"
+        "against a wall: rate after over before it is thrown back, as given or by three impacts in a row"
     )
     energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
     steps: int = fact("steps of the integrator")
