@@ -221,6 +221,28 @@ main()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "becomes", ["SystemExit(130)", "SystemExit(1)", "ImportError('initialization failed')", "KeyboardInterrupt"]
+)
+def test_signals_that_a_library_makes_something_else_of(tmp_path, number, becomes) -> None:
+    """The code is the signal's, though it came while the library evaluated a text, which CPython remembers to its end."""
+    code = f"""
+from extrados import cli
+def app():
+    try:
+        exec("import os, time; os.kill(os.getpid(), {int(number)}); time.sleep(5)")
+    except KeyboardInterrupt:
+        raise {becomes}
+cli.app = app
+cli.main()
+"""
+    (tmp_path / "library.py").write_text(code)
+    run = subprocess.run([sys.executable, "-m", "library"], capture_output=True, text=True, cwd=tmp_path)
+    assert run.returncode == 128 + number and "Traceback" not in run.stderr, run.stderr
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 def test_ctrl_c_ends_a_computation_in_another_thread() -> None:
     """Python answers it in the main thread; the computation does not go on unseen, and the handlers come back."""
     code = """
