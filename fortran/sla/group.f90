@@ -11,7 +11,7 @@ module sla_group
    private
    public :: element_group, point_group, group_holder, slider, bound, scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
-      report_rows, state_rows
+      component, along, report_rows, state_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
    integer, parameter :: most_entries = 24, most_rank = 4
@@ -292,6 +292,35 @@ contains
          event%w(j, k) = event%w(j, k) + local(i) * group%factor(i, element)
       end do
    end subroutine spread
+
+   !> w_i . x over the entries of an event
+   pure function component(event, i, x) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * x(event%index(k))
+      end do
+   end function component
+
+   !> w_i . (x + lambda y) over the entries of an event: dot_product would gather them in memory that it does not ask
+   !> for
+   pure function along(event, i, x, y, lambda) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp), intent(in) :: y(0:)
+      real(wp), intent(in) :: lambda
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * (x(event%index(k)) + lambda * y(event%index(k)))
+      end do
+   end function along
 
    !> True where a lies below b by more than rounding: limits that should be equal must not race
    elemental function below(a, b) result(less)
