@@ -67,6 +67,8 @@ class Building:
         return {
             "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
             "[supports] abutting_wall": self.supports.abutting_wall is not None,
+            "[supports] foundation": "foundation" in self.supports.model_fields_set,
+            "[supports] damping_ratio": self.supports.damping_ratio is not None,
         }  # fmt: skip
 
     def having(self, **tables: Any) -> "Building":

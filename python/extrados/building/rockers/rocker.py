@@ -74,6 +74,12 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
         raise NoView("the deck has no [structure]")
     if structure.rocks_as == "stack":
         raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow")
+    if building.supports.stiffness is not None:
+        raise NoView(
+            "[supports] stiffness: on a base that gives way a building moves in more than one coordinate, which `rocking` "
+            "(under one block, column or wall) and `dem` follow; leave it out, or give it to these analyses alone "
+            "([analysis.supports] below them)"
+        )
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
     if structure.rocks_as == "block" or (piers is not None and len(piers.mass) == 1):
         block = block_model(building, linear, stones)
