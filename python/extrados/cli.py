@@ -419,13 +419,20 @@ def new(
 
 
 @app.command()
-def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("cases")) -> None:
+def cases(
+    folder: Annotated[
+        Path | None, typer.Argument(help="where to look; default ./cases, else the cases that are shipped")
+    ] = None,
+) -> None:
     """List the decks below a folder with their titles."""
     import tomllib
 
     from extrados.decks.reader import LARGEST
     from extrados.schema import files
+    from extrados.schema.places import CASES
 
+    if folder is None:
+        folder = here if (here := Path("cases")).is_dir() else CASES
     found = False
     for path in sorted(folder.rglob("*.toml")):
         if path.name.endswith(".expect.toml"):

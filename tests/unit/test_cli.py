@@ -278,3 +278,12 @@ def test_more_threads_than_cores_are_not_started(tmp_path) -> None:
         *words,
     )
     assert run.returncode == 0 and "--threads 100000: this process may use" in run.stderr
+
+
+def test_cases_away_from_the_sources(tmp_path) -> None:
+    """Where there is no folder of that name the shipped ones are listed; an own one comes first."""
+    shipped = extrados("cases", cwd=tmp_path)
+    assert shipped.returncode == 0 and "readme.toml: " in shipped.stdout
+    (tmp_path / "cases").mkdir()
+    (tmp_path / "cases" / "mine.toml").write_text('title = "Mine"\n')
+    assert extrados("cases", cwd=tmp_path).stdout.split() == ["cases/mine.toml:", "Mine"]
