@@ -158,7 +158,8 @@ def run(
             raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
         for deck in checked:
             progress = _Progress(quiet or as_json)
-            context = Context(deck, _threads(threads), progress, resume=resume, scheduler=scheduler)
+            tell = (lambda text: None) if quiet or as_json else out_console.say
+            context = Context(deck, _threads(threads), progress, tell, resume=resume, scheduler=scheduler)
             try:
                 found = run_to(context, out or deck.default_out, figures=False)
             finally:
@@ -166,7 +167,7 @@ def run(
             if as_json:
                 print(json.dumps(json.loads((found.folder / "summary.json").read_bytes()), indent=2))
             elif not quiet:
-                _tell(found, deck.title)
+                _tell(found, deck.title, len(deck.analyses))
             codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": interrupts.exit_code()}
             for result in found.results:
                 if quiet and result.status != "ok":
@@ -189,11 +190,11 @@ def _threads(asked: int | None) -> int:
     return min(asked or cores, cores)
 
 
-def _tell(run, title: str) -> None:
-    """The answers of a run."""
+def _tell(run, title: str, count: int | None = None) -> None:
+    """The answers of a run, of its first `count` analyses: those of the deck, without what these have asked for."""
     if title:
         out_console.say(title, "bold")
-    for row in run.analyses:
+    for row in run.analyses[:count]:
         if row["status"] != "ok":
             out_console.say(f"{row['name']}: {row['status']}: {row['reason']}")
         if row["answer"]:

@@ -96,6 +96,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla/beam"),
     "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem/oppenheim"),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
+    "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "assess/readme-arch"),
     "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "dem/rocking-block"),
 }  # fmt: skip
 
