@@ -23,7 +23,7 @@ class RockingHinge(ResultModel):
 class RuleOutcome(ResultModel):
     """What the motion does under an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("word of [joints] restitution, or a number that discrete elements may keep")
     restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
     outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
 
@@ -99,7 +99,7 @@ class Rocking(KindResults):
     energy_taken_up_J: float = maybe("what dampers and yielding have taken up, where something holds it", "J")
     restraints: list[RestraintForces] = maybe("what holds it besides its weight")
     rebound: float = maybe(
-        "against a wall: rate after over before it is thrown back", source="Sorrentino and others 2011"
+        "against a wall: rate after over before it is thrown back, as given or by three impacts in a row"
     )
     energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
     steps: int = fact("steps of the integrator")
@@ -122,7 +122,9 @@ class Rocking(KindResults):
     restitution_thesis: float = maybe("of an arch: by the momentum balance of the thesis", source="thesis Eq. 5.3")
     restitution_energy_safe: float = maybe("of an arch: by the energy-safe projection")
     restitution_inelastic: float = maybe("of an arch: by a blow without rebound at all joints", source="Moreau 1988")
-    outcomes_by_rule: list[RuleOutcome] = maybe("under each impact rule, where their c_v differ by more than 1.3")
+    outcomes_by_rule: list[RuleOutcome] = maybe(
+        "under each impact rule, where their c_v differ by more than 1.3, and by what discrete elements keep where the blow is unsafe"
+    )
     decided_by_last_digits: bool = fact("whether the motion scaled by 1 +- 1e-6 ends in another outcome")
     stack: StackRocking = maybe("of two stacked blocks")
     soft_base: SoftBaseRocking = maybe("on a base that gives way ([supports] stiffness)")

@@ -249,7 +249,7 @@ def three_impacts(block: BlockModel, side: int) -> float:
 
     Three impacts in a row, each by the angular momentum about the new pivot: the far toe, the top of the face at the wall
     (as high as twice the centre of mass), the near toe. For a rectangle (1 - 3/2 sin^2 a)^2 |1 - 3/2 cos^2 a|, a the slenderness
-    angle (Sorrentino, AlShawa and Decanini 2011).
+    angle. Sorrentino, AlShawa and Decanini (2011) give the same, from memory, to be verified.
     """
     b = block.block
     mass, inertia, h = float(b.mass[0]), float(b.inertia[0]), b.centre_height
