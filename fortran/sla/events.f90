@@ -19,7 +19,7 @@ module sla_events
    use sla_group, only : bound, component, most_entries, most_rank, point_group, scan_result, unbounded
    use sla_guard, only : guard_every, guard_residual
    use sla_ledger, only : account, event_log, follow_supports, log_reals, record, watch
-   use sla_model, only : element_model, model_balance, model_solve
+   use sla_model, only : element_model, model_balance, model_solve, model_turns
    use sla_regions, only : regions_bring, regions_home
    use sla_release, only : hold_state, set_free
    use sla_scan, only : bring_all, choose, crossed, scan_model, scan_scaled
@@ -65,7 +65,7 @@ contains
       real(wp), allocatable :: ratio(:)
       real(wp) :: reached, at
       logical :: equilibrium, driven, met
-      integer :: info, place(2)
+      integer :: info
 
       driven = any(abs(model%moved(:, 2)) > 0.0_wp)
       at = 0.0_wp
@@ -84,10 +84,7 @@ contains
          if (rules%release .and. model%pending(1) /= 0) call hold_state(model, status)
          if (status /= status_ok) return
          if (model%pending(1) /= 0) then
-            place = model%pending(1:2)
-            call apply_event(model, reason, status)
-            if (model%slides .and. status == status_ok .and. reason == stop_none) call slide(model, place, reason, &
-               status)
+            call change_state(model, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
          if (model%releasing) then
@@ -217,6 +214,33 @@ contains
       lambda = (rules%target - start) / slope
       met = found%empty%point == 0 .and. lambda >= found%lo%value .and. lambda <= found%hi%value
    end subroutine meet_target
+
+   !> The pending event, and what must change with it
+   subroutine change_state(model, reason, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: reason
+      integer(c_int), intent(out) :: status
+      integer, allocatable :: turn(:, :)
+      integer :: i, place(2)
+      logical :: found
+      status = status_ok
+      reason = stop_none
+      found = .false.
+      if (model%slides) call model_turns(model, turn, found, status)
+      if (status /= status_ok) return
+      if (.not. found) turn = reshape(model%pending, [3, 1])
+      do i = 1, size(turn, 2)
+         model%pending = turn(:, i)
+         place = turn(1:2, i)
+         call apply_event(model, reason, status)
+         if (status /= status_ok .or. reason /= stop_none) return
+         if (model%slides) call slide(model, place, reason, status)
+         if (status /= status_ok .or. reason /= stop_none) return
+         if (i < size(turn, 2)) call account(model, model%lambda, status)
+         if (status /= status_ok) return
+      end do
+      model%pending = 0
+   end subroutine change_state
 
    !> Damage the pending point; the factor follows, and the displacements on the path of its element
    subroutine apply_event(model, reason, status)

@@ -80,6 +80,12 @@ module sla_group
       real(wp) :: law(most_slider) = 0.0_wp          !! h = law.u [Pa/m]
       real(wp) :: force(most_slider) = 0.0_wp        !! nodal forces of a unit of h [m^2]
       real(wp) :: held(2) = 0.0_wp                   !! h as it is, constant and per unit multiplier [Pa]
+      ! The whole of its friction is spring slip + h, its strength that of sense strength.u
+      real(wp) :: slip(most_slider) = 0.0_wp         !! slip = slip.u
+      real(wp) :: strength(most_slider) = 0.0_wp     !! [Pa/m]
+      real(wp) :: spring = 0.0_wp                    !! in the stiffness [Pa/m]
+      real(wp) :: elastic = 0.0_wp                   !! that of a point that sticks [Pa/m]
+      real(wp) :: sense = 0.0_wp                     !! of the slip, +1 or -1; 0: it sticks
    end type slider
 
    !> How cracked material behaves, the same for the whole model
@@ -121,6 +127,8 @@ module sla_group
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
+      procedure :: describe
+      procedure :: undecided
       procedure :: hold
       procedure :: advance
       procedure :: excess
@@ -250,6 +258,27 @@ contains
       associate (none => group, same => list, unchanged => count)
       end associate
    end subroutine sliders
+
+   !> What a point whose friction is at its limit is made of; held is its force where it sticks, too
+   pure subroutine describe(group, point, as)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: point
+      type(slider), intent(inout) :: as
+      associate (none => group, p => point, same => as)
+      end associate
+   end subroutine describe
+
+   !> Has a point that is about to change done the opposite at this very load?
+   pure function undecided(group, point, code, lambda) result(yes)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      logical :: yes
+      associate (none => group, p => point, c => code, load => lambda)
+      end associate
+      yes = .false.
+   end function undecided
 
    !> Take over the force of a point that slides
    pure subroutine hold(group, point, held)

@@ -31,6 +31,8 @@ module sla_interface
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
+      procedure :: describe
+      procedure :: undecided
       procedure :: hold
       procedure :: advance
       procedure :: excess
@@ -187,19 +189,47 @@ contains
       class(interface_group), intent(in) :: group
       type(slider), intent(inout) :: list(:)
       integer, intent(inout) :: count
-      integer :: e, p
+      integer :: p
       do p = 1, group%points
          if (.not. is_sliding(group, p)) cycle
-         e = (p + 1) / 2
          count = count + 1
-         list(count)%point = p
-         list(count)%index = group%equation(:, e)
-         list(count)%law = nodal(group, e, p, [merge(-1.0_wp, 1.0_wp, group%mode(p) == slides_up) * &
-            group%law%friction(e) * across(group, e, p), -soft * shear(group, e, p)]) * group%factor(:, e)
-         list(count)%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
-         list(count)%held = group%held(:, p)
+         call group%describe(p, list(count))
       end do
    end subroutine sliders
+
+   pure subroutine describe(group, point, as)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: point
+      type(slider), intent(inout) :: as
+      integer :: e, p
+      p = point
+      e = (p + 1) / 2
+      as%point = p
+      as%index = group%equation(:, e)
+      as%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%slip = nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%strength = nodal(group, e, p, [-group%law%friction(e) * across(group, e, p), 0.0_wp]) * group%factor(:, e)
+      as%elastic = shear(group, e, p) - bond(group, e, p)
+      if (group%mode(p) == sticks) then
+         as%spring = as%elastic
+         as%held = [-as%spring * group%mark(p), 0.0_wp]
+         return
+      end if
+      as%sense = merge(1.0_wp, -1.0_wp, group%mode(p) == slides_up)
+      as%law = nodal(group, e, p, [-as%sense * group%law%friction(e) * across(group, e, p), &
+         -soft * shear(group, e, p)]) * group%factor(:, e)
+      as%spring = soft * shear(group, e, p)
+      as%held = group%held(:, p)
+   end subroutine describe
+
+   pure function undecided(group, point, code, lambda) result(yes)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      logical :: yes
+      yes = code == code_slide .and. abs(lambda - group%stuck(point)) <= same * abs(lambda)
+   end function undecided
 
    pure subroutine hold(group, point, held)
       class(interface_group), intent(inout) :: group
