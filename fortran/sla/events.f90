@@ -84,7 +84,7 @@ contains
          if (rules%release .and. model%pending(1) /= 0) call hold_state(model, status)
          if (status /= status_ok) return
          if (model%pending(1) /= 0) then
-            call change_state(model, reason, status)
+            call change_state(model, rules%compliance, driven, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
          if (model%releasing) then
@@ -215,31 +215,51 @@ contains
       met = found%empty%point == 0 .and. lambda >= found%lo%value .and. lambda <= found%hi%value
    end subroutine meet_target
 
-   !> The pending event, and what must change with it
-   subroutine change_state(model, reason, status)
+   !> The pending event; where friction then leads in a circle or nowhere, all points at its limit turn at once
+   subroutine change_state(model, softest, driven, reason, status)
       type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: softest           !! see too_soft
+      logical, intent(in) :: driven
       integer(c_int), intent(out) :: reason
       integer(c_int), intent(out) :: status
       integer, allocatable :: turn(:, :)
       integer :: i, place(2)
-      logical :: found
-      status = status_ok
-      reason = stop_none
-      found = .false.
-      if (model%slides) call model_turns(model, turn, found, status)
-      if (status /= status_ok) return
-      if (.not. found) turn = reshape(model%pending, [3, 1])
-      do i = 1, size(turn, 2)
-         model%pending = turn(:, i)
-         place = turn(1:2, i)
-         call apply_event(model, reason, status)
-         if (status /= status_ok .or. reason /= stop_none) return
-         if (model%slides) call slide(model, place, reason, status)
-         if (status /= status_ok .or. reason /= stop_none) return
-         if (i < size(turn, 2)) call account(model, model%lambda, status)
+      logical :: circle, found
+      place = model%pending(1:2)
+      circle = .false.
+      select type (group => model%holders(place(1))%group)
+      class is (point_group)
+         circle = group%undecided(place(2), model%pending(3), model%lambda)
+      end select
+      call apply_event(model, reason, status)
+      if (.not. model%slides .or. status /= status_ok .or. reason /= stop_none) return
+      if (.not. circle) then
+         call slide(model, place, reason, status)
          if (status /= status_ok) return
-      end do
-      model%pending = 0
+         if (reason == stop_none) then
+            if (.not. too_soft(model, driven, softest)) return
+         end if
+      else
+         call bring_all(model, status)
+         if (status /= status_ok) return
+      end if
+      call model_turns(model, turn, found, status)
+      if (status /= status_ok) return
+      if (found) found = size(turn, 2) > 0
+      if (.not. found .and. .not. circle) return
+      reason = stop_none
+      if (found) then
+         do i = 1, size(turn, 2)
+            call account(model, model%lambda, status)
+            if (status /= status_ok) return
+            model%pending = turn(:, i)
+            call apply_event(model, reason, status)
+            if (status /= status_ok .or. reason /= stop_none) return
+            call bring_all(model, status)
+            if (status /= status_ok) return
+         end do
+      end if
+      call slide(model, [0, 0], reason, status)
    end subroutine change_state
 
    !> Damage the pending point; the factor follows, and the displacements on the path of its element

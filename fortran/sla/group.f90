@@ -127,7 +127,7 @@ module sla_group
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
-      procedure :: describe
+      procedure :: turned_back
       procedure :: undecided
       procedure :: hold
       procedure :: advance
@@ -259,14 +259,15 @@ contains
       end associate
    end subroutine sliders
 
-   !> What a point whose friction is at its limit is made of; held is its force where it sticks, too
-   pure subroutine describe(group, point, as)
+   !> Append the points that have stuck at this very load; `held` is the force of their friction, whose spring is whole
+   pure subroutine turned_back(group, lambda, list, count)
       class(point_group), intent(in) :: group
-      integer, intent(in) :: point
-      type(slider), intent(inout) :: as
-      associate (none => group, p => point, same => as)
+      real(wp), intent(in) :: lambda
+      type(slider), intent(inout) :: list(:)    !! ignored where it is too short
+      integer, intent(inout) :: count
+      associate (none => group, load => lambda, same => list, unchanged => count)
       end associate
-   end subroutine describe
+   end subroutine turned_back
 
    !> Has a point that is about to change done the opposite at this very load?
    pure function undecided(group, point, code, lambda) result(yes)

@@ -11,7 +11,7 @@ module sla_interface
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded
    use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, never, &
-      soft, jump, nodal, across, along, shear, bond, bond_of, slips, is_sliding, scan_point
+      soft, jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -31,7 +31,7 @@ module sla_interface
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
-      procedure :: describe
+      procedure :: turned_back
       procedure :: undecided
       procedure :: hold
       procedure :: advance
@@ -193,10 +193,25 @@ contains
       do p = 1, group%points
          if (.not. is_sliding(group, p)) cycle
          count = count + 1
-         call group%describe(p, list(count))
+         call describe(group, p, list(count))
       end do
    end subroutine sliders
 
+   pure subroutine turned_back(group, lambda, list, count)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      type(slider), intent(inout) :: list(:)
+      integer, intent(inout) :: count
+      integer :: p
+      do p = 1, group%points
+         if (group%mode(p) /= sticks .or. .not. abs(lambda - group%stuck(p)) <= same * abs(lambda)) cycle
+         if (.not. is_closed(group, p)) cycle
+         count = count + 1
+         if (count <= size(list)) call describe(group, p, list(count))
+      end do
+   end subroutine turned_back
+
+   !> What the friction of a point at its limit is made of
    pure subroutine describe(group, point, as)
       class(interface_group), intent(in) :: group
       integer, intent(in) :: point

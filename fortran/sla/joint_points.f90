@@ -27,7 +27,7 @@ module sla_joint_points
    implicit none
    private
    public :: joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, never, soft
-   public :: jump, nodal, across, along, shear, bond, bond_of, slips, is_sliding, scan_point
+   public :: jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
 
    !> How the friction of a closed point is
    integer(c_int), parameter :: sticks = 0, slides_up = 1, slides_down = 2

@@ -371,23 +371,15 @@ contains
       call model_settled(model)
    end subroutine model_balance
 
-   !> What changes together in place of the pending event, where that alone leads in a circle
+   !> Which points slide and stick so that the structure goes on, where one change after the other leads in a circle
    subroutine model_turns(model, change, found, status)
       type(element_model), intent(inout) :: model
       integer, allocatable, intent(out) :: change(:, :)    !! (3, changes) group, point, code
       logical, intent(out) :: found
       integer(c_int), intent(out) :: status
-      logical :: undecided
-      status = status_ok
-      found = .false.
-      undecided = .false.
-      select type (group => model%holders(model%pending(1))%group)
-      class is (point_group)
-         undecided = group%undecided(model%pending(2), model%pending(3), model%lambda)
-      end select
-      if (.not. undecided) return
-      call friction_turns(model%holders, model%pending(1:2), model%handle, model%refactor, model%value, &
-         model%equations, model%lambda, model%ua, model%ub, change, found, status)
+      call friction_turns(model%holders, model%handle, model%refactor, model%value, model%equations, model%lambda, &
+         model%ua, model%ub, change, found, status)
+      model%friction%known = .false.
    end subroutine model_turns
 
    !> The forces by which moved supports act on the unknowns, into z; the supports move

@@ -23,10 +23,9 @@ module sla_turns
 
 contains
 
-   !> The changes that let the structure go on with more load, in the order in which they are made
-   subroutine friction_turns(holders, place, handle, fresh, value, n, lambda, ua, ub, change, found, status)
+   !> The changes that let the structure go on with more load, all made at once
+   subroutine friction_turns(holders, handle, fresh, value, n, lambda, ua, ub, change, found, status)
       type(group_holder), intent(in) :: holders(:)
-      integer, intent(in) :: place(2)                    !! group and point at its limit that sticks
       type(c_ptr), intent(in) :: handle                  !! of the factor
       logical, intent(in) :: fresh                       !! solve with a new factor of `value`
       real(wp), intent(in) :: value(:)
@@ -37,29 +36,19 @@ contains
       integer, allocatable, intent(out) :: change(:, :)  !! (3, changes) group, point, code
       logical, intent(out) :: found                      !! false: no motion goes on with more load
       integer(c_int), intent(out) :: status
-      type(slider), allocatable :: point(:), others(:)
+      type(slider), allocatable :: point(:)
       real(wp), allocatable :: x(:, :), g(:, :), f(:, :), g0(:), f0(:), matrix(:, :), side(:, :), slip(:)
       logical, allocatable :: sliding(:)
-      integer :: i, j, m, count, info
+      integer :: i, j, m, slides, count, info
 
       found = .false.
-      call find_sliders(holders, others, status)
+      call find_limited(holders, lambda, ua, ub, point, slides, status)
       if (status /= status_ok) return
-      m = size(others) + 1
-      allocate (point(m), x(n, m), g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), slip(m), sliding(m), &
+      m = size(point)
+      allocate (x(n, m), g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), slip(m), sliding(m), &
          change(3, m), stat=info)
       if (info /= 0) status = status_out_of_memory
-      if (info /= 0) return
-      point(1:m - 1) = others
-      select type (group => holders(place(1))%group)
-      class is (point_group)
-         call group%describe(place(2), point(m))
-      end select
-      point(m)%group = place(1)
-      associate (p => point(m))
-         p%sense = sign(1.0_wp, p%spring * (product_of(p%slip, p, ua(1:)) + lambda * product_of(p%slip, p, ub(1:))) &
-            + p%held(1) + lambda * p%held(2))
-      end associate
+      if (info /= 0 .or. m == 0) return
       x = 0.0_wp
       do j = 1, m
          call add_force(point(j)%force, point(j), x(:, j))
@@ -69,11 +58,12 @@ contains
       do i = 1, m
          associate (p => point(i))
             g0(i) = product_of(p%slip, p, ub(1:))
-            f0(i) = p%spring * g0(i) + merge(p%held(2), 0.0_wp, i < m)   ! the shear
+            f0(i) = p%spring * g0(i) + merge(p%held(2), 0.0_wp, i <= slides)   ! the shear
             do j = 1, m
                g(i, j) = product_of(p%slip, p, x(:, j))
                f(i, j) = p%spring * g(i, j) + merge(1.0_wp, 0.0_wp, i == j)
             end do
+            ! The slip is measured by the stress that it would be if it were elastic
             g0(i) = p%sense * (p%elastic * g0(i) - f0(i))
             g(i, :) = p%sense * (p%elastic * g(i, :) - f(i, :))
             f0(i) = product_of(p%strength, p, ub(1:)) - p%sense * f0(i)
@@ -97,17 +87,57 @@ contains
       call lemke(matrix, f0, slip, sliding, found)
       if (.not. found) return
       count = 0
-      do i = 1, m - 1
-         if (sliding(i)) cycle
+      do i = 1, m
+         if (sliding(i) .eqv. i <= slides) cycle
          count = count + 1
-         change(:, count) = [point(i)%group, point(i)%point, int(code_stick)]
+         change(:, count) = [point(i)%group, point(i)%point, int(merge(code_slide, code_stick, sliding(i)))]
       end do
-      if (sliding(m)) then
-         count = count + 1
-         change(:, count) = [place, int(code_slide)]
-      end if
       change = change(:, 1:count)
    end subroutine friction_turns
+
+   !> Points at the limit of their friction: those that slide, then those that have stuck at this very load
+   subroutine find_limited(holders, lambda, ua, ub, point, slides, status)
+      type(group_holder), intent(in) :: holders(:)
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      type(slider), allocatable, intent(out) :: point(:)
+      integer, intent(out) :: slides
+      integer(c_int), intent(out) :: status
+      type(slider), allocatable :: sliding(:)
+      type(slider) :: none(0)
+      integer :: g, i, before, count, info
+      slides = 0
+      call find_sliders(holders, sliding, status)
+      if (status /= status_ok) return
+      slides = size(sliding)
+      count = slides
+      do g = 1, size(holders)
+         select type (group => holders(g)%group)
+         class is (point_group)
+            call group%turned_back(lambda, none, count)
+         end select
+      end do
+      allocate (point(count), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      point(1:slides) = sliding
+      count = slides
+      do g = 1, size(holders)
+         select type (group => holders(g)%group)
+         class is (point_group)
+            before = count
+            call group%turned_back(lambda, point, count)
+            point(before + 1:count)%group = g
+         end select
+      end do
+      do i = slides + 1, count
+         associate (p => point(i))
+            p%sense = sign(1.0_wp, p%spring * (product_of(p%slip, p, ua(1:)) + lambda * product_of(p%slip, p, ub(1:))) &
+               + p%held(1))
+         end associate
+      end do
+   end subroutine find_limited
 
    !> w = q + M z, w >= 0, z >= 0, w z = 0
    pure subroutine lemke(matrix, q, z, positive, found)
