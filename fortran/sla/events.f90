@@ -270,8 +270,7 @@ contains
       turned = .true.
       call model_turns(model, turn, found, status)
       if (status /= status_ok) return
-      if (found) found = size(turn, 2) > 0
-      reason = stop_none
+      reason = merge(stop_none, stop_mechanism, found)
       if (found) then
          do i = 1, size(turn, 2)
             call account(model, model%lambda, status)
@@ -283,7 +282,7 @@ contains
             if (status /= status_ok) return
          end do
       end if
-      call slide(model, [0, 0], reason, status)
+      if (found) call slide(model, [0, 0], reason, status)
    end subroutine change_state
 
    !> Damage the pending point; the factor follows, and the displacements on the path of its element

@@ -10,8 +10,8 @@ module sla_interface
       code_slide => sla_event_slide
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded
-   use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, never, &
-      soft, jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
+   use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
+      jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -281,7 +281,6 @@ contains
          call group%gather(e, ua, local)
          call group%gather(e, ub, other)
          d = jump(group, e, p, local + lambda * other)
-         if (abs(group%mark(p)) >= never) cycle
          if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), d(2))
          if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), d(2))
       end do
@@ -360,8 +359,6 @@ contains
             group%mode(p) = merge(slides_up, slides_down, change > 0.0_wp)
             call begin(group, e, p, change, d, moved, lambda)
             group%mark(p) = d(2)
-            if (abs(lambda - group%stuck(p)) <= same * abs(lambda)) group%mark(p) = &
-               merge(-never, never, group%mode(p) == slides_up)
          case default
             group%mark(p) = d(2) - friction / (shear(group, e, p) - bond(group, e, p))
             group%mode(p) = sticks
@@ -440,9 +437,9 @@ contains
       if (strength < unbounded) part = strength / teeth%strength_of(table, 1_c_int, 1.0_wp)
    end function left
 
-   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the shear
-   !> stiffness [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion, 6 compression tooth,
-   !> 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
+   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the power of two
+   !> above the shear stiffness (no digit is lost) [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion,
+   !> 6 compression tooth, 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
    pure subroutine state(group, store, values)
       class(interface_group), intent(inout) :: group
       logical, intent(in) :: store
@@ -451,7 +448,7 @@ contains
       if (store) then
          values(1, :) = group%start
          do p = 1, group%points
-            values([2, 7], p) = group%held(:, p) / group%law%ks((p + 1) / 2)
+            values([2, 7], p) = scale(group%held(:, p), -exponent(group%law%ks((p + 1) / 2)))
          end do
          values(3, :) = merge(1.0_wp, 0.0_wp, group%tooth > 1)
          values(4, :) = real(group%tooth, wp)
@@ -464,7 +461,7 @@ contains
       else
          group%start(:) = values(1, :)
          do p = 1, group%points
-            group%held(:, p) = values([2, 7], p) * group%law%ks((p + 1) / 2)
+            group%held(:, p) = scale(values([2, 7], p), exponent(group%law%ks((p + 1) / 2)))
          end do
          group%tooth(:) = nint(values(4, :), c_int)
          group%slip(:) = nint(values(5, :), c_int)
