@@ -1,8 +1,8 @@
 !> Which points slide on and which stick, all at once, where no change of a single one goes on.
 !>
-!> Friction makes the way of the structure depend on sets: a point that begins to slide may turn others back, and as they
-!> stick, it may slide on. Changing one after the other then turns in a circle at one load. With the plastic slip rate g of
-!> each point at its limit and the rate f at which its strength gains on its shear, both per unit multiplier,
+!> Friction makes the way of the structure depend on sets: a point that begins to slide may turn others back, and as
+!> they stick, it may slide on. Changing one after the other then turns in a circle at one load. With the plastic slip
+!> rate g of each point at its limit and the rate f at which its strength gains on its shear, both per unit multiplier,
 !>
 !>     g >= 0,  f >= 0,  g f = 0   at each point:  it slides, or it sticks
 !>
