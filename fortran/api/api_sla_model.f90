@@ -35,17 +35,19 @@ contains
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
-   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, &
+   subroutine create(axes, freedoms, nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, &
                      status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register
       use sla_model, only : element_model, model_new
+      integer(c_int), intent(in) :: axes                  !! 2 in the plane, 3 in space
+      integer(c_int), intent(in) :: freedoms              !! of a node: 2, of shells 6
       integer(c_int), intent(in) :: nodes
-      real(c_double), intent(in) :: xy(2, nodes)          !! [m]
-      integer(c_int), intent(in) :: equation(2, nodes)
+      real(c_double), intent(in) :: xy(axes, nodes)       !! [m]
+      integer(c_int), intent(in) :: equation(freedoms, nodes)
       integer(c_int), intent(in) :: moved
-      real(c_double), intent(in) :: factor(2, nodes)
+      real(c_double), intent(in) :: factor(freedoms, nodes)
       integer(c_int), intent(in) :: cracking              !! of the list sla_cracking
       real(c_double), intent(in) :: retention             !! negative: thesis Eq. 4.11
       integer(c_int), intent(in) :: closure               !! 1: closed cracks regain their stiffness
@@ -224,7 +226,7 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: node(2, elements)
-      integer(c_int), intent(in) :: direction(2, elements)    !! 1 x, 2 y
+      integer(c_int), intent(in) :: direction(2, elements)    !! which freedoms of the nodes
       real(c_double), intent(in) :: stiffness(elements)       !! [N/m]
       integer(c_int), intent(out) :: status
       type(spring_group), allocatable :: new_springs
@@ -278,7 +280,7 @@ contains
       use sla_model, only : element_model, model_factor
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(out) :: node          !! free to move, 0 none
-      integer(c_int), intent(out) :: direction     !! 1 x, 2 y
+      integer(c_int), intent(out) :: direction     !! which of its freedoms
       real(c_double), intent(out) :: ratio         !! smallest over largest pivot
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model

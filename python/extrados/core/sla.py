@@ -12,6 +12,7 @@ from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
     CRACKING,
+    DIRECTIONS,
     ELEMENTS,
     EVENT,
     EVENTS,
@@ -138,7 +139,7 @@ def memory_limit() -> int:
 class Model(Owner):
     """A model in the core; close it, or use it in a `with`.
 
-    xy (nodes, 2) [m]. `algorithm` "update" changes the factor at each event, "refactor" makes it anew. IndexError
+    xy (nodes, 2) [m], of shells (nodes, 3). `algorithm` "update" changes the factor at each event, "refactor" makes it anew. IndexError
     where an element, a spring or a monitor names a node that is not there.
     """
 
@@ -161,19 +162,23 @@ class Model(Owner):
         self.behaviour = behaviour = behaviour or Behaviour()
         self.plane_points: list[tuple[Plane | Joints, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
-        place = real("xy", np.transpose(xy), (2, None))
+        axes, self.freedoms = np.shape(xy)[-1], freedoms.of_node
+        place = real("xy", np.transpose(xy), (axes, None))
         self.nodes = place.shape[1]
         equation = np.asarray(freedoms.equation)
-        if equation.shape != (self.nodes, 2):
-            raise ValueError(f"equations have shape {equation.shape}, expected ({self.nodes}, 2)")
+        if (axes, self.freedoms) not in ((2, 2), (3, 6)) or len(equation) != self.nodes:
+            raise ValueError(
+                f"places have shape {np.shape(xy)} and equations {equation.shape}, expected ({self.nodes}, 2) of both in "
+                f"the plane, ({self.nodes}, 3) and ({self.nodes}, 6) in space"
+            )
         equations = int(equation.max(initial=-1)) + 1
-        if equations > 2 * self.nodes:
-            raise IndexError(f"a freedom belongs to equation {equations} of {2 * self.nodes} freedoms")
+        if equations > self.freedoms * self.nodes:
+            raise IndexError(f"a freedom belongs to equation {equations} of {self.freedoms * self.nodes} freedoms")
         self.moved = int(freedoms.moved)
         handle, status = _core.api_sla_model.create(
             place,
-            indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1), self.moved,
-            real("factor", np.transpose(freedoms.factor), (2, self.nodes)),
+            indices("equation", equation.T + 1, equations + 1, (self.freedoms, self.nodes)) - np.int32(1), self.moved,
+            real("factor", np.transpose(freedoms.factor), (self.freedoms, self.nodes)),
             CRACKING[behaviour.cracking], retention, int(behaviour.closure), int(behaviour.most_changes),
             float(behaviour.floor),
         )  # fmt: skip
@@ -295,7 +300,7 @@ class Model(Owner):
         node = indices("node of a spring", np.asarray(group.node).T + 1, self.nodes + 1, (2, count)) - np.int32(1)
         direction = np.where(ground, 0, np.asarray(group.direction))
         status = _core.api_sla_model.springs(
-            self.handle, node, indices("direction of a spring", direction.T, 2, (2, count)),
+            self.handle, node, indices("direction of a spring", direction.T, self.freedoms, (2, count)),
             real("stiffness", group.stiffness, (count,)),
         )  # fmt: skip
         check(status, "springs")
@@ -304,7 +309,7 @@ class Model(Owner):
         """Factor of the present damage; returns the smallest over the largest pivot."""
         node, direction, ratio, status = long_call(_core.api_sla_model.factorise, self.handle)
         if status == status_code("not_positive_definite"):
-            raise FreeNode(int(node) - 1, "xy"[max(int(direction) - 1, 0)], float(ratio))
+            raise FreeNode(int(node) - 1, DIRECTIONS[max(int(direction) - 1, 0)], float(ratio))
         check(status, "factor of the stiffness matrix")
         return float(ratio)
 
@@ -317,12 +322,12 @@ class Model(Owner):
         events: int = 0,
         ledger: npt.ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        """Start a stage under nodal forces (nodes, 2) [N]: constant + lambda reference."""
+        """Start a stage under nodal forces (nodes, 2) [N], of shells (nodes, 6) [N], [N m]: constant + lambda reference."""
         status = long_call(
             _core.api_sla.loads,
             self.handle,
-            real("constant", np.transpose(constant), (2, self.nodes)),
-            real("reference", np.transpose(reference), (2, self.nodes)),
+            real("constant", np.transpose(constant), (self.freedoms, self.nodes)),
+            real("reference", np.transpose(reference), (self.freedoms, self.nodes)),
             int(carried),
             int(events),
             real("ledger", ledger, (3,)),
@@ -358,7 +363,7 @@ class Model(Owner):
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
-        direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
+        direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape)
         limits = [
             min(stop.load, huge),
             min(stop.displacement, huge),
@@ -397,8 +402,8 @@ class Model(Owner):
         return int(damaged), float(cracked)
 
     def displacement(self, load: float) -> np.ndarray:
-        """Displacements (nodes, 2) [m] under constant + load * reference."""
-        ua, ub, status = _core.api_sla.displacement(self.handle, self.nodes)
+        """Displacements (nodes, 2) [m], of shells (nodes, 6) [m], [rad], under constant + load * reference."""
+        ua, ub, status = _core.api_sla.displacement(self.handle, self.freedoms, self.nodes)
         check(status, "displacements")
         return np.array((ua + load * ub).T)
 
