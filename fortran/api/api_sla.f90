@@ -107,7 +107,7 @@ contains
       real(c_double), intent(in) :: share(entries)
       !> Events, residual checks, re-solutions, new factors, reason (list sla_stop)
       integer(c_int), intent(out) :: counts(5)
-      real(c_double), intent(out) :: reals(11, room)      !! see sla_events
+      real(c_double), intent(out) :: reals(11, room)      !! see event_log of sla_ledger
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
@@ -129,7 +129,8 @@ contains
       subroutine events(fate)
          use common_status, only : status_bad_index, status_out_of_memory
          use common_threads, only : threads_available
-         use sla_events, only : run_events, stop_rules, event_log
+         use sla_events, only : run_events, stop_rules
+         use sla_ledger, only : event_log
          use sla_handle, only : check_nodes
          integer(c_int), intent(out) :: fate
          type(stop_rules) :: rules
@@ -168,7 +169,7 @@ contains
    subroutine relax(handle, lambda, damaged, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
-      use sla_events, only : damage_overloaded
+      use sla_incremental, only : damage_overloaded
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
@@ -226,7 +227,7 @@ contains
    subroutine measure(handle, ratio, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
-      use sla_events, only : residual
+      use sla_guard, only : residual
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle

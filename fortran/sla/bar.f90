@@ -4,7 +4,7 @@ module sla_bar
    use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, &
-      linear_bound
+      admitted, linear_bound
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -267,7 +267,7 @@ contains
          values(12, e) = 1.0_wp
          found = scan_result()
          call bar_scan(group, e, e, ua, ub, lambda, noise, found)
-         values(13:14, e) = [found%lo%value, found%hi%value]
+         values(13:14, e) = admitted(found)
          values(15, e) = group%volume(e)
          values(16, e) = real(group%tooth(2, e), wp)
          values(17, e) = 1.0_wp

@@ -3,11 +3,12 @@ module sla_handle
    use common_handles, only : handle_new, handle_take, handle_leave
    use common_lists, only : handle_sla
    use common_status, only : status_ok, status_bad_index, status_not_ready, status_out_of_memory
-   use sla_model, only : element_model, model_free
+   use sla_group, only : element_group
+   use sla_model, only : element_model, model_add, model_free
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
-   public :: model_register, model_destroy, model_take, both_directions, check_nodes
+   public :: model_register, model_destroy, model_take, group_begun, group_added, both_directions, check_nodes
    public :: stage_new, stage_prepared, stage_factored, stage_loaded
 
    !> How far a model is built: groups are added to a new one, loads need a factor, events need loads
@@ -51,6 +52,34 @@ contains
       model => null()
       call handle_leave(handle)
    end subroutine model_take
+
+   !> Take a model to add a group to it, whose nodes and tooth tables are checked; group_added must follow where the
+   !> status is ok
+   subroutine group_begun(handle, connect, table, model, status)
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: connect(:, :)    !! (nodes, elements), 1-based
+      integer(c_int), intent(in) :: table(:, :)      !! tooth tables, 0 none
+      type(element_model), pointer, intent(out) :: model
+      integer(c_int), intent(out) :: status
+      call model_take(handle, stage_new, stage_new, model, status)
+      if (status /= status_ok) return
+      call check_nodes(model, connect, 1_c_int, status)
+      if (any(table < 0) .or. any(table > model%teeth%tables())) status = status_bad_index
+      if (status /= status_ok) call handle_leave(handle)
+   end subroutine group_begun
+
+   !> Add a group whose nodes move in x and y, unless making it failed, and leave the model
+   subroutine group_added(handle, model, connect, group, status)
+      integer(c_int64_t), intent(in) :: handle
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(in) :: connect(:, :)                    !! (nodes, elements), 1-based
+      class(element_group), allocatable, intent(inout) :: group      !! taken over
+      integer(c_int), intent(inout) :: status                        !! of the group that was made
+      integer(c_int), allocatable :: node(:, :), direction(:, :)
+      if (status == status_ok) call both_directions(connect, node, direction, status)
+      if (status == status_ok) call model_add(model, group, node, direction, status)
+      call handle_leave(handle)
+   end subroutine group_added
 
    !> Do all entries name a node of the model?
    pure subroutine check_nodes(model, node, lowest, status)

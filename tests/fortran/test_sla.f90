@@ -3,9 +3,10 @@ program test_sla
    use common_kinds, only : wp
    use common_status, only : status_ok
    use common_lists, only : element_q4 => sla_element_q4, law_linear => sla_law_linear
-   use sla_events, only : run_events, stop_rules, event_log, log_reals, log_integers
+   use sla_events, only : run_events, stop_rules
    use sla_group, only : element_group, material_options
    use sla_handle, only : both_directions
+   use sla_ledger, only : event_log, log_reals, log_integers
    use sla_model, only : element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free
    use sla_plane, only : plane_group, plane_group_new
    use sla_sawtooth, only : make_teeth

@@ -71,7 +71,7 @@ class Stop:
     already: float = 0.0
 
 
-#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane.f90)
+#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane_points.f90)
 LEAST_SHARE = 0.2
 
 

@@ -237,7 +237,7 @@ def crack_bands(mesh: Mesh, group: ElementGroup, options: Sla) -> tuple[np.ndarr
     """h of each element [m], and (elements, 2) its least and greatest where it follows from the crack's direction.
 
     The thickness of a row along a joint; or given; or the width of a linear element across the crack
-    (fortran/sla/plane.f90), that of a mean direction for what crushes; or by the area: sqrt(2 A) of linear elements,
+    (fortran/sla/plane_points.f90), that of a mean direction for what crushes; or by the area: sqrt(2 A) of linear elements,
     sqrt(A) of quadratic ones, in which cracks keep to a part of the element.
     """
     if group.band is not None:
