@@ -68,8 +68,8 @@ contains
       call tooth_tables_copy(teeth, group%teeth, status)
       if (status /= status_ok) return
       status = status_out_of_memory
-      allocate (group%gradient(group%freedoms, n), group%volume(n), group%young(n), group%table(n), group%crush_table(n), &
-         group%tooth(2, n), group%modulus(n), stat=info)
+      allocate (group%gradient(group%freedoms, n), group%volume(n), group%young(n), group%table(n), &
+         group%crush_table(n), group%tooth(2, n), group%modulus(n), stat=info)
       if (info /= 0) return
       group%young(:) = young
       group%modulus(:) = young

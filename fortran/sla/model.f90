@@ -121,7 +121,8 @@ contains
       status = status_invalid_argument
       if (model%equations < 1 .or. minval(equation) < 0 .or. moved < 0) return
       allocate (model%xy(size(xy, 1), model%nodes), model%equation(size(equation, 1), model%nodes), &
-         model%factor(size(equation, 1), model%nodes), model%holders(0), model%moved(moved, 2), model%reaction(moved, 2), stat=info)
+         model%factor(size(equation, 1), model%nodes), model%holders(0), model%moved(moved, 2), &
+         model%reaction(moved, 2), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       model%moved(:, :) = 0.0_wp
@@ -229,8 +230,9 @@ contains
          end select
       end do
       ! Regions that were not measured are looked at in each event
-      if (status == status_ok .and. size(model%equation, 1) == 2 .and. .not. (model%refactor .or. model%slides)) call regions_measure(model%tree, &
-         model%holders, model%xy, model%equation, model%factor, status)
+      if (status == status_ok .and. size(model%equation, 1) == 2 .and. .not. (model%refactor .or. model%slides)) then
+         call regions_measure(model%tree, model%holders, model%xy, model%equation, model%factor, status)
+      end if
       if (status /= status_ok) return
       call find_beside(model, status)
       if (status /= status_ok) return

@@ -18,6 +18,7 @@ from extrados.core.sla_parts import (
     EVENTS,
     LAWS,
     STOPS,
+    THROUGH,
     Bars,
     Bedding,
     Behaviour,
@@ -26,6 +27,7 @@ from extrados.core.sla_parts import (
     Joints,
     Monitor,
     Plane,
+    Shells,
     Softening,
     Springs,
     Stop,
@@ -38,7 +40,9 @@ __all__ = [
     "EVENTS",
     "LAWS",
     "REPORT",
+    "DIRECTIONS",
     "STOPS",
+    "THROUGH",
     "VARIANTS",
     "BadElement",
     "Bars",
@@ -51,12 +55,14 @@ __all__ = [
     "Model",
     "Monitor",
     "Plane",
+    "Shells",
     "Softening",
     "Springs",
     "Stop",
     "body_force",
     "intervals",
     "largest_band",
+    "shell_axes",
     "memory_limit",
     "teeth",
 ]  # fmt: skip
@@ -126,6 +132,17 @@ def body_force(
         raise BadElement(bad - 1, "element")
     check(status, "body force")
     return np.array(force.T)
+
+
+def shell_axes(xyz: npt.ArrayLike, connect: npt.ArrayLike) -> np.ndarray:
+    """Axes (elements, 3, 3) of flat shells, rows x, y, normal: x is horizontal, y goes up; of horizontal ones x is x."""
+    place = real("xyz", np.transpose(xyz), (3, None))
+    nodes = indices("connect", np.transpose(connect), place.shape[1], (None, None))
+    axes, bad, status = _core.api_shell.axes_of(place, nodes)
+    if bad:
+        raise BadElement(bad - 1, "shell")
+    check(status, "axes of shells")
+    return np.array(np.transpose(axes, (2, 0, 1)))
 
 
 def memory_limit() -> int:
@@ -271,10 +288,19 @@ class Model(Owner):
                 _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
                 _each("confinement", group.confinement, count), *_bed_rows(group, count),
             )  # fmt: skip
-            bad, status = _core.api_sla_model.plane(
-                self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32)),
-            )  # fmt: skip
+            choices = _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32))
+            if isinstance(group, Shells):
+                bad, status = _core.api_shell.shells(
+                    self.handle, ELEMENTS[group.kind],
+                    integers("section", [THROUGH[group.through], group.layers, int(group.bends), int(group.selective)], 4),
+                    real("frames", np.transpose(group.frames, (1, 2, 0)), (3, 3, self.nodes)),
+                    integers("flat", np.asarray(group.flat).astype(int), self.nodes), connect, properties, choices,
+                )  # fmt: skip
+            else:
+                bad, status = _core.api_sla_model.plane(
+                    self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3),
+                    connect, properties, choices,
+                )  # fmt: skip
             what = "element"
         if not isinstance(group, Bars):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
@@ -363,7 +389,9 @@ class Model(Owner):
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
-        direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape)
+        direction = indices(
+            "direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape
+        )
         limits = [
             min(stop.load, huge),
             min(stop.displacement, huge),

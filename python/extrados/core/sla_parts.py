@@ -1,7 +1,7 @@
 """What a sequentially linear analysis is made of: laws, elements, freedoms, monitors, and what it records."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,6 +13,7 @@ DIRECTIONS = ("x", "y", "z", "rotation about x", "rotation about y", "rotation a
 ELEMENTS = lists.numbers("sla_element")
 CRACKING = lists.numbers("sla_cracking")
 EVENTS = lists.words("sla_event")
+THROUGH = lists.numbers("shell_through")
 #: Name of an event -> its number
 EVENT = {entry.name: entry.number for entry in lists.entries("sla_event")}
 STOPS = lists.words("sla_stop")
@@ -136,6 +137,28 @@ class Plane:
     def points_each(self) -> int:
         """Integration points of an element."""
         return {"T3": 1, "T6": 3}.get(self.kind, self.points[0] * self.points[1])
+
+
+@dataclass(frozen=True)
+class Shells(Plane):
+    """Flat shells of three or four nodes in space, fields as of Plane; angles are to the element's own x axis, which is
+    horizontal.
+
+    frames (nodes, 3, 3) columns: axes of the rotations of each node of the model; flat (nodes) True where all shells at
+    a node lie in the plane across its third axis, whose rotation is then to be held. `layers` through the thickness at
+    Gauss's or Lobatto's points; a group that does not bend is a membrane of one layer.
+    """
+
+    frames: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 3)))
+    flat: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=bool))
+    layers: int = 5
+    through: str = "lobatto"
+    bends: bool = True
+
+    @property
+    def points_each(self) -> int:
+        """Integration points of an element, those of one place through the thickness one after the other."""
+        return {"T3": 3, "Q4": 4}[self.kind] * self.layers
 
 
 @dataclass(frozen=True)
