@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from extrados.building.mesh.shells import nodal_areas, spread
 from extrados.core import sla as core
-from extrados.core.shell import nodal_areas, node_frames, spread
+from extrados.core.shell import node_frames
 
 
 def surface(n, place, m=None):

@@ -1,4 +1,4 @@
-"""Flat shells in space: the axes of their nodes, and how forces spread over them."""
+"""Flat shells in space: the axes of their nodes."""
 
 from collections.abc import Iterable
 
@@ -29,28 +29,3 @@ def node_frames(xyz: np.ndarray, groups: Iterable[np.ndarray]) -> tuple[np.ndarr
             flat[corner[away > FLAT]] = False
     frames[~flat | ~seen] = np.eye(3)
     return frames, flat & seen
-
-
-def nodal_areas(xyz: np.ndarray, connect: np.ndarray) -> np.ndarray:
-    """Area (elements, corners) [m^2] that each corner stands for: the integral of its shape function."""
-    c = xyz[connect]
-    if connect.shape[1] == 3:
-        area = 0.5 * np.linalg.norm(np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), axis=1)
-        return np.repeat(area[:, None] / 3.0, 3, axis=1)
-    at = np.sqrt(1.0 / 3.0)
-    share = np.zeros((len(connect), 4))
-    for r, s in ((-at, -at), (at, -at), (at, at), (-at, at)):
-        n = 0.25 * np.array([(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s), (1 - r) * (1 + s)])
-        dr = 0.25 * np.array([-(1 - s), 1 - s, 1 + s, -(1 + s)])
-        ds = 0.25 * np.array([-(1 - r), -(1 + r), 1 + r, 1 - r])
-        size = np.linalg.norm(np.cross(np.einsum("c,ecx->ex", dr, c), np.einsum("c,ecx->ex", ds, c)), axis=1)
-        share += size[:, None] * n
-    return share
-
-
-def spread(nodes: int, connect: np.ndarray, share: np.ndarray, density: np.ndarray) -> np.ndarray:
-    """Nodal forces (nodes, 6) [N] of a force per area (elements, 3) [N/m^2]; share as of nodal_areas."""
-    force = np.zeros((nodes, 6))
-    for k, corner in enumerate(connect.T):
-        np.add.at(force[:, :3], corner, share[:, k, None] * density)
-    return force

@@ -35,12 +35,12 @@ from extrados.core.sla_parts import (
 
 __all__ = [
     "CRACKING",
+    "DIRECTIONS",
     "ELEMENTS",
     "EVENT",
     "EVENTS",
     "LAWS",
     "REPORT",
-    "DIRECTIONS",
     "STOPS",
     "THROUGH",
     "VARIANTS",
@@ -62,8 +62,8 @@ __all__ = [
     "body_force",
     "intervals",
     "largest_band",
-    "shell_axes",
     "memory_limit",
+    "shell_axes",
     "teeth",
 ]  # fmt: skip
 
