@@ -39,6 +39,7 @@ STRUCTURES: dict[str, str] = {
     "brickwork": "building.templates.brickwork:Brickwork",
     "frame": "building.templates.frame:Frame",
     "stack": "building.templates.stack:Stack",
+    "building": "building.templates.plan:Plan",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
@@ -94,6 +95,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
     "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
     "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla/beam"),
+    "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "building/two-rooms"),
     "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem/oppenheim"),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
     "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "assess/readme-arch"),

@@ -56,6 +56,7 @@ MAY_USE = {
     "arch": {"common", "mechanism"},
     "rocking": {"common", "arch", "mechanism"},
     "sla": {"common"},
+    "shell": {"common", "sla"},
     "dem": {"common"},
     "motion": {"common"},
     "limit": {"common"},

@@ -14,6 +14,7 @@ from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
 from extrados.building.mesh.mesh import Mesh
 from extrados.building.mesh.options import MeshOptions
+from extrados.building.mesh.shells import ShellMesh, ShellOptions
 from extrados.building.properties import (
     NO_SLIDING,
     NO_SLIDING_COEFFICIENT,
@@ -206,6 +207,12 @@ class Building:
         options = options or MeshOptions()
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
         return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
+
+    def shell(self, options: ShellOptions | None = None) -> ShellMesh:
+        """Flat shells in space: walls on a plan with the floors between them."""
+        options = options or ShellOptions()
+        tables = (self.structure, self.material, *self.materials.items(), options)
+        return self._view("shell", tables, lambda: self._structure().shell(self, options))
 
     @property
     def meshed_by_stones(self) -> bool:
