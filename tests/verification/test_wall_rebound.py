@@ -1,4 +1,4 @@
-"""What throws a facade back from the wall behind it: three impacts in a row beside discrete elements."""
+"""What throws a facade back from the wall behind it: three impacts beside discrete elements."""
 
 import numpy as np
 import pytest

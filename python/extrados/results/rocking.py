@@ -98,9 +98,7 @@ class Rocking(KindResults):
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     energy_taken_up_J: float = maybe("what dampers and yielding have taken up, where something holds it", "J")
     restraints: list[RestraintForces] = maybe("what holds it besides its weight")
-    rebound: float = maybe(
-        "against a wall: rate after over before it is thrown back, as given or by three impacts in a row"
-    )
+    rebound: float = maybe("against a wall: rate after over before it is thrown back, as given or by three impacts")
     energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("steps that it tried and refused")
