@@ -450,12 +450,15 @@ def cases(
 
 
 @app.command()
-def report(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
-    """Draw the figures and the report of stored results anew."""
+def report(
+    folder: Annotated[Path, typer.Argument(help="a results folder")],
+    pdf: Annotated[bool | None, typer.Option(help="also report.pdf; default where the run holds an assessment")] = None,
+) -> None:
+    """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF."""
     from extrados.plots.report import write_report
 
     with _errors():
-        out_console.say(f"Report:  {write_report(folder)[0]}")
+        out_console.say(f"Report:  {write_report(folder, pdf)[0]}")
 
 
 @app.command()

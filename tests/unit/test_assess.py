@@ -47,7 +47,7 @@ def test_parts_are_what_the_analyses_give_by_themselves(whole: Run) -> None:
         assert whole[kind].as_json() == alone[kind].as_json()
     rows = {v.strategy: v for v in r.verdicts}
     assert rows["tilt"].margin == pytest.approx(alone["tilt"].collapse_acceleration_g / 0.3)
-    assert rows["tilt"].part == "tilt" and rows["probability"].part == "fragility-2"
+    assert rows["tilt"].part == "tilt" and rows["probability"].part == "fragility"
     assert set(r.parts) == {a["name"] for a in whole.analyses[1:]}
     assert {p["kind"] for p in whole.summary["deck"]["resolved"]["analysis"]} >= {"assess", "tilt", "dem"}
 
@@ -63,7 +63,7 @@ def test_the_margin_of_rocking_encloses_the_factor_that_brings_it_down(whole: Ru
 
 def test_decks_of_the_parts_run_by_themselves(whole: Run, tmp_path: Path) -> None:
     result = whole.results[0]
-    for name in ("tilt", "fragility-2"):
+    for name in ("tilt", "fragility"):
         path = tmp_path / f"{name}.toml"
         path.write_bytes(result.files[f"assess/{name}.toml"])
         again = extrados.run(path)

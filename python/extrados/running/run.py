@@ -14,6 +14,7 @@ from extrados.decks.reader import Deck
 from extrados.results import checkpoint, store
 from extrados.results.model import Result
 from extrados.results.store import Stored
+from extrados.running.described import described
 from extrados.running.provenance import provenance
 
 
@@ -30,7 +31,9 @@ class Run(Stored):
         """The run of a deck that has been computed, the parts of its analyses after them; it has no folder yet."""
         parts = [part for result in results for part in result.parts]
         results = [*results, *parts]
-        run = cls(None, lambda: _head(deck, parts), store.rows(results), store.arrays_of(results), store.typed_of(results))
+        run = cls(
+            None, lambda: _head(deck, parts), store.rows(results), store.arrays_of(results), store.typed_of(results)
+        )
         run.results = tuple(results)
         return run
 
@@ -81,6 +84,10 @@ def _head(deck: Deck, parts: list[Result]) -> dict[str, Any]:
             "sha256": deck.identity,
             "title": deck.title,
             "note": deck.note,
+            "project": deck.project,
+            "author": deck.author,
+            "date": deck.date,
+            **described(deck),
             "resolved": resolved,
         },
     }

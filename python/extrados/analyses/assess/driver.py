@@ -155,10 +155,15 @@ class _Work:
         """The factor on the one motion at which rocking brings it down: the margin of `rocking`."""
         found = self.ask(strategies.SCALED)
         row = self.rows.pop("scaled")
+        if found is not None:  # a curve of one motion is none: its factors stand at the row of rocking
+            self.parts.pop()
+            self.decks.pop()
         if found is None:
             self.context.warnings.append(f"the margin of rocking is not known: {row.reason}")
             return
         self._bracket("rocking", *scaled_margin(found.results))
+        words = f"{self.rows['rocking'].parameters}; its margin from {row.parameters}"
+        self.rows["rocking"] = self.rows["rocking"].model_copy(update={"parameters": words})
         if found.results.resurrections:
             self.context.warnings.append(
                 "at some factors above the first that brings it down it rocks and stays up: these are not to be relied on"

@@ -12,6 +12,7 @@ from extrados.analyses.context import Context
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.motions.tables import Compatible
+from extrados.results.limits import LIMITS
 from extrados.schema.constants import GRAVITY
 
 #: Shares of the budget that a strategy may take
@@ -216,40 +217,18 @@ def _too_long(seconds: float, share: float, how: str) -> str:
     return f"{how} it takes about {seconds:.0f} s, its share of the budget is {share:.0f} s"
 
 
-ALL = (
-    Strategy(
-        "tilt", "tilt", "limit analysis", "acceleration",
-        "A constant acceleration pushes for ever; stones are rigid, joints bear no tension and slide by friction. It asks how "
-        "hard, never how long: what it lets stand no motion of that peak brings down by the same mechanism.", _as_it_is,
-    ),
-    Strategy(
-        "rocking", "rocking", "rocking", "displacement",
-        "The building moves as one mechanism, that of limit analysis, without sliding; impacts lose energy by the rule of "
-        "[joints] restitution.", _as_it_is,
-    ),
-    Strategy(
-        "assessment", "assessment", "primary impulse", "pulse",
-        "The motion is its strongest single sines, each against the curve of sines that bring the mechanism down from rest.",
-        _as_it_is,
-    ),
-    Strategy(
-        "code-checks", "code-checks", "codes", "check",
-        "Rules of codes with their own reductions (q, FC, 0.4 of the displacement); each with its clause.", _codes,
-    ),
-    Strategy(
-        "probability", "fragility", "probability", "probability",
-        "Rocking again, of many buildings or motions that differ as the deck cannot know.", _probability,
-    ),
-    Strategy(
-        "sla", "sla", "sequentially linear analysis", "acceleration",
-        "Elastic stones or walls whose joints or elements crack one after the other under a growing constant acceleration.",
-        _sla,
-    ),
-    Strategy(
-        "dem", "dem", "discrete elements", "displacement",
-        "Every stone moves by itself on springs that open, slide and damp; no mechanism is chosen before.", _dem,
-    ),
-)  # fmt: skip
+ALL = tuple(
+    Strategy(name, kind, label, axis, LIMITS[kind][0], choose)
+    for name, kind, label, axis, choose in (
+        ("tilt", "tilt", "limit analysis", "acceleration", _as_it_is),
+        ("rocking", "rocking", "rocking", "displacement", _as_it_is),
+        ("assessment", "assessment", "primary impulse", "pulse", _as_it_is),
+        ("code-checks", "code-checks", "codes", "check", _codes),
+        ("probability", "fragility", "probability", "probability", _probability),
+        ("sla", "sla", "sequentially linear analysis", "acceleration", _sla),
+        ("dem", "dem", "discrete elements", "displacement", _dem),
+    )
+)
 #: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
 SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "probability", "", _levels)
 
