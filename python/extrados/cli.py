@@ -309,9 +309,11 @@ def check(
             continue
         checked = check_building(deck)
         complaints += checked.complaints
+        folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
         if checked.inspection is not None:
-            folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
             _tell_survey(checked, folder, asked=out is not None)
+        if checked.solids is not None:
+            _tell_solids(checked, folder, asked=out is not None or getattr(deck.structure, "file", None) is not None)
     for line in complaints:
         err_console.say(line)
     if complaints:
@@ -356,6 +358,24 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
         return
     out_console.say(f"Picture: {picture}")
     out_console.say(f"List:    {table}")
+
+
+def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
+    """How many solids touch along how many contacts; their picture where they come from a file, or the folder is asked for."""
+    from extrados.running.check import write_solids
+
+    solids = checked.solids
+    for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
+        out_console.say(line)
+    out_console.say(
+        f"{len(solids.mass)} solids, {len(solids.a)} contacts, {int((solids.b < 0).sum())} of them on the ground"
+    )
+    if not asked:
+        return
+    try:
+        out_console.say(f"Picture: {write_solids(solids, folder)}")
+    except OSError as error:
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
 
 
 @app.command()

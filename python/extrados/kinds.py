@@ -40,6 +40,9 @@ STRUCTURES: dict[str, str] = {
     "frame": "building.templates.frame:Frame",
     "stack": "building.templates.stack:Stack",
     "building": "building.templates.plan:Plan",
+    "wall": "building.templates.wall:Wall",
+    "dome": "building.templates.dome:Dome",
+    "cross-vault": "building.templates.cross_vault:CrossVault",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
@@ -64,7 +67,9 @@ def _analysis(room: str, table: str, driver: str, figures: str, example: str) ->
 
 
 ANALYSES: dict[str, AnalysisKind] = {
-    "tilt": _analysis("limit", "Tilt", "tilt", "limit:draw_tilt", "limit/oppenheim"),
+    "tilt": AnalysisKind(
+        "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "plots.solids:draw_tilt", "limit/oppenheim.toml"
+    ),
     "thrust": _analysis("limit", "Thrust", "thrust", "limit:draw_thrust", "vault/dejong-a"),
     "sweep": _analysis("limit", "Sweep", "sweep", "limit:draw_sweep", "vault/vezelay-sweep"),
     "survey": _analysis("limit", "Survey", "survey", "limit:draw_survey", "limit/survey"),
