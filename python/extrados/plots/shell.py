@@ -109,7 +109,9 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
     width, angle = run.array(name, f"{prefix}state_width"), run.array(name, f"{prefix}state_angle")
     load, event = run.array(name, f"{prefix}state_load"), run.array(name, f"{prefix}state_event")
     of, s, z = (run.array(name, f"place_{n}") for n in ("wall", "s", "z"))
-    names = [row.wall for row in (run[name].minus if prefix else run[name]).walls] or [str(k + 1) for k in range(len(walls))]
+    names = [row.wall for row in (run[name].minus if prefix else run[name]).walls] or [
+        str(k + 1) for k in range(len(walls))
+    ]
     shown = _shown(run, name, prefix)
     gap = GAP * level[-1]
     start = np.concatenate([[0.0], np.cumsum(walls[:, 4] + gap)])
@@ -141,7 +143,9 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             )  # fmt: skip
             ax.add_collection(drawn)
             for w, word in enumerate(names):
-                ax.text(start[w] + 0.5 * walls[w, 4], level[-1] + 0.02 * level[-1], f"wall {word}", ha="center", va="bottom")
+                ax.text(
+                    start[w] + 0.5 * walls[w, 4], level[-1] + 0.02 * level[-1], f"wall {word}", ha="center", va="bottom"
+                )
                 ax.add_patch(_frame(start[w], walls[w, 4], level[-1]))
             for height in level[1:-1]:
                 ax.axhline(height, color="#b9c4cf", linewidth=0.6, linestyle=":")
@@ -301,7 +305,9 @@ def draw_plan(
                            facecolors=style.STONE, edgecolors=style.EDGE)
         )  # fmt: skip
         for a, b, c, d in openings:
-            ax.add_collection(PolyCollection([[(a, c), (b, c), (b, d), (a, d)]], facecolors="white", edgecolors=style.EDGE))
+            ax.add_collection(
+                PolyCollection([[(a, c), (b, c), (b, d), (a, d)]], facecolors="white", edgecolors=style.EDGE)
+            )
         for height in levels[1:-1]:
             ax.axhline(height, color="#8fa3b5", linewidth=0.7, linestyle=":")
         for x in lines:

@@ -117,7 +117,18 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     behaviour = core.Behaviour(options.cracking, options.shear_retention, options.crack_closure)
     control = _control(mesh, options, along)
     model = ShellModel(
-        mesh, freedoms, groups, behaviour, constant, reference, 1.0, control, along, weight, axes, options.mechanism_ratio
+        mesh,
+        freedoms,
+        groups,
+        behaviour,
+        constant,
+        reference,
+        1.0,
+        control,
+        along,
+        weight,
+        axes,
+        options.mechanism_ratio,
     )
     if options.drives:
         node, direction, share = max(ties[0], key=lambda term: abs(term[2]))
@@ -234,9 +245,7 @@ def _shells(
     local = np.einsum("eax,ecx->eca", axes[:, :2], corners - corners.mean(axis=1, keepdims=True)).reshape(-1, 2)
     alone = np.arange(len(local)).reshape(part.connect.shape)
     # Equal elements have equal bands: their tooth tables are made once
-    band, reach = (
-        None if b is None else np.round(b, 9) for b in bands_of(local, part.kind, alone, options)
-    )
+    band, reach = (None if b is None else np.round(b, 9) for b in bands_of(local, part.kind, alone, options))
     tension, crushing, beds = laws_of(materials, part.linear, part.strength, band, reach, options)
     return core.Shells(
         part.kind, part.connect, part.thickness, np.array([m.young for m in materials]),

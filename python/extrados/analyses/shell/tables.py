@@ -55,7 +55,9 @@ class Pushover(CrackOptions, BuildingAnalysis):
         "that direction",
     )
     drives: list[Drive] = key(
-        [], "in place of the pattern: walls whose tops of storeys move by given parts of one displacement", max_length=100
+        [],
+        "in place of the pattern: walls whose tops of storeys move by given parts of one displacement",
+        max_length=100,
     )
     control: Drive | None = key(
         None, "whose mean displacement in the direction is followed; default that of all walls on the highest level"
