@@ -11,6 +11,7 @@ import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.inspection import Inspection
+from extrados.building.mesh.shells import ShellMesh
 from extrados.decks.reader import Deck
 from extrados.results import written
 
@@ -30,18 +31,20 @@ class Place:
 @dataclass(frozen=True)
 class Checked:
     """complaints: why the deck would be refused; remarks and notes on its geometry; the list of places, the refused
-    first, then the open, then those that the tolerance closes; inspection: None where it is no survey."""
+    first, then the open, then those that the tolerance closes; inspection: None where it is no survey; plan: the mesh of
+    a building on a plan."""
 
     complaints: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
     inspection: Inspection | None = None
+    plan: ShellMesh | None = None
 
 
 def check_building(deck: Deck) -> Checked:
     """Make the building as the analyses will, without computing anything."""
-    inspection, complaints = None, []
+    inspection, complaints, plan = None, [], None
     try:
         if deck.structure is not None:
             inspection = deck.structure.inspection(deck.folder)
@@ -51,11 +54,13 @@ def check_building(deck: Deck) -> Checked:
                 if analysis.view == "blocks":
                     building.blocks()
                     building.friction()
+                elif analysis.view == "shell":
+                    plan = building.shell(analysis.mesh)
     except BadGeometry as error:
         complaints = [str(error)]
     complaints = [f"{deck.path or 'deck'}: structure: {text}" for text in dict.fromkeys(complaints)]
     if inspection is None:
-        return Checked(complaints)
+        return Checked(complaints, plan.warnings if plan else [], plan=plan)
     return Checked(complaints, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
 
 
@@ -103,3 +108,23 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
         with written.alone(folder.parent):
             names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
     return folder / names["geometry.png"], folder / names["geometry.csv"]
+
+
+def write_plan(mesh: ShellMesh, folder: Path) -> Path:
+    """Plan and elevations of a building with its mesh into a folder: plan.png (and .svg), under the rule of write_check."""
+    from extrados.plots.plan import Elevation, draw_plan
+
+    folder = Path(os.path.abspath(folder))
+    folder.mkdir(parents=True, exist_ok=True)
+    walls = []
+    for number, wall in enumerate(mesh.walls):
+        part = next(p for p in mesh.parts if p.wall == number)
+        corner = wall.unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        end = wall.origin + wall.length * wall.along
+        walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear))
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        scratch = Path(place)
+        draw_plan(scratch, "plan", walls, mesh.levels)
+        with written.alone(folder.parent):
+            names = written.put(scratch, folder, lambda name: name.startswith("plan"))
+    return folder / names["plan.png"]
