@@ -38,10 +38,11 @@ module sla_regions
       integer :: run = 0, runs = 0                  !! elements
       real(wp) :: centre(3) = 0.0_wp                !! of the polynomial
       real(wp) :: size = 1.0_wp
-      !> (terms, terms, directions) inverse Cholesky factor of the weighted monomials by direction
-      real(wp), allocatable :: fit(:, :, :)
-      !> Of the orthonormal polynomials, those of one direction after the other [N/m], [N m]
-      real(wp), allocatable :: energy(:, :)
+      !> (terms, polynomials) of the monomials, orthonormal over the weighted equations of one direction each
+      real(wp), allocatable :: fit(:, :)
+      integer, allocatable :: of(:)                 !! (polynomials) their directions
+      real(wp), allocatable :: energy(:, :)         !! of the polynomials [N/m], [N m]
+      real(wp) :: stiffest = 0.0_wp                 !! greatest entry of it
       real(wp) :: margin(levels) = -1.0_wp          !! of all points below, see point_group [J^1/2]
       real(wp) :: moved(6) = 0.0_wp                 !! energies of the edge's motion, see `reach`
       integer :: patience = 0                       !! events to go without asking
@@ -343,16 +344,14 @@ contains
       real(wp), intent(in) :: energy(:, :)           !! of the monomials of the whole [N/m]
       integer(c_int), intent(out) :: status
       real(wp) :: gram(tree%terms, tree%terms), shift(tree%terms, tree%terms), values(tree%terms)
-      real(wp) :: full(tree%terms * tree%directions, tree%terms * tree%directions)
-      integer :: i, d, q, count, linear, terms, axes, info
+      real(wp) :: rows(tree%terms, tree%terms, tree%directions), full(tree%terms, tree%terms * tree%directions)
+      real(wp) :: whole(tree%terms * tree%directions, tree%terms * tree%directions)
+      integer :: of(tree%terms * tree%directions), i, d, q, count, linear, terms, axes, info
 
       terms = tree%terms
       axes = size(tree%place, 1)
       status = status_ok
       if (part%edges == 0) return
-      allocate (part%fit(terms, terms, tree%directions), part%energy(size(energy, 1), size(energy, 2)), stat=info)
-      if (info /= 0) status = status_out_of_memory
-      if (info /= 0) return
       part%centre = 0.0_wp
       do i = part%edge + 1, part%edge + part%edges
          part%centre(1:axes) = part%centre(1:axes) + tree%place(:, tree%edge(i)) / part%edges
@@ -365,21 +364,42 @@ contains
       linear = 1 + axes
       shift(2:linear, :) = shift(2:linear, :) / part%size
       shift(linear + 1:, :) = shift(linear + 1:, :) / part%size**2
-      full = 0.0_wp
+      count = 0
       do d = 1, tree%directions
          gram = 0.0_wp
          do i = part%edge + 1, part%edge + part%edges
             q = tree%edge(i)
             if (tree%direction(q) /= d) cycle
             values = tree%share(q) * monomials((tree%place(:, q) - part%centre(1:axes)) / part%size, terms)
-            do count = 1, terms
-               gram(:, count) = gram(:, count) + tree%weight(q) * values(count) * values
+            do q = 1, terms
+               gram(:, q) = gram(:, q) + tree%weight(tree%edge(i)) * values(q) * values
             end do
          end do
-         call inverse_cholesky(gram, part%fit(:, :, d))
-         full(terms * (d - 1) + 1:terms * d, terms * (d - 1) + 1:terms * d) = matmul(part%fit(:, :, d), shift)
+         call inverse_cholesky(gram, rows(:, :, d))
+         do i = 1, terms      ! in a plane and along a line monomials depend on others: rows of zeros
+            if (.not. any(abs(rows(i, :, d)) > 0.0_wp)) cycle
+            count = count + 1
+            of(count) = d
+            whole(1:terms, count) = rows(i, :, d)
+            full(:, count) = matmul(rows(i, :, d), shift)
+         end do
       end do
-      part%energy(:, :) = matmul(full, matmul(energy, transpose(full)))
+      allocate (part%fit(terms, count), part%of(count), part%energy(count, count), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      part%fit(:, :) = whole(1:terms, 1:count)
+      part%of(:) = of(1:count)
+      do i = 1, count
+         d = terms * (of(i) - 1)
+         whole(:, i) = matmul(energy(:, d + 1:d + terms), full(:, i))
+      end do
+      do i = 1, count
+         do q = 1, count
+            d = terms * (of(q) - 1)
+            part%energy(q, i) = dot_product(full(:, q), whole(d + 1:d + terms, i))
+         end do
+      end do
+      part%stiffest = maxval(abs(part%energy))
    end subroutine fit_edge
 
    !> Inverse of the lower Cholesky factor; a monomial that depends on those before it is left out (a row of zeros)
@@ -568,10 +588,9 @@ contains
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
       real(wp), parameter :: rounding = 1.0e-12_wp
-      real(wp) :: moment(tree%terms, tree%directions, 2), a(tree%terms * tree%directions, 2), norm(3)
-      real(wp) :: phi(tree%terms), da, db, w, stiff
-      real(wp) :: ha(tree%terms * tree%directions), hb(tree%terms * tree%directions)
-      integer :: i, q, d, terms, axes
+      real(wp) :: moment(most_terms, most_directions, 2), norm(3), x(3), phi(most_terms), da, db, w, stiff, products(6)
+      real(wp) :: a(most_terms * most_directions), b(most_terms * most_directions), ha, hb
+      integer :: i, j, q, d, terms, axes
       part%moved = 0.0_wp
       if (part%edges == 0) return
       terms = tree%terms
@@ -585,25 +604,39 @@ contains
          w = tree%weight(q)
          norm = norm + w * [da * da, da * db, db * db]
          w = w * tree%share(q)
-         phi = monomials((tree%place(:, q) - part%centre(1:axes)) / part%size, terms)
+         x(1:axes) = (tree%place(:, q) - part%centre(1:axes)) / part%size
+         if (axes == 2) then
+            phi(1:6) = [1.0_wp, x(1), x(2), x(1) * x(1), x(1) * x(2), x(2) * x(2)]
+         else
+            phi = [1.0_wp, x(1), x(2), x(3), x(1) * x(1), x(1) * x(2), x(1) * x(3), x(2) * x(2), x(2) * x(3), x(3) * x(3)]
+         end if
          d = tree%direction(q)
-         moment(:, d, 1) = moment(:, d, 1) + (w * da) * phi
-         moment(:, d, 2) = moment(:, d, 2) + (w * db) * phi
-      end do
-      do i = 1, 2
-         do d = 1, tree%directions
-            a(terms * (d - 1) + 1:terms * d, i) = matmul(part%fit(:, :, d), moment(:, d, i))
+         do j = 1, terms
+            moment(j, d, 1) = moment(j, d, 1) + (w * da) * phi(j)
+            moment(j, d, 2) = moment(j, d, 2) + (w * db) * phi(j)
          end do
       end do
-      ha = matmul(part%energy, a(:, 1))
-      hb = matmul(part%energy, a(:, 2))
-      stiff = rounding * maxval(abs(part%energy))
-      part%moved(1) = dot_product(a(:, 1), ha) + stiff * dot_product(a(:, 1), a(:, 1))
-      part%moved(2) = dot_product(a(:, 1), hb) + stiff * dot_product(a(:, 1), a(:, 2))
-      part%moved(3) = dot_product(a(:, 2), hb) + stiff * dot_product(a(:, 2), a(:, 2))
-      part%moved(4) = (1.0_wp + rounding) * norm(1) - dot_product(a(:, 1), a(:, 1))
-      part%moved(5) = (1.0_wp + rounding) * norm(2) - dot_product(a(:, 1), a(:, 2))
-      part%moved(6) = (1.0_wp + rounding) * norm(3) - dot_product(a(:, 2), a(:, 2))
+      do i = 1, size(part%of)
+         a(i) = 0.0_wp
+         b(i) = 0.0_wp
+         do j = 1, terms
+            a(i) = a(i) + part%fit(j, i) * moment(j, part%of(i), 1)
+            b(i) = b(i) + part%fit(j, i) * moment(j, part%of(i), 2)
+         end do
+      end do
+      products = 0.0_wp
+      do i = 1, size(part%of)
+         ha = 0.0_wp
+         hb = 0.0_wp
+         do j = 1, size(part%of)
+            ha = ha + part%energy(j, i) * a(j)
+            hb = hb + part%energy(j, i) * b(j)
+         end do
+         products = products + [a(i) * ha, a(i) * hb, b(i) * hb, a(i) * a(i), a(i) * b(i), b(i) * b(i)]
+      end do
+      stiff = rounding * part%stiffest
+      part%moved(1:3) = products(1:3) + stiff * products(4:6)
+      part%moved(4:6) = (1.0_wp + rounding) * norm - products(4:6)
    end subroutine edge_motion
 
    !> Margins of the regions that were brought, from their points and from what is left to the regions below

@@ -72,7 +72,9 @@ def deck(tmp_path, corners="[]", events=1200, more=""):
 def one_wall(size=0.5, **options):
     wall = {"name": "a", "start": [0.0, 0.0], "end": [3.0, 0.0], "thickness": 0.25,
             "openings": [{"storey": 1, "x": [1.0, 2.0], "z": [0.0, 2.0]}]}  # fmt: skip
-    mesh = Building(Plan(kind="building", storeys=[3.0], walls=[wall]), MASONRY).shell(ShellOptions(size=size, layers=3))
+    mesh = Building(Plan(kind="building", storeys=[3.0], walls=[wall]), MASONRY).shell(
+        ShellOptions(size=size, layers=3)
+    )
     return build(mesh, Pushover(kind="pushover", mesh=ShellOptions(size=size, layers=3), **options))
 
 
@@ -193,6 +195,20 @@ def test_the_first_mode_of_a_slender_wall_is_that_of_a_cantilever():
     assert shape[mesh.xyz[:, 2] > 5.9].min() > 0.0
 
 
+def test_a_settlement_cracks_before_the_push(tmp_path):
+    """The ground under half of a wall goes down: its base does, the damage stays, and the push finds less stiffness."""
+    sound = extrados.run(deck(tmp_path, events=900)).results[0]
+    more = 'settlements = [{ wall = "2", x = [1.5, 3.0], down = "4 mm" }]'
+    sunk = extrados.run(deck(tmp_path, events=2500, more=more)).results[0]
+    node = sunk["node"]
+    base = (node[:, 2] < 1e-9) & (np.abs(node[:, 1] - 3.0) < 1e-9) & (node[:, 0] > 1.49)
+    assert np.allclose(sunk["state_displacement"][-1][base, 2], -4e-3)
+    assert sunk.results.events_of_constant_loads > 50
+    assert sunk.results.first_crack.wall in ("2", "B") and sunk.results.first_crack.base_shear_N == 0.0
+    assert sunk.results.initial_stiffness_N_m < 0.95 * sound.results.initial_stiffness_N_m
+    assert sunk.results.energy_residual_ratio < 1e-6
+
+
 def test_variants_make_a_band(tmp_path):
     more = 'variants = [{ name = "weak", strength = 0.5 }, { name = "strong", strength = 2.0, energy = 2.0 }]'
     results = extrados.run(deck(tmp_path, events=500, more=more)).results[0].results
@@ -207,6 +223,7 @@ def test_variants_make_a_band(tmp_path):
         ('drives = [{ wall = "9", storey = 1 }]', "no wall '9'"),
         ('drives = [{ wall = "1", storey = 2 }]', "no storey 2"),
         ('drives = [{ wall = "1", storey = 1 }]\ndirection = 30', "along x or y"),
+        ('settlements = [{ wall = "1", x = [5.0, 6.0], down = 0.01 }]', "no support of wall '1'"),
         ('control = { wall = "1", storey = 4 }', "no storey 4"),
     ],
 )

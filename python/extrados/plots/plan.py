@@ -27,7 +27,7 @@ class Elevation:
 
 def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarray) -> Path:
     """Write folder/NAME.png and .svg."""
-    columns = min(MOST_BESIDE, len(walls))
+    columns = min(MOST_BESIDE, int(np.ceil(np.sqrt(len(walls)))))
     rows = -(-len(walls) // columns)
     with style.canvas(3.0 * (columns + 1.4), max(3.4, 2.6 * rows)) as fig:
         grid = fig.add_gridspec(rows, columns + 1, width_ratios=[1.4, *[1.0] * columns])
@@ -36,7 +36,9 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
             along = (wall.end - wall.start) / np.linalg.norm(wall.end - wall.start)
             side = 0.5 * wall.thickness * np.array([-along[1], along[0]])
             outline = [wall.start + side, wall.end + side, wall.end - side, wall.start - side]
-            plan.add_collection(PolyCollection([outline], facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7))
+            plan.add_collection(
+                PolyCollection([outline], facecolors=style.STONE, edgecolors=style.EDGE, linewidths=0.7)
+            )
             plan.annotate(
                 "", wall.start + 0.62 * (wall.end - wall.start), wall.start + 0.5 * (wall.end - wall.start),
                 arrowprops={"arrowstyle": "->", "color": style.HINGE, "linewidth": 0.8},
