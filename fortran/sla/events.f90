@@ -16,10 +16,11 @@ module sla_events
       status_beyond_strength
    use sla_assembly, only : add_event
    use sla_c_bindings, only : extrados_sparse_change
-   use sla_group, only : bound, component, most_entries, most_rank, point_group, scan_result, unbounded
+   use sla_friction, only : find_sliders
+   use sla_group, only : bound, component, most_entries, most_rank, point_group, scan_result, slider, unbounded
    use sla_guard, only : guard_every, guard_residual
    use sla_ledger, only : account, event_log, follow_supports, log_reals, record, watch
-   use sla_model, only : element_model, model_balance, model_solve
+   use sla_model, only : element_model, model_balance, model_settled, model_solve, model_turns
    use sla_regions, only : regions_bring, regions_home
    use sla_release, only : hold_state, set_free
    use sla_scan, only : bring_all, choose, crossed, scan_model, scan_scaled
@@ -64,10 +65,11 @@ contains
       type(bound) :: scaled
       real(wp), allocatable :: ratio(:)
       real(wp) :: reached, at
-      logical :: equilibrium, driven, met
-      integer :: info, place(2)
+      logical :: equilibrium, driven, met, turned
+      integer :: info
 
       driven = any(abs(model%moved(:, 2)) > 0.0_wp)
+      turned = .false.
       at = 0.0_wp
       reason = stop_none
       status = status_out_of_memory
@@ -84,10 +86,7 @@ contains
          if (rules%release .and. model%pending(1) /= 0) call hold_state(model, status)
          if (status /= status_ok) return
          if (model%pending(1) /= 0) then
-            place = model%pending(1:2)
-            call apply_event(model, reason, status)
-            if (model%slides .and. status == status_ok .and. reason == stop_none) call slide(model, place, reason, &
-               status)
+            call change_state(model, rules%compliance, driven, turned, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
          end if
          if (model%releasing) then
@@ -164,9 +163,9 @@ contains
             if (.not. abs(model%lambda) <= farthest * reached) reason = stop_lost
          end if
          ! Joints that slide make the structure unsymmetric: it may answer the load the other way, until what slides
-         ! back sticks, at once
+         ! back sticks, at once. Where all were asked there is no such way.
          if (too_soft(model, driven, rules%compliance)) then
-            if (model%pending(3) /= code_stick) reason = stop_mechanism
+            if (turned .or. model%pending(3) /= code_stick) reason = stop_mechanism
          end if
          if (reason /= stop_none) return
       end do
@@ -217,6 +216,74 @@ contains
       lambda = (rules%target - start) / slope
       met = found%empty%point == 0 .and. lambda >= found%lo%value .and. lambda <= found%hi%value
    end subroutine meet_target
+
+   !> The pending event; where friction then leads in a circle or nowhere, all points at its limit turn at once
+   subroutine change_state(model, softest, driven, turned, reason, status)
+      type(element_model), intent(inout) :: model
+      real(wp), intent(in) :: softest           !! see too_soft
+      logical, intent(in) :: driven
+      logical, intent(out) :: turned            !! which points slide and which stick was asked of all of them
+      integer(c_int), intent(out) :: reason
+      integer(c_int), intent(out) :: status
+      type(slider), allocatable :: point(:)
+      real(wp), allocatable :: ua(:), ub(:), fh(:, :)
+      integer, allocatable :: turn(:, :)
+      integer :: i, place(2), info
+      logical :: circle, found
+      turned = .false.
+      place = model%pending(1:2)
+      circle = .false.
+      select type (group => model%holders(place(1))%group)
+      class is (point_group)
+         circle = group%undecided(place(2), model%pending(3), model%lambda)
+      end select
+      call apply_event(model, reason, status)
+      if (.not. model%slides .or. status /= status_ok .or. reason /= stop_none) return
+      call bring_all(model, status)
+      if (status == status_ok) call find_sliders(model%holders, point, status)
+      if (status /= status_ok) return
+      allocate (ua, source=model%ua, stat=info)
+      if (info == 0) allocate (ub, source=model%ub, stat=info)
+      if (info == 0) allocate (fh, source=model%fh, stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      if (.not. circle) then
+         call slide(model, place, reason, status)
+         if (status /= status_ok) return
+         if (reason == stop_none) then
+            circle = .not. abs(model%work_now(3)) <= softest * model%first_compliance
+            if (driven) circle = too_soft(model, driven, softest)
+            if (.not. circle) return
+         end if
+         ! Back to where they had not moved yet, whose numbers have more digits
+         model%ua(:) = ua
+         model%ub(:) = ub
+         model%fh(:, :) = fh
+         do i = 1, size(point)
+            select type (group => model%holders(point(i)%group)%group)
+            class is (point_group)
+               call group%hold(point(i)%point, point(i)%held)
+            end select
+         end do
+         call model_settled(model)
+      end if
+      turned = .true.
+      call model_turns(model, turn, found, status)
+      if (status /= status_ok) return
+      reason = merge(stop_none, stop_mechanism, found)
+      if (found) then
+         do i = 1, size(turn, 2)
+            call account(model, model%lambda, status)
+            if (status /= status_ok) return
+            model%pending = turn(:, i)
+            call apply_event(model, reason, status)
+            if (status /= status_ok .or. reason /= stop_none) return
+            call bring_all(model, status)
+            if (status /= status_ok) return
+         end do
+      end if
+      if (found) call slide(model, [0, 0], reason, status)
+   end subroutine change_state
 
    !> Damage the pending point; the factor follows, and the displacements on the path of its element
    subroutine apply_event(model, reason, status)

@@ -80,6 +80,12 @@ module sla_group
       real(wp) :: law(most_slider) = 0.0_wp          !! h = law.u [Pa/m]
       real(wp) :: force(most_slider) = 0.0_wp        !! nodal forces of a unit of h [m^2]
       real(wp) :: held(2) = 0.0_wp                   !! h as it is, constant and per unit multiplier [Pa]
+      ! The whole of its friction is spring slip + h, its strength that of sense strength.u
+      real(wp) :: slip(most_slider) = 0.0_wp         !! slip = slip.u
+      real(wp) :: strength(most_slider) = 0.0_wp     !! [Pa/m]
+      real(wp) :: spring = 0.0_wp                    !! in the stiffness [Pa/m]
+      real(wp) :: elastic = 0.0_wp                   !! that of a point that sticks [Pa/m]
+      real(wp) :: sense = 0.0_wp                     !! of the slip, +1 or -1; 0: it sticks
    end type slider
 
    !> How cracked material behaves, the same for the whole model
@@ -121,6 +127,8 @@ module sla_group
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
+      procedure :: turned_back
+      procedure :: undecided
       procedure :: hold
       procedure :: advance
       procedure :: excess
@@ -250,6 +258,28 @@ contains
       associate (none => group, same => list, unchanged => count)
       end associate
    end subroutine sliders
+
+   !> Append the points that have stuck at this very load; `held` is the force of their friction, whose spring is whole
+   pure subroutine turned_back(group, lambda, list, count)
+      class(point_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      type(slider), intent(inout) :: list(:)    !! ignored where it is too short
+      integer, intent(inout) :: count
+      associate (none => group, load => lambda, same => list, unchanged => count)
+      end associate
+   end subroutine turned_back
+
+   !> Has a point that is about to change done the opposite at this very load?
+   pure function undecided(group, point, code, lambda) result(yes)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      logical :: yes
+      associate (none => group, p => point, c => code, load => lambda)
+      end associate
+      yes = .false.
+   end function undecided
 
    !> Take over the force of a point that slides
    pure subroutine hold(group, point, held)

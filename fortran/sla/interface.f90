@@ -10,8 +10,8 @@ module sla_interface
       code_slide => sla_event_slide
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded
-   use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, never, &
-      soft, jump, nodal, across, along, shear, bond, bond_of, slips, is_sliding, scan_point
+   use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
+      jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -31,6 +31,8 @@ module sla_interface
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
+      procedure :: turned_back
+      procedure :: undecided
       procedure :: hold
       procedure :: advance
       procedure :: excess
@@ -187,19 +189,62 @@ contains
       class(interface_group), intent(in) :: group
       type(slider), intent(inout) :: list(:)
       integer, intent(inout) :: count
-      integer :: e, p
+      integer :: p
       do p = 1, group%points
          if (.not. is_sliding(group, p)) cycle
-         e = (p + 1) / 2
          count = count + 1
-         list(count)%point = p
-         list(count)%index = group%equation(:, e)
-         list(count)%law = nodal(group, e, p, [merge(-1.0_wp, 1.0_wp, group%mode(p) == slides_up) * &
-            group%law%friction(e) * across(group, e, p), -soft * shear(group, e, p)]) * group%factor(:, e)
-         list(count)%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
-         list(count)%held = group%held(:, p)
+         call describe(group, p, list(count))
       end do
    end subroutine sliders
+
+   pure subroutine turned_back(group, lambda, list, count)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      type(slider), intent(inout) :: list(:)
+      integer, intent(inout) :: count
+      integer :: p
+      do p = 1, group%points
+         if (group%mode(p) /= sticks .or. .not. abs(lambda - group%stuck(p)) <= same * abs(lambda)) cycle
+         if (.not. is_closed(group, p)) cycle
+         count = count + 1
+         if (count <= size(list)) call describe(group, p, list(count))
+      end do
+   end subroutine turned_back
+
+   !> What the friction of a point at its limit is made of
+   pure subroutine describe(group, point, as)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: point
+      type(slider), intent(inout) :: as
+      integer :: e, p
+      p = point
+      e = (p + 1) / 2
+      as%point = p
+      as%index = group%equation(:, e)
+      as%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%slip = nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%strength = nodal(group, e, p, [-group%law%friction(e) * across(group, e, p), 0.0_wp]) * group%factor(:, e)
+      as%elastic = shear(group, e, p) - bond(group, e, p)
+      if (group%mode(p) == sticks) then
+         as%spring = as%elastic
+         as%held = [-as%spring * group%mark(p), 0.0_wp]
+         return
+      end if
+      as%sense = merge(1.0_wp, -1.0_wp, group%mode(p) == slides_up)
+      as%law = nodal(group, e, p, [-as%sense * group%law%friction(e) * across(group, e, p), &
+         -soft * shear(group, e, p)]) * group%factor(:, e)
+      as%spring = soft * shear(group, e, p)
+      as%held = group%held(:, p)
+   end subroutine describe
+
+   pure function undecided(group, point, code, lambda) result(yes)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      logical :: yes
+      yes = code == code_slide .and. abs(lambda - group%stuck(point)) <= same * abs(lambda)
+   end function undecided
 
    pure subroutine hold(group, point, held)
       class(interface_group), intent(inout) :: group
@@ -236,7 +281,6 @@ contains
          call group%gather(e, ua, local)
          call group%gather(e, ub, other)
          d = jump(group, e, p, local + lambda * other)
-         if (abs(group%mark(p)) >= never) cycle
          if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), d(2))
          if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), d(2))
       end do
@@ -315,8 +359,6 @@ contains
             group%mode(p) = merge(slides_up, slides_down, change > 0.0_wp)
             call begin(group, e, p, change, d, moved, lambda)
             group%mark(p) = d(2)
-            if (abs(lambda - group%stuck(p)) <= same * abs(lambda)) group%mark(p) = &
-               merge(-never, never, group%mode(p) == slides_up)
          case default
             group%mark(p) = d(2) - friction / (shear(group, e, p) - bond(group, e, p))
             group%mode(p) = sticks
@@ -395,9 +437,9 @@ contains
       if (strength < unbounded) part = strength / teeth%strength_of(table, 1_c_int, 1.0_wp)
    end function left
 
-   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the shear
-   !> stiffness [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion, 6 compression tooth,
-   !> 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
+   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the power of two
+   !> above the shear stiffness (no digit is lost) [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion,
+   !> 6 compression tooth, 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
    pure subroutine state(group, store, values)
       class(interface_group), intent(inout) :: group
       logical, intent(in) :: store
@@ -406,7 +448,7 @@ contains
       if (store) then
          values(1, :) = group%start
          do p = 1, group%points
-            values([2, 7], p) = group%held(:, p) / group%law%ks((p + 1) / 2)
+            values([2, 7], p) = scale(group%held(:, p), -exponent(group%law%ks((p + 1) / 2)))
          end do
          values(3, :) = merge(1.0_wp, 0.0_wp, group%tooth > 1)
          values(4, :) = real(group%tooth, wp)
@@ -419,7 +461,7 @@ contains
       else
          group%start(:) = values(1, :)
          do p = 1, group%points
-            group%held(:, p) = values([2, 7], p) * group%law%ks((p + 1) / 2)
+            group%held(:, p) = scale(values([2, 7], p), exponent(group%law%ks((p + 1) / 2)))
          end do
          group%tooth(:) = nint(values(4, :), c_int)
          group%slip(:) = nint(values(5, :), c_int)

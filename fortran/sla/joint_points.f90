@@ -26,16 +26,13 @@ module sla_joint_points
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, never, soft
-   public :: jump, nodal, across, along, shear, bond, bond_of, slips, is_sliding, scan_point
+   public :: joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft
+   public :: jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
 
    !> How the friction of a closed point is
    integer(c_int), parameter :: sticks = 0, slides_up = 1, slides_down = 2
    !> Slip back that counts as sticking, over the ripple and the elastic slip of the friction
    real(wp), parameter :: turned = 4.0_wp
-   !> A point that can neither stick nor slide on at a load (Painleve's paradox) may slip either way from then on: it
-   !> would else stick and slide again by steps of no size. Mark of such a point [m]
-   real(wp), parameter :: never = 1.0e7_wp
    !> Stiffness that a point which slides keeps in the factor, over that of one that sticks; its force takes that back.
    !> With less of it the factor loses digits, with more the energies, see `excess`
    real(wp), parameter :: soft = 1.0e-4_wp

@@ -12,6 +12,7 @@ module sla_model
    use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
       most_entries, most_rank, report_rows
    use sla_friction, only : friction_store, friction_balance
+   use sla_turns, only : friction_turns
    use sla_regions, only : region_tree, regions_new, regions_measure, regions_settled, regions_made_up
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
@@ -19,7 +20,7 @@ module sla_model
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
    public :: model_displacements, model_settled, model_balance, model_reactions, model_recorded
-   public :: held_work, model_damage, model_standing, model_resume, standing_values
+   public :: model_turns, held_work, model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
@@ -371,6 +372,17 @@ contains
          model%refactor, model%value, model%equations, model%ua, model%ub, model%fh, status)
       call model_settled(model)
    end subroutine model_balance
+
+   !> Which points slide and stick so that the structure goes on, where one change after the other leads in a circle
+   subroutine model_turns(model, change, found, status)
+      type(element_model), intent(inout) :: model
+      integer, allocatable, intent(out) :: change(:, :)    !! (3, changes) group, point, code
+      logical, intent(out) :: found
+      integer(c_int), intent(out) :: status
+      call friction_turns(model%holders, model%handle, model%refactor, model%value, model%equations, model%lambda, &
+         model%ua, model%ub, change, found, status)
+      model%friction%known = .false.
+   end subroutine model_turns
 
    !> The forces by which moved supports act on the unknowns, into z; the supports move
    subroutine push_supports(model)

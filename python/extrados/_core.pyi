@@ -8,6 +8,7 @@ api_dem: Any
 api_limit: Any
 api_motion: Any
 api_rocking: Any
+api_soft_base: Any
 api_stack: Any
 api_signal: Any
 api_sla: Any

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from extrados.building.building import Building
     from extrados.building.geometry.assembly import Assembly
     from extrados.building.geometry.inspection import Inspection
+    from extrados.building.geometry.solids.assembly import SolidAssembly
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
     from extrados.building.mesh.shells import ShellMesh, ShellOptions
@@ -53,6 +54,15 @@ class Structure(Table):
     def weighed(self, made: "Assembly", density: float, densities: Mapping[str, float]) -> "Assembly":
         """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""
         return made
+
+    def solids(self, building: "Building") -> "SolidAssembly":
+        """Blocks in space: of a plane structure its section drawn out to its depth.
+
+        building: the one of this structure. BadGeometry with the part and the bound, NoView where it has no solids.
+        """
+        from extrados.building.geometry.solids.sections import drawn_out
+
+        return drawn_out(building.blocks())
 
     def pier_assembly(self, density: float) -> "Assembly":
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""

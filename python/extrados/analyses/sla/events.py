@@ -267,13 +267,14 @@ def run_reference_loads(
         kept = chain.state[1]
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
-    before = way.seconds
+    before, begun = way.seconds, way.done
     variant = options.without_equilibrium
     release = variant == "force-release"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     while (done := way.done) < options.events:
-        if done % KEPT == 0 and done and not release:  # what is on its way from one point to others has no name
+        # What is on its way from one point to others has no name
+        if done % KEPT == 0 and done > begun and not release:
             damage, standing = core_model.damage(), core_model.standing()
             try:
                 core_model.renew(damage, standing)

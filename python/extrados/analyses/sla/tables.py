@@ -205,6 +205,7 @@ class Sla(CrackOptions, BuildingAnalysis, Animated):
         [],
         "stages one after the other, [[analysis.stages]], in place of `reference`: each has its supports, loads and end, and "
         "inherits the damage; `constant` comes first",
+        min_length=1,
         max_length=50,
     )
     main_stage: str | None = key(

@@ -1,0 +1,95 @@
+"""Figures of limit analysis of solids: the stones, their mechanism, the capacity over direction."""
+
+import itertools
+from pathlib import Path
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
+
+from extrados.plots import limit, scene, style
+from extrados.results.solid_files import rotations
+from extrados.results.solids import SolidTilt
+from extrados.results.store import Stored
+
+VIEW = scene.View()
+SPEED = LinearSegmentedColormap.from_list("speed", [style.STONE, "#f2c28b", "#c8553d"])
+
+
+def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
+    """The figures of a plane section, or of solids."""
+    r = run[name]
+    return _draw_solids(run, name, folder, r) if isinstance(r, SolidTilt) else limit.draw_tilt(run, name, folder)
+
+
+def faces_of(run: Stored, name: str, pose: np.ndarray | None = None) -> scene.Faces:
+    """The solids of an analysis, carried to a pose (blocks, 6) of shifts and rotation vectors."""
+    vertices, corners = run.array(name, "solid_vertex"), run.array(name, "solid_face")
+    start, block = run.array(name, "solid_face_start"), run.array(name, "solid_face_block")
+    faces = [corners[a:b] for a, b in itertools.pairwise(start)]
+    if pose is not None:
+        whose = np.empty(len(vertices), dtype=int)
+        whose[corners] = np.repeat(block, np.diff(start))
+        centroid = run.array(name, "solid_centroid")
+        turn = rotations(pose[:, 3:])
+        vertices = centroid[whose] + pose[whose, :3] + np.einsum("nij,nj->ni", turn[whose], vertices - centroid[whose])
+    return scene.Faces(vertices, faces, block)
+
+
+def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tuple[str, str]]:
+    pose = run.array(name, "mechanism_pose")
+    stones, moved = faces_of(run, name), faces_of(run, name, pose)
+    speed = _speeds(stones, moved, len(pose))
+    both = np.concatenate([stones.vertices, moved.vertices])
+    frame = scene.frame_of(both, VIEW)
+    wide = (frame[1] - frame[0]) / (frame[3] - frame[2])
+    height = float(np.clip(4.6 / wide + 1.6, 3.8, 7.0))
+    plain = np.tile(to_rgb(style.STONE), (len(pose), 1))
+    with style.figure(10.5, height, columns=2) as (fig, axes):
+        for ax, solids, colours in ((axes[0], stones, plain), (axes[1], moved, SPEED(speed)[:, :3])):
+            scene.show(ax, scene.picture(solids, VIEW, frame, colours), frame)
+            scene.ground(ax, stones.vertices, VIEW)
+            scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg if ax is axes[1] else None)
+        x, y, z = np.ptp(stones.vertices, axis=0)
+        axes[0].set_title(f"{r.blocks} stones, {r.contacts} contacts; {x:.3g} x {y:.3g} x {z:.3g} m")
+        axes[1].set_title(f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg")
+        bar = fig.colorbar(ScalarMappable(Normalize(0.0, 1.0), SPEED), ax=axes[1], shrink=0.6, pad=0.01)
+        bar.set_label("speed of a stone over the fastest")
+        found = [(
+            style.save(fig, folder, f"{name}-mechanism"),
+            f"The stones, and the mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} degrees in plan, "
+            f"carried on; {r.moving_blocks} of {r.blocks} stones move.",
+        )]  # fmt: skip
+    angles, capacity = run.array(name, "rose_direction"), run.array(name, "rose_capacity")
+    if len(angles) > 2:
+        found.append(_draw_rose(folder, name, r, angles, capacity))
+    return found
+
+
+def _speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:
+    """How far the fastest vertex of each stone goes, over that of all."""
+    gone = np.linalg.norm(moved.vertices - stones.vertices, axis=1)
+    found = np.zeros(count)
+    for face, block in zip(stones.faces, stones.block, strict=True):
+        found[block] = max(found[block], gone[face].max())
+    return found / found.max()
+
+
+def _draw_rose(folder: Path, name: str, r: SolidTilt, angles: np.ndarray, capacity: np.ndarray) -> tuple[str, str]:
+    order = np.argsort(angles)
+    turn = np.radians(np.append(angles[order], angles[order][0] + 360.0))
+    radius = np.append(capacity[order], capacity[order][0])
+    with style.figure(5.2, 5.0, subplot_kw={"projection": "polar"}) as (fig, (ax,)):
+        ax.fill(turn, radius, facecolor=style.SAFE, alpha=0.15)
+        ax.plot(turn, radius, "o-", color=style.SAFE, markersize=3)
+        worst = np.radians(r.least_direction_deg)
+        ax.plot([worst], [r.least_acceleration_g], "o", color=style.THRUST, markersize=6, zorder=4)
+        ax.set_ylim(0.0, 1.15 * float(radius.max()))
+        ax.set_rlabel_position(100.0)
+        ax.tick_params(axis="y", labelsize=7)
+        ax.set_xlabel("capacity [g]; 0 deg is +x, 90 deg is +y")
+        ax.set_title(
+            "Capacity over the direction of the push\n"
+            f"least {r.least_acceleration_g:.4f} g along {r.least_direction_deg % 360.0:g} deg (red)"
+        )
+        return style.save(fig, folder, f"{name}-rose"), "Capacity over the direction in plan of the push."
