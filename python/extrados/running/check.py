@@ -123,7 +123,6 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
     return folder / names["geometry.png"], folder / names["geometry.csv"]
 
 
-<<<<<<< HEAD
 def write_plan(mesh: ShellMesh, folder: Path) -> Path:
     """Plan and elevations of a building with its mesh into a folder: plan.png (and .svg), under the rule of write_check."""
     from extrados.plots.plan import Elevation, draw_plan
@@ -142,7 +141,8 @@ def write_plan(mesh: ShellMesh, folder: Path) -> Path:
         with written.alone(folder.parent):
             names = written.put(scratch, folder, lambda name: name.startswith("plan"))
     return folder / names["plan.png"]
-=======
+
+
 def write_solids(solids: SolidAssembly, folder: Path) -> Path:
     """The picture of solids into a folder: geometry.png (and .svg). What extrados did not write there stays."""
     from extrados.plots.geometry import draw_stones
@@ -155,4 +155,3 @@ def write_solids(solids: SolidAssembly, folder: Path) -> Path:
         with written.alone(folder.parent):
             names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
     return folder / names["geometry.png"]
->>>>>>> main
