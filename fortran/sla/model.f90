@@ -231,7 +231,7 @@ contains
          end select
       end do
       ! Regions that were not measured are looked at in each event
-      if (status == status_ok .and. size(model%equation, 1) == 2 .and. .not. (model%refactor .or. model%slides)) then
+      if (status == status_ok .and. .not. (model%refactor .or. model%slides)) then
          call regions_measure(model%tree, model%holders, model%xy, model%equation, model%factor, status)
       end if
       if (status /= status_ok) return

@@ -314,6 +314,8 @@ def check(
             _tell_survey(checked, folder, asked=out is not None)
         if checked.solids is not None:
             _tell_solids(checked, folder, asked=out is not None or getattr(deck.structure, "file", None) is not None)
+        if checked.plan is not None:
+            _tell_plan(checked, folder)
     for line in complaints:
         err_console.say(line)
     if complaints:
@@ -358,6 +360,24 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
         return
     out_console.say(f"Picture: {picture}")
     out_console.say(f"List:    {table}")
+
+
+def _tell_plan(checked: "Checked", folder: Path) -> None:
+    """The size of a building's mesh, and its plan and elevations in a folder."""
+    from extrados.running.check import write_plan
+    from extrados.schema.constants import GRAVITY
+
+    mesh = checked.plan
+    for remark in checked.remarks:
+        out_console.say(f"warning: {remark}")
+    out_console.say(
+        f"{len(mesh.walls)} walls, {mesh.elements()} elements, {len(mesh.xyz)} nodes; walls and floors weigh "
+        f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
+    )
+    try:
+        out_console.say(f"Picture: {write_plan(mesh, folder)}")
+    except OSError as error:
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
 
 
 def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:

@@ -6,14 +6,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 
 from extrados.plots import style
 from extrados.plots.sla import CRACKS, LOST, SENSES
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 
-BAND, FLOOR = "#dfe7ef", "#dbe3ea"
+FLOOR = "#dbe3ea"
 #: Where the building is looked at from [deg]: azimuth on the plan, height over the horizon
 AZIMUTH, ELEVATION = -60.0, 28.0
 #: Gap between unfolded walls, in parts of the height
@@ -109,7 +108,9 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
     width, angle = run.array(name, f"{prefix}state_width"), run.array(name, f"{prefix}state_angle")
     load, event = run.array(name, f"{prefix}state_load"), run.array(name, f"{prefix}state_event")
     of, s, z = (run.array(name, f"place_{n}") for n in ("wall", "s", "z"))
-    names = [row.wall for row in (run[name].minus if prefix else run[name]).walls] or [str(k + 1) for k in range(len(walls))]
+    names = [row.wall for row in (run[name].minus if prefix else run[name]).walls] or [
+        str(k + 1) for k in range(len(walls))
+    ]
     shown = _shown(run, name, prefix)
     gap = GAP * level[-1]
     start = np.concatenate([[0.0], np.cumsum(walls[:, 4] + gap)])
@@ -141,7 +142,9 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             )  # fmt: skip
             ax.add_collection(drawn)
             for w, word in enumerate(names):
-                ax.text(start[w] + 0.5 * walls[w, 4], level[-1] + 0.02 * level[-1], f"wall {word}", ha="center", va="bottom")
+                ax.text(
+                    start[w] + 0.5 * walls[w, 4], level[-1] + 0.02 * level[-1], f"wall {word}", ha="center", va="bottom"
+                )
                 ax.add_patch(_frame(start[w], walls[w, 4], level[-1]))
             for height in level[1:-1]:
                 ax.axhline(height, color="#b9c4cf", linewidth=0.6, linestyle=":")
@@ -269,44 +272,3 @@ def _storeys(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, st
             "At the greatest base shear: drift of each storey, the part that each wall carries in its own plane (black: "
             "before it cracks), and the places that have cracked by storey."
         )
-
-
-def draw_plan(
-    fig: Figure, walls: list[tuple[str, np.ndarray, np.ndarray, float, list, list[float]]], levels: np.ndarray
-) -> None:
-    """Plan and elevations: walls as (name, start, end, thickness, openings (s, s, z, z), columns of the mesh)."""
-    columns = min(4, len(walls))
-    rows = -(-len(walls) // columns)
-    grid = fig.add_gridspec(rows, columns + 2)
-    plan = fig.add_subplot(grid[:, :2])
-    for name, start, end, thickness, _, _ in walls:
-        along = (end - start) / np.linalg.norm(end - start)
-        side = 0.5 * thickness * np.array([-along[1], along[0]])
-        plan.add_collection(
-            PolyCollection([[start + side, end + side, end - side, start - side]], facecolors=style.STONE, edgecolors=style.EDGE)
-        )  # fmt: skip
-        middle = 0.5 * (start + end) + 2.4 * side
-        plan.text(*middle, name, ha="center", va="center", fontsize=8, color=style.HINGE)
-    plan.autoscale_view()
-    plan.margins(0.12)
-    plan.set_aspect("equal")
-    plan.set_title("plan")
-    plan.set_xlabel("x [m]")
-    plan.set_ylabel("y [m]")
-    for k, (name, start, end, _, openings, lines) in enumerate(walls):
-        ax = fig.add_subplot(grid[k // columns, 2 + k % columns])
-        length = float(np.linalg.norm(end - start))
-        ax.add_collection(
-            PolyCollection([[(0, levels[0]), (length, levels[0]), (length, levels[-1]), (0, levels[-1])]],
-                           facecolors=style.STONE, edgecolors=style.EDGE)
-        )  # fmt: skip
-        for a, b, c, d in openings:
-            ax.add_collection(PolyCollection([[(a, c), (b, c), (b, d), (a, d)]], facecolors="white", edgecolors=style.EDGE))
-        for height in levels[1:-1]:
-            ax.axhline(height, color="#8fa3b5", linewidth=0.7, linestyle=":")
-        for x in lines:
-            ax.plot([x, x], levels[[0, -1]], color="#b3a98f", linewidth=0.3)
-        ax.autoscale_view()
-        ax.set_aspect("equal")
-        ax.set_title(f"wall {name}")
-        ax.grid(False)

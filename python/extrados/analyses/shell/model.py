@@ -38,6 +38,7 @@ class ShellModel:
     slides = False
     driven = False  # supports do not move
     already = 0.0
+    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # of the supports that go down [m]
     warnings: list[str] = field(default_factory=list)
 
     def open(self, options: Pushover, threads: int) -> core.Model:
@@ -85,7 +86,11 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     ties, groups, axes = [], [], []
     if options.drives:
         ties.append(_tie(mesh, options, along, held))
-    freedoms = core.Freedoms.make(len(mesh.xyz), sorted(held), ties, of_node=6)
+    down, settled = _settlements(mesh, options, held)
+    freedoms = core.Freedoms.make(len(mesh.xyz), sorted(held), [*down, *ties], of_node=6)
+    if down:  # those of the supports that move come last
+        count, number = int(freedoms.equation.max()) + 1, freedoms.equation
+        freedoms = core.Freedoms(np.where(number < 0, -1, (number - len(down)) % count), freedoms.factor, len(down))
     for part in mesh.parts:
         own = core.shell_axes(mesh.xyz, part.connect)
         axes.append(own)
@@ -117,7 +122,19 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     behaviour = core.Behaviour(options.cracking, options.shear_retention, options.crack_closure)
     control = _control(mesh, options, along)
     model = ShellModel(
-        mesh, freedoms, groups, behaviour, constant, reference, 1.0, control, along, weight, axes, options.mechanism_ratio
+        mesh,
+        freedoms,
+        groups,
+        behaviour,
+        constant,
+        reference,
+        1.0,
+        control,
+        along,
+        weight,
+        axes,
+        options.mechanism_ratio,
+        settled=settled,
     )
     if options.drives:
         node, direction, share = max(ties[0], key=lambda term: abs(term[2]))
@@ -168,6 +185,29 @@ def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> li
     if clash := [n for n in tie if (n, axis) in held]:
         raise BadGeometry(f"drives: node {clash[0] + 1} is held")
     return [(n, axis, share) for n, share in sorted(tie.items())]
+
+
+def _settlements(
+    mesh: ShellMesh, options: Pushover, held: set
+) -> tuple[list[list[tuple[int, int, float]]], np.ndarray]:
+    """Freedoms of the supports that go down, by settlement, and how far [m]; they are held no longer."""
+    ties, far = [], []
+    names = [wall.name for wall in mesh.walls]
+    for k, part in enumerate(options.settlements, 1):
+        if part.wall not in names:
+            raise BadGeometry(f"settlements {k}: there is no wall '{part.wall}'; there are {', '.join(names)}")
+        w = names.index(part.wall)
+        nodes = nodes_on(mesh, w, 0.0)
+        along = mesh.walls[w].unfolded(mesh.xyz[nodes])[:, 0]
+        low, high = part.x or (-np.inf, np.inf)
+        inside = nodes[(along >= low - 1e-6) & (along <= high + 1e-6)]
+        free = [(int(n), 2, 1.0) for n in inside if (int(n), 2) in held]
+        if not free:
+            raise BadGeometry(f"settlements {k}: no support of wall '{part.wall}' lies there that holds it upright")
+        held -= {(n, 2) for n, *_ in free}
+        ties.append(free)
+        far.append(-part.down)
+    return ties, np.array(far)
 
 
 def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray) -> core.Monitor:
@@ -234,9 +274,7 @@ def _shells(
     local = np.einsum("eax,ecx->eca", axes[:, :2], corners - corners.mean(axis=1, keepdims=True)).reshape(-1, 2)
     alone = np.arange(len(local)).reshape(part.connect.shape)
     # Equal elements have equal bands: their tooth tables are made once
-    band, reach = (
-        None if b is None else np.round(b, 9) for b in bands_of(local, part.kind, alone, options)
-    )
+    band, reach = (None if b is None else np.round(b, 9) for b in bands_of(local, part.kind, alone, options))
     tension, crushing, beds = laws_of(materials, part.linear, part.strength, band, reach, options)
     return core.Shells(
         part.kind, part.connect, part.thickness, np.array([m.young for m in materials]),

@@ -308,7 +308,9 @@ def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) 
         ("width", "m", "greatest width of a crack through the thickness"), ("angle", "rad", "of its normal to the wall"),
         ("part", "", "part of the thickness that has cracked"),
     ):  # fmt: skip
-        result.arrays[f"{prefix}state_{name}"] = Array(np.stack([s[name] for s in seen]), (*dims, "places"), unit, about)
+        result.arrays[f"{prefix}state_{name}"] = Array(
+            np.stack([s[name] for s in seen]), (*dims, "places"), unit, about
+        )
     _pier_table(result, model, curve, states, prefix)
     _fields(result, model, states, seen, prefix)
 
@@ -371,7 +373,9 @@ def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> s
             )
         if curve["walls"]:
             most = sorted(curve["walls"], key=lambda row: -row["share"])[:4]
-            text += "; " + ", ".join(f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02)
+            text += "; " + ", ".join(
+                f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02
+            )
         if "flanges" in curve:
             flanges = curve["flanges"]
             text += (

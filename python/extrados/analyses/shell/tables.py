@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from extrados.analyses.sla.tables import CrackOptions
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.shells import ShellOptions
+from extrados.building.places import Range
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import Table, key
 
@@ -17,6 +18,14 @@ class Drive(Table):
     wall: str = key(about="name of the wall", min_length=1, max_length=40)
     storey: int = key(about="on top of this storey", ge=1)
     ratio: float = key(1.0, "its part of the displacement", gt=0, le=1e3)
+
+
+class Settlement(Table):
+    """Ground that goes down under a wall, with the weight and before the push; the damage stays."""
+
+    wall: str = key(about="name of the wall", min_length=1, max_length=40)
+    x: Range | None = key(None, "[from, to] along the wall; default all of it")
+    down: Length = key(about="how far; negative is a heave")
 
 
 class Variant(Table):
@@ -43,7 +52,7 @@ class Pushover(CrackOptions, BuildingAnalysis):
         "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength",
     )  # fmt: skip
     starter_structure: ClassVar = "building"
-    starter: ClassVar = {"target_displacement": '"10 mm"', "ripple": "0.2", "events": "20000"}
+    starter: ClassVar = {"mesh": '{ size = "0.6 m", layers = 3 }', "ripple": "0.2", "events": "1500"}
 
     direction: Angle = key(0.0, "of the push on the plan, counter-clockwise from x", ge=-360, le=360)
     directions: list[Literal["+", "-"]] = key(
@@ -55,10 +64,15 @@ class Pushover(CrackOptions, BuildingAnalysis):
         "that direction",
     )
     drives: list[Drive] = key(
-        [], "in place of the pattern: walls whose tops of storeys move by given parts of one displacement", max_length=100
+        [],
+        "in place of the pattern: walls whose tops of storeys move by given parts of one displacement",
+        max_length=100,
     )
     control: Drive | None = key(
         None, "whose mean displacement in the direction is followed; default that of all walls on the highest level"
+    )
+    settlements: list[Settlement] = key(
+        [], "ground that goes down as the weight comes on, [[analysis.settlements]]", max_length=100
     )
     mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
     constant_damage: bool = key(True, "bring the weight on with damage before the push", source="thesis 4.3.1")
@@ -87,6 +101,8 @@ class Pushover(CrackOptions, BuildingAnalysis):
     def _consistent(self) -> "Pushover":
         if len(set(self.directions)) < len(self.directions):
             raise ValueError(f"directions: each sense may stand once, not {self.directions}")
+        if self.settlements and not self.constant_damage:
+            raise ValueError("settlements come with the weight: they need constant_damage = true")
         if self.drives and self.pattern != "mass":
             raise ValueError("drives take the place of the pattern: leave pattern out")
         if len({variant.name for variant in self.variants}) < len(self.variants):

@@ -44,6 +44,9 @@ class SlaModel:
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
     moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
     already: float = 0.0  # reference load that stages before have left on [N]
+    settled: np.ndarray = field(
+        default_factory=lambda: np.empty(0)
+    )  # supports that go down with A, as of a building [m]
 
     @property
     def driven(self) -> bool:

@@ -80,7 +80,9 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
     parts = [
         ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts
     ]  # nodes within openings are dropped
-    bars = [ShellBar(b.name, (int(kept[b.nodes[0]]), int(kept[b.nodes[1]])), b.area, b.material, b.prestress) for b in bars]
+    bars = [
+        ShellBar(b.name, (int(kept[b.nodes[0]]), int(kept[b.nodes[1]])), b.area, b.material, b.prestress) for b in bars
+    ]
     return ShellMesh(
         grown[used], parts, planes, plan.levels, materials, size, [(int(kept[n]), d) for n, d in held],
         [(int(kept[n]), d, k) for n, d, k in springs], bars, mass[used], push[used], warnings,
@@ -96,7 +98,9 @@ def _lines(breaks: Iterable[float], length: float, size: float, what: str, warni
     kept[-1] = length
     thin = min((b - a for a, b in itertools.pairwise(kept)), default=length)
     if thin < SLIVER * size:
-        warnings.append(f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were asked for")
+        warnings.append(
+            f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were asked for"
+        )
     parts = [np.zeros(1)]
     for a, b in itertools.pairwise(kept):
         count = max(1, round((b - a) / size))
@@ -223,7 +227,9 @@ def _level_nodes(plan: Plan, floor: Floor, grid: _Grid, number: np.ndarray) -> t
     return number[grid.number(i, np.full(len(i), k))], grid.s[i]
 
 
-def _ring(plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray) -> tuple[list[int], list[int]]:
+def _ring(
+    plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
+) -> tuple[list[int], list[int]]:
     """Walls around a floor and the nodes on them in order, counter-clockwise."""
     what = f"floor on storey {floor.storey}"
     reach = [plan.reach(wall) for wall in plan.walls]
@@ -244,7 +250,11 @@ def _ring(plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz:
         inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
         order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
         nodes += own[inside][order].tolist()
-    ring = [n for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True) if np.linalg.norm(xyz[n] - xyz[before]) > MEETS]
+    ring = [
+        n
+        for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True)
+        if np.linalg.norm(xyz[n] - xyz[before]) > MEETS
+    ]
     if len(ring) < 3 or len(set(ring)) < len(ring):
         raise BadGeometry(f"{what}: its walls make no ring; name them in order by `walls`")
     x, y = xyz[ring, 0], xyz[ring, 1]
@@ -257,12 +267,16 @@ def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
     """Walls that meet two others each, in the order of the ring they make."""
     meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
     if any(len(others) != 2 for others in meets.values()):
-        raise BadGeometry(f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`")
+        raise BadGeometry(
+            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
+        )
     ring = [walls[0], meets[walls[0]][0]]
     while len(ring) < len(walls):
         after = [b for b in meets[ring[-1]] if b != ring[-2]]
         if after[0] in ring:
-            raise BadGeometry(f"{what}: the walls of the storey make more than one ring; name those around it by `walls`")
+            raise BadGeometry(
+                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
+            )
         ring.append(after[0])
     return ring
 
@@ -315,7 +329,7 @@ def _joists(
     plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, name: str, ring: list[int]
 ) -> list[ShellBar]:
     """Joists as bars from each node of a wall across to the nearest of the other, of the area that stands for it."""
-    one, two = ([i for i, w in enumerate(plan.walls) if w.name == word][0] for word in floor.bears_on)
+    one, two = (next(i for i, w in enumerate(plan.walls) if w.name == word) for word in floor.bears_on)
     own, s = _level_nodes(plan, floor, grids[one], number)
     far, _ = _level_nodes(plan, floor, grids[two], number)
     own, s = own[np.isin(own, ring)], s[np.isin(own, ring)]

@@ -97,7 +97,9 @@ class Floor(Table):
         "rigid; joists: bars across it in one direction; none: only its load",
     )
     walls: list[str] | None = key(
-        None, "names of the walls around it, in order; default, where they make one ring, all of the storey", min_length=3
+        None,
+        "names of the walls around it, in order; default, where they make one ring, all of the storey",
+        min_length=3,
     )
     young: Stress | None = key(None, "of a flexible floor: its modulus; of joists: that of their wood", gt=0)
     thickness: Length | None = key(None, "of a flexible floor", gt=0)
@@ -109,7 +111,9 @@ class Floor(Table):
 
     @model_validator(mode="after")
     def _whole(self) -> "Floor":
-        needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(self.kind, ())
+        needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(
+            self.kind, ()
+        )
         for name in ("young", "thickness", "joist_area", "joist_spacing"):
             if (getattr(self, name) is None) == (name in needed):
                 raise ValueError(f"a floor of kind '{self.kind}' {'needs' if name in needed else 'takes no'} {name}")
@@ -204,7 +208,9 @@ class Plan(Structure):
             if not first <= opening.storey <= last:
                 raise ValueError(f"{at}: the wall has no storey {opening.storey}")
             if opening.x[0] < 0.0 or opening.x[1] > wall.length:
-                raise ValueError(f"{at}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long")
+                raise ValueError(
+                    f"{at}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long"
+                )
             if opening.z[0] < 0.0 or opening.z[1] >= self.storeys[opening.storey - 1]:
                 raise ValueError(
                     f"{at}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of "
@@ -243,7 +249,9 @@ def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
             for t, q in ((0.0, two.start), (two.length, two.end)):
                 if np.hypot(*np.subtract(p, q)) < MEETS:
                     return s, t
-        overlap = [s for s in (float((b - a) @ d), float((np.asarray(two.end) - a) @ d)) if MEETS < s < one.length - MEETS]
+        overlap = [
+            s for s in (float((b - a) @ d), float((np.asarray(two.end) - a) @ d)) if MEETS < s < one.length - MEETS
+        ]
         if overlap and abs((b - a)[0] * d[1] - (b - a)[1] * d[0]) < MEETS:
             raise BadGeometry(f"walls '{one.name}' and '{two.name}' lie on each other on the plan")
         return None
