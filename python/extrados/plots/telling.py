@@ -102,6 +102,15 @@ def _assessed(run: Stored, name: str) -> list[Block]:
         labels = {v.strategy: v.label for v in r.verdicts}
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
         found.append(Words(f"No rule has found a reason why these differ: {text}.", "bad"))
+    if r.sensitivity:
+        found.append(Heading("What the verdicts hang on", 2))
+        rows = [
+            (m.key, f"{cell(m.base)} {m.unit}".strip(), f"{m.low:.4g} to {m.high:.4g}", _both(m.tilt_low, m.tilt_high), cell(m.tilt_turns, ""),
+             _both(m.rocking_low, m.rocking_high), cell(m.rocking_turns, ""))
+            for m in r.sensitivity
+        ]  # fmt: skip
+        head = ("key", "value", "moved", "margin of limit analysis", "turns at", "margin of rocking", "turns at")
+        found.append(Table(head, rows, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
     if r.probes:
         found.append(Heading("Further runs", 2))
         rows = [(p.strategy, p.changed, OUTCOMES[p.outcome], cell(p.value, "")) for p in r.probes]
@@ -111,6 +120,10 @@ def _assessed(run: Stored, name: str) -> list[Block]:
     if r.not_done:
         found.append(Words("Not done within the budget: " + "; ".join(r.not_done) + ".", "warn"))
     return found
+
+
+def _both(low: float | None, high: float | None) -> str:
+    return f"{cell(low, '?')} to {cell(high, '?')}" if low is not None or high is not None else ""
 
 
 def _margin(v: Any) -> str:

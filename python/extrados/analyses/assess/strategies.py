@@ -10,7 +10,6 @@ from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
 from extrados.motions.tables import Compatible
 from extrados.results.limits import LIMITS
 from extrados.schema.constants import GRAVITY
@@ -236,12 +235,3 @@ SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "pr
 def of(name: str) -> Strategy:
     """The strategy that decks call so."""
     return next(s for s in ALL if s.name == name)
-
-
-def has_stones(building: Building) -> bool:
-    """Whether limit analysis and discrete elements have anything to look at."""
-    try:
-        building.blocks()
-    except BadGeometry:
-        return False
-    return True
