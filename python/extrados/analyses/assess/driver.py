@@ -102,16 +102,16 @@ class _Work:
                 return None
             choice = Choice({}, "")
         words = "; ".join([w for w in (choice.words,) if w] + ([f"of the deck: {_told(given)}"] if given else []))
-        choice = Choice(_merged(choice.keys, given), words, choice.seconds)
+        choice = replace(choice, keys=_merged(choice.keys, given), words=words)
         self.choices[name] = choice
-        without = self.asker.cannot_bear(strategy.kind)
+        without = self.asker.cannot_bear(choice.kind or strategy.kind)
         if without and name != "scaled":
             self.bare[name] = without
             words = f"{words}; without {' and '.join(without)}, with which it does not reckon"
         whole = name == "scaled" or (name == "probability" and self.many)
         motion = dict(self.context.deck.data["motion"]) if whole else None
         try:
-            result, deck = self.asker.ask(strategy.kind, choice.keys, motion, None, without)
+            result, deck = self.asker.ask(choice.kind or strategy.kind, choice.keys, motion, None, without)
         except OutOfTime:
             self.rows[name] = no_row(strategy, "left out", f"was stopped after {STOPPED_AFTER:g} budgets", words)
             self.not_done.append(f"{strategy.label}: stopped by the clock")
