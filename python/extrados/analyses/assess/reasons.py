@@ -9,6 +9,7 @@ from extrados.analyses.assess.hazard import above
 from extrados.building.building import Building
 from extrados.motions.motion import Motion
 from extrados.results.assess import Reason, StrategyVerdict
+from extrados.results.codes import Checked
 from extrados.results.dem import DemRun
 from extrados.results.limit import Tilt
 from extrados.results.model import Result
@@ -413,11 +414,9 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Codes reduce the demand by q and the capacity by FC; without both the code would say as statics does."""
-    from extrados.results.codes import CodeChecks
-
     mine = [p for p in pairs if "code-checks" in p]
     r = facts.of("code-checks")
-    if not mine or not isinstance(r, CodeChecks):
+    if not mine or not isinstance(r, Checked):
         return None
     name = next((n for n in r.checks if n.startswith("NTC linear")), None)
     tilt = facts.of("tilt")

@@ -53,6 +53,14 @@ class Assess(Analysis):
         None,
         "elastic spectrum for `code-checks`; default that of a `compatible` motion, without one the peak of the motion",
     )
+    sensitivity: bool = key(
+        False, "also move thickness, corners, friction, restitution and density one by one: margins of limit analysis and rocking "
+        "anew, and the value at which each verdict turns; not counted in the budget"
+    )  # fmt: skip
+    vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
+        None,
+        'keys that are moved in place of these, with the shares by which they are: { "structure.thickness" = 0.1 }',
+    )
     options: dict[Strategy, dict[str, Any]] = key(
         {},
         "keys of a strategy's own table, such as `dem = { joints.normal_stiffness = 2e10 }`; they go before the rules",
