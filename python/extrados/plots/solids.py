@@ -7,12 +7,13 @@ import numpy as np
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 
-from extrados.plots import limit, scene, style
+from extrados.plots import animation, limit, scene, style
 from extrados.results.solid_files import rotations
 from extrados.results.solids import SolidTilt
 from extrados.results.store import Stored
 
 VIEW = scene.View()
+FILM, FILM_PIXELS = 4.0, 600  # seconds that a mechanism takes at speed 1, pixels of the longer side of its pictures
 SPEED = LinearSegmentedColormap.from_list("speed", [style.STONE, "#f2c28b", "#c8553d"])
 
 
@@ -63,7 +64,34 @@ def _draw_solids(run: Stored, name: str, folder: Path, r: SolidTilt) -> list[tup
     angles, capacity = run.array(name, "rose_direction"), run.array(name, "rose_capacity")
     if len(angles) > 2:
         found.append(_draw_rose(folder, name, r, angles, capacity))
+    _film(run, name, folder, r, frame, SPEED(speed)[:, :3])
     return found
+
+
+def _film(
+    run: Stored, name: str, folder: Path, r: SolidTilt, frame: tuple[float, float, float, float], colours: np.ndarray
+) -> None:
+    """The mechanism as a film, where the deck asks for one: out and back, so that it goes on without a jump."""
+    kind, speed = animation.asked(run, name)
+    if kind == "none":
+        return
+    pose = run.array(name, "mechanism_pose")
+    stones = faces_of(run, name)
+    times = np.linspace(0.0, FILM, 1 + round(FILM * animation.RATES[kind] / max(speed, 1e-3)))
+    share = np.sin(np.pi * times / FILM) ** 2
+    width, height = (side / animation.DPI for side in animation.PIXELS)
+    with style.figure(width, height) as (fig, (ax,)):
+        scene.show(ax, scene.picture(stones, VIEW, frame, colours, FILM_PIXELS), frame)
+        (drawn,) = ax.images
+        scene.ground(ax, stones.vertices, VIEW)
+        scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
+        ax.set_title(f"Mechanism at {r.collapse_acceleration_g:.4f} g along {r.load_direction_deg:g} deg")
+
+        def draw(k: int) -> None:
+            drawn.set_data(scene.picture(faces_of(run, name, share[k] * pose), VIEW, frame, colours, FILM_PIXELS))
+
+        path = folder / "figures" / f"{name}.{kind}"
+        animation.write(fig, path, kind, animation.RATES[kind], np.arange(len(times)), draw, [drawn])
 
 
 def _speeds(stones: scene.Faces, moved: scene.Faces, count: int) -> np.ndarray:
