@@ -7,6 +7,7 @@ from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.limit.errors import Immovable
 from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.results import solids as out
 from extrados.results.model import Array, Result
@@ -57,11 +58,14 @@ def run(context: Context, options: Tilt) -> Result:
         **({} if options.pyramids is None else {"pyramids": _pyramids(limit, first, options.pyramids)}),
     )  # fmt: skip
     result.results = found
+    force, centre = _resultants(assembly, there)
     result.arrays |= scene_arrays(assembly) | {
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
         "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, into their first stone"),
         "collapse_force": Array(there.force, ("contact_corner", "component"), "N", "compression and both shears at the corners at collapse"),
+        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first stone of each contact at collapse"),
+        "contact_centre": Array(centre, ("contact", "axis3"), "m", "where it acts: the centre of the compression"),
         "velocity": Array(there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, spin"),
         "mechanism_pose": Array(pose, ("block", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on: shift, rotation vector"),
         "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
@@ -112,7 +116,7 @@ def _rose(
     context: Context, limit: SolidLimit, assembly: SolidAssembly, word: str, first: float, count: int, there: Programme,
     back: Programme,
 ) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Directions [deg] and capacities [g]: all around, or only there and back."""
+    """Directions [deg] and capacities [g], infinite where no push brings it down: all around, or only there and back."""
     if not count:
         return np.array([first, first + 180.0]), np.array([there.gamma, back.gamma])
     angles = first + 360.0 * np.arange(count) / count
@@ -121,7 +125,10 @@ def _rose(
     for k, angle in enumerate(angles.tolist()):
         context.progress(k, count, "directions")
         turn = round(angle - first, 9)
-        found.append(known[turn] if turn in known else _stands(limit.push(angle), assembly, word).gamma)
+        try:
+            found.append(known[turn] if turn in known else _stands(limit.push(angle), assembly, word).gamma)
+        except Immovable:
+            found.append(np.inf)
     return angles, np.array(found)
 
 
@@ -161,6 +168,21 @@ def _pose(assembly: SolidAssembly, motion: np.ndarray) -> np.ndarray:
     owner = np.repeat(assembly.owner, [len(p.vertices) for p in assembly.parts])
     speed = np.linalg.norm(_rates(assembly, motion, points, owner), axis=1).max()
     return motion * (SHOWN * assembly.size / speed)
+
+
+def _resultants(assembly: SolidAssembly, found: Programme) -> tuple[np.ndarray, np.ndarray]:
+    """Force on the first stone of each contact (nj, 3) [N], and the centre of its compression (nj, 3) [m], the middle of a
+    contact without any."""
+    joint, count = assembly.corner_joint, len(assembly.a)
+    frames = np.stack([assembly.normal, *assembly.tangents], axis=1)
+    at_corner = np.einsum("vk,vkx->vx", found.force, frames[joint])
+    pressure = np.maximum(found.force[:, 0], 0.0) + 1e-12 * max(float(found.force[:, 0].max()), 1e-300)
+    total = np.bincount(joint, pressure, count)
+    force, centre = (
+        np.stack([np.bincount(joint, values[:, k], count) for k in range(3)], axis=1)
+        for values in (at_corner, pressure[:, None] * assembly.corner)
+    )
+    return force, centre / total[:, None]
 
 
 def _openings(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> list[out.OpenContact]:
