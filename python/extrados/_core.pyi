@@ -13,6 +13,7 @@ api_stack: Any
 api_signal: Any
 api_sla: Any
 api_sla_laws: Any
+api_shell: Any
 api_sla_joints: Any
 api_sla_model: Any
 api_support: Any

@@ -82,7 +82,9 @@ class Result:
     not succeed) or interrupted (partial results are kept); `reason` says why. `answer` is the result in
     words an engineer reads. `results` holds numbers and words whose keys end in their unit, in the typed model of the
     kind; it is empty where there is no result. `verdict` concludes; `assumptions` are the properties of the building
-    that it rests on, by their keys. `files` maps the name of a further file (VTU, PVD, AT2, MP4) to its bytes.
+    that it rests on, by their keys. `files` maps the name of a further file (VTU, PVD, AT2, MP4) to its bytes. `parts`
+    are analyses that this one has asked for itself: a run tells them after those of the deck; `asked` is the table of such a
+    part with all its defaults.
     """
 
     kind: str
@@ -97,6 +99,8 @@ class Result:
     tables: dict[str, TableData] = field(default_factory=dict)
     files: dict[str, bytes] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    parts: list["Result"] = field(default_factory=list)
+    asked: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<Result of {self.kind}: {self.status}, {len(self.results.keys())} values, {len(self.arrays)} arrays>"
