@@ -15,6 +15,7 @@ from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.building.mesh.mesh import Mesh
 from extrados.building.mesh.options import MeshOptions
+from extrados.building.mesh.shells import ShellMesh, ShellOptions
 from extrados.building.properties import (
     NO_SLIDING,
     NO_SLIDING_COEFFICIENT,
@@ -68,6 +69,8 @@ class Building:
         return {
             "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
             "[supports] abutting_wall": self.supports.abutting_wall is not None,
+            "[supports] foundation": "foundation" in self.supports.model_fields_set,
+            "[supports] damping_ratio": self.supports.damping_ratio is not None,
         }  # fmt: skip
 
     def having(self, **tables: Any) -> "Building":
@@ -211,6 +214,12 @@ class Building:
         options = options or MeshOptions()
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
         return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
+
+    def shell(self, options: ShellOptions | None = None) -> ShellMesh:
+        """Flat shells in space: walls on a plan with the floors between them."""
+        options = options or ShellOptions()
+        tables = (self.structure, self.material, *self.materials.items(), options)
+        return self._view("shell", tables, lambda: self._structure().shell(self, options))
 
     @property
     def meshed_by_stones(self) -> bool:

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from extrados.building.geometry.solids.assembly import SolidAssembly
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
 
 RocksAs = Literal["mechanism", "block", "piers", "frame", "stack"]
 Crossed = Literal["arch", "top"]
@@ -66,6 +67,10 @@ class Structure(Table):
     def pier_assembly(self, density: float) -> "Assembly":
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""
         raise NoView(f"a structure of kind '{self.kind}' has no piers")
+
+    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
+        """Flat shells in space; NoView where the kind stands in a plane. BadGeometry says what is wrong."""
+        raise NoView(f"a structure of kind '{self.kind}' stands in a plane: shells are made of kind `building`")
 
     def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
         """Finite elements: of the stones, with a row of elements along every joint, where a kind does not mesh itself.

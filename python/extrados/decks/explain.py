@@ -45,6 +45,7 @@ def json_schema() -> dict[str, Any]:
         "required": ["analysis"],
         "properties": {
             "title": {"type": "string"},
+            **{word: {"type": "string"} for word in ("project", "author", "date")},
             "note": {"type": "string"},
             **one,
             **{name: {"type": "array", "items": one[name]} for name in PLURAL},

@@ -27,7 +27,9 @@ LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
 #: Tables that say what the building is besides its geometry
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
-TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
+#: What the report says of a deck in words
+WORDS = ("title", "note", "project", "author", "date")
+TOP_LEVEL = {*WORDS, "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
 
 
 class DeckError(Exception):
@@ -56,6 +58,9 @@ class Deck:
     folder: Path = field(default_factory=Path.cwd)
     sha256: str = ""
     data: dict[str, Any] = field(default_factory=dict)
+    project: str = ""
+    author: str = ""
+    date: str = ""
 
     def __repr__(self) -> str:
         structure = self.structure.kind if self.structure else "no structure"
@@ -158,7 +163,7 @@ class _Checker:
         for word in data:
             if word not in TOP_LEVEL:
                 self.complain((word,), f"unknown key or section{_nearest(word, sorted(TOP_LEVEL))}")
-        for word in ("title", "note"):
+        for word in WORDS:
             if not isinstance(data.get(word, ""), str):
                 self.complain((word,), "expected text in quotes")
         structure = self.section("structure", data.get("structure"), ("structure",))
@@ -195,6 +200,7 @@ class _Checker:
             folder,
             sha256,
             data,
+            *(data.get(word, "") for word in ("project", "author", "date")),
         )
 
     def building(self, structure: Structure | None, data: dict[str, Any], folder: Path) -> Building:

@@ -23,8 +23,8 @@ def _data(name: str, values: np.ndarray) -> str:
 
 
 def _three(values: np.ndarray) -> np.ndarray:
-    """Plane vectors with a third component of zero."""
-    return np.column_stack([values, np.zeros(len(values))])
+    """Plane vectors with a third component of zero; those in space as they are."""
+    return values if values.shape[1] == 3 else np.column_stack([values, np.zeros(len(values))])
 
 
 def vtu(
@@ -33,7 +33,7 @@ def vtu(
     point_data: Mapping[str, np.ndarray] | None = None,
     cell_data: Mapping[str, np.ndarray] | None = None,
 ) -> bytes:
-    """One unstructured grid: xy (nodes, 2) [m], cells as (kind, connect (n, nodes)); vectors (n, 2) get a z of 0."""
+    """One unstructured grid: xy (nodes, 2 or 3) [m], cells as (kind, connect (n, nodes)); vectors (n, 2) get a z of 0."""
     connect = np.concatenate([c.ravel() for _, c in cells])
     ends = np.cumsum(np.concatenate([np.full(len(c), c.shape[1]) for _, c in cells]))
     kinds = np.concatenate([np.full(len(c), CELLS[k], dtype=np.uint8) for k, c in cells])

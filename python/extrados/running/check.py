@@ -12,6 +12,7 @@ import numpy as np
 from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.inspection import Inspection
 from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.building.mesh.shells import ShellMesh
 from extrados.decks.reader import Deck
 from extrados.results import written
 
@@ -32,7 +33,7 @@ class Place:
 class Checked:
     """complaints: why the deck would be refused; remarks and notes on its geometry; the list of places, the refused
     first, then the open, then those that the tolerance closes; inspection: None where it is no survey; solids: what has
-    no plane section, or is asked for in a direction."""
+    no plane section, or is asked for in a direction; plan: the mesh of a building on a plan."""
 
     complaints: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
@@ -40,17 +41,20 @@ class Checked:
     places: list[Place] = field(default_factory=list)
     inspection: Inspection | None = None
     solids: SolidAssembly | None = None
+    plan: ShellMesh | None = None
 
 
 def check_building(deck: Deck) -> Checked:
     """Make the building as the analyses will, without computing anything."""
-    inspection, complaints, solids = None, [], None
+    inspection, complaints, solids, plan = None, [], None, None
     try:
         if deck.structure is not None:
             inspection = deck.structure.inspection(deck.folder)
             complaints = [] if inspection is None else inspection.complaints()
         if not complaints:
             for analysis, building in zip(deck.analyses, deck.buildings, strict=True):
+                if analysis.view == "shell":
+                    plan = building.shell(analysis.mesh)
                 if analysis.view != "blocks":
                     continue
                 try:
@@ -69,7 +73,7 @@ def check_building(deck: Deck) -> Checked:
     if solids is not None and not complaints:
         return Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids)
     if inspection is None:
-        return Checked(complaints)
+        return Checked(complaints, plan.warnings if plan else [], plan=plan)
     return Checked(complaints, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
 
 
@@ -117,6 +121,26 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
         with written.alone(folder.parent):
             names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
     return folder / names["geometry.png"], folder / names["geometry.csv"]
+
+
+def write_plan(mesh: ShellMesh, folder: Path) -> Path:
+    """Plan and elevations of a building with its mesh into a folder: plan.png (and .svg), under the rule of write_check."""
+    from extrados.plots.plan import Elevation, draw_plan
+
+    folder = Path(os.path.abspath(folder))
+    folder.mkdir(parents=True, exist_ok=True)
+    walls = []
+    for number, wall in enumerate(mesh.walls):
+        part = next(p for p in mesh.parts if p.wall == number)
+        corner = wall.unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        end = wall.origin + wall.length * wall.along
+        walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear))
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        scratch = Path(place)
+        draw_plan(scratch, "plan", walls, mesh.levels)
+        with written.alone(folder.parent):
+            names = written.put(scratch, folder, lambda name: name.startswith("plan"))
+    return folder / names["plan.png"]
 
 
 def write_solids(solids: SolidAssembly, folder: Path) -> Path:
