@@ -55,7 +55,8 @@ MAY_USE = {
     "arch": {"common", "mechanism"},
     "rocking": {"common", "arch", "mechanism"},
     "sla": {"common"},
-    "dem": {"common"},
+    "nonsmooth": {"common"},
+    "dem": {"common", "nonsmooth"},
     "motion": {"common"},
     "limit": {"common"},
 }

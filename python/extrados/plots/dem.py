@@ -263,7 +263,36 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
-    return [(saved, "Shortest failing pulses; to the right of a curve it comes down.")]
+    drawn = [(saved, "Shortest failing pulses; to the right of a curve it comes down.")]
+    return [*drawn, _both_solvers(run, name, folder)] if run[name].cross_check is not None else drawn
+
+
+def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Outcomes of all cells by both solvers."""
+    check, fails = run[name].cross_check, run.array(name, "fails")
+    amplitude, duration = np.meshgrid(run.array(name, "amplitude"), run.array(name, "duration"), indexing="ij")
+    first, second = (
+        ("nonsmooth", "compliant") if run[name].curves[0].solver == "nonsmooth" else ("compliant", "nonsmooth")
+    )
+    kinds = (
+        (fails[0] & fails[1], "falls by both", {"marker": "s", "color": style.HINGE}),
+        (~fails[0] & ~fails[1] & 1, "stands by both", {"marker": "s", "color": "#d8d4c8"}),
+        (fails[0] & ~fails[1] & 1, f"falls by {first} only", {"marker": "X", "color": style.THRUST}),
+        (~fails[0] & 1 & fails[1], f"falls by {second} only", {"marker": "P", "color": "#d9a400"}),
+    )
+    with style.figure(6.5, 4.6) as (fig, (ax,)):
+        for cells, label, look in kinds:
+            at = cells.astype(bool)
+            if at.any():
+                ax.scatter(duration[at], amplitude[at], s=36, label=label, **look)
+        ax.set_xlabel("t_p [s]" if run[name].pulse == "step" else "T_p [s]")
+        ax.set_ylabel("amplitude [g]")
+        ax.set_xlim(left=0.0)
+        ax.set_ylim(bottom=0.0)
+        ax.set_title(f"both solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells")
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        saved = style.save(fig, folder, f"{name}-solvers")
+    return saved, "Outcome of every cell by springs (compliant) and by rigid contacts (nonsmooth)."
 
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

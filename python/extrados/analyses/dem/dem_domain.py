@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task, answered
@@ -23,29 +24,32 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
 FAILED = ("collapse", "left")
+COMPLIANT, RIGID = "springs (compliant)", "rigid contacts (nonsmooth)"
+#: Solvers that agree in fewer cells do not confirm each other.
+AGREE = 0.95
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Shortest failing duration [s] at each amplitude (NaN: none of those tried fails) for one set of joints."""
+    """What is asked of one set of joints and one solver."""
 
     label: str
     values: JointValues
-    shortest: np.ndarray
+    rigid: bool = False
 
 
 class Search:
     """Asks round by round which pulses (curve, amplitude, duration) bring the structure down."""
 
-    def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[JointValues], rounds: float):
-        self.context, self.options, self.model = context, options, model
-        self.bodies = [model.bodies(values) for values in curves]
-        self.settlement = [farthest_settlement(model, values) for values in curves]
+    def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[Curve], rounds: float):
+        self.context, self.options, self.model, self.curves = context, options, model, curves
+        self.bodies = [model.bodies(curve.values) for curve in curves]
+        self.settlement = [farthest_settlement(model, curve.values, curve.rigid) for curve in curves]
         self.settle = options.settle or dem_model.settle_time(model)
         self.limit = options.collapse_displacement or 0.2 * model.size
         self.shift = start(context, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
-        self.residual, self.steps = 0.0, 0
+        self.residual, self.steps, self.effort = 0.0, 0, dem.Effort(0, 0, 0, 0, 0.0)
 
     def fails(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
         """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down; Unfinished where
@@ -61,13 +65,19 @@ class Search:
             dem_model.checked(run, self.model)
             self.residual = max(self.residual, run.residual)
             self.steps += run.steps
+            self.effort = self.effort.with_(run.effort)
         return [run.reason in FAILED for run in runs]
+
+    def convergence(self) -> out.Convergence | None:
+        """Of the rigid contacts in all runs, None where there were none."""
+        return measures.convergence(self.effort) if self.effort.steps else None
 
     def _task(self, curve: int, amplitude: float, duration: float) -> Task:
         motion = unit_pulse(self.options.pulse, duration)
         options = dem.Options(
             end_time=motion.end + self.settle, output_step=1e3, fraction=self.options.fraction, collapse=self.limit,
             stop_at_rest=True, mass_damping=self.options.mass_damping, settlement=self.settlement[curve],
+            rigid=self.curves[curve].rigid, rebound=self.options.rebound, step=self.options.time_step or 0.0,
         )  # fmt: skip
         return Task(curve, options, motion.ground, amplitude, self.shift)
 
@@ -75,24 +85,22 @@ class Search:
 def run(context: Context, options: DemDomain) -> Result:
     """Curves of the shortest failing durations, with their sensitivity, beside those of the four-hinge model."""
     model = dem_model.make_model(context, options)
-    labels = ["as given"]
-    labels += [f"damping x {f:g}" for f in options.vary_damping]
-    labels += [f"stiffness x {f:g}" for f in options.vary_stiffness]
-    labels += [f"friction {f:g}" for f in options.vary_friction]
     base = model.values
     curves = [
-        base,
-        *(base.scaled(damping=f) for f in options.vary_damping),
-        *(base.scaled(stiffness=f) for f in options.vary_stiffness),
-        *(base.scaled(friction=f) for f in options.vary_friction),
+        Curve("as given", base, options.rigid),
+        *(Curve(f"damping x {f:g}", base.scaled(damping=f)) for f in options.vary_damping),
+        *(Curve(f"stiffness x {f:g}", base.scaled(stiffness=f)) for f in options.vary_stiffness),
+        *(Curve(f"friction {f:g}", base.scaled(friction=f), options.rigid) for f in options.vary_friction),
     ]
+    if options.cross_check:
+        curves.append(Curve(COMPLIANT if options.rigid else RIGID, base, not options.rigid))
     context.warnings += dem_model.warnings(model, options)
     amplitudes, durations = np.array(options.amplitudes), np.array(options.durations)
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
     search = Search(context, options, model, curves, len(durations) + refining)
     with interruptible():  # Ctrl-C between two rounds stops the next one
         shortest = _shortest(search, len(curves), amplitudes, durations, options.accuracy)
-    found = [Curve(label, v, row) for label, v, row in zip(labels, curves, shortest, strict=True)]
+        checked = _cross_check(search, amplitudes, durations) if options.cross_check else None
     result = Result("dem-domain")
     numbers = {
         "pulse": options.pulse,
@@ -101,29 +109,87 @@ def run(context: Context, options: DemDomain) -> Result:
         "curves": [
             out.DemCurve(
                 label=c.label,
-                beta_s=c.values.beta,
-                stiffness_Pa_per_m=c.values.stiffness.max(),
+                solver="nonsmooth" if c.rigid else "compliant",
                 friction=c.values.friction.max(),
-                **{f"damping_ratio_{name}": ratio for name, ratio in c.values.ratios().items()},
-                shortest_durations_s=c.shortest,
+                shortest_durations_s=row,
+                **_springs(c),
             )
-            for c in found
+            for c, row in zip(curves, shortest, strict=True)
         ],
+        "convergence": search.convergence(),
         "energy_residual_ratio": search.residual,
         "steps": search.steps,
     }
-    table = {"amplitude": amplitudes / GRAVITY, **{f"shortest duration, {c.label}": c.shortest for c in found}}
-    units = {"amplitude": "g", **{f"shortest duration, {c.label}": "s" for c in found}}
+    labels = [c.label for c in curves]
+    table = {"amplitude": amplitudes / GRAVITY}
+    table |= {f"shortest duration, {label}": row for label, row in zip(labels, shortest, strict=True)}
+    units = {"amplitude": "g", **{f"shortest duration, {label}": "s" for label in labels}}
     result.arrays = {
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "curve": Array(np.array(labels), ("curve",), "", "what was varied"),
         "shortest": Array(np.array(shortest), ("curve", "amplitude"), "s", "shortest failing duration"),
     }
+    if checked is not None:
+        numbers["cross_check"] = _compared(checked, amplitudes, durations)
+        result.arrays |= {
+            "duration": Array(durations, ("duration",), "s", "durations of the cells that both solvers were asked"),
+            "fails": Array(
+                checked,
+                ("solver", "amplitude", "duration"),
+                "",
+                "1 where the cell brings it down: as given, other solver",
+            ),
+        }
+        if numbers["cross_check"].agreement_ratio < AGREE:
+            result.warnings.append(_apart(numbers["cross_check"]))
+    result.warnings += dem_model.unconverged(search.effort)
     numbers |= _beside(context, options, model, amplitudes, durations, result, table, units)
     result.results = out.DemDomain(**numbers)
     result.tables["dem_domain"] = TableData(table, units)
     result.answer = _answer(result.results, amplitudes, shortest[0])
     return result
+
+
+def _springs(curve: Curve) -> dict[str, float | None]:
+    """Stiffness and damping of a curve; None of rigid contacts."""
+    told = {"beta_s": curve.values.beta, "stiffness_Pa_per_m": float(curve.values.stiffness.max())}
+    told |= {f"damping_ratio_{name}": ratio for name, ratio in curve.values.ratios().items()}
+    return dict.fromkeys(told) if curve.rigid else told
+
+
+def _cross_check(search: Search, amplitudes: np.ndarray, durations: np.ndarray) -> np.ndarray:
+    """Whether each cell (solver, amplitude, duration) fails: by the solver of the deck, then by the other."""
+    curves = (0, len(search.curves) - 1)
+    cells = [(curve, float(a), float(t)) for curve in curves for a in amplitudes for t in durations]
+    return np.reshape(search.fails(cells), (2, len(amplitudes), len(durations))).astype(int)
+
+
+def _compared(fails: np.ndarray, amplitudes: np.ndarray, durations: np.ndarray) -> out.CrossCheck:
+    """In how many cells two maps agree, and where they do not."""
+    apart = fails[0] != fails[1]
+    return out.CrossCheck(
+        cells=apart.size,
+        agreement_ratio=float(1.0 - apart.mean()),
+        apart=[
+            out.CellApart(
+                amplitude_g=float(amplitudes[i] / GRAVITY),
+                duration_s=float(durations[k]),
+                fails_as_given=bool(fails[0, i, k]),
+                fails_by_the_other=bool(fails[1, i, k]),
+            )
+            for i, k in np.argwhere(apart)
+        ],
+    )
+
+
+def _apart(check: out.CrossCheck) -> str:
+    """Where the two solvers do not agree, in words."""
+    where = "; ".join(
+        f"{c.amplitude_g:.3g} g for {c.duration_s:.3g} s {'falls' if c.fails_as_given else 'stands'} as given and "
+        f"{'falls' if c.fails_by_the_other else 'stands'} by the other solver"
+        for c in check.apart[:8]
+    )
+    return f"the solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells only: {where}"
 
 
 def _shortest(
@@ -192,12 +258,22 @@ def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> s
         for a, t in zip(amplitudes, shortest, strict=True)
     ]
     text = f"Shortest {r.pulse} pulses that bring it down: {'; '.join(told)}."
-    spread = [(c.label, np.array([np.nan if t is None else t for t in c.shortest_durations_s])) for c in r.curves[1:]]
+    spread = [
+        (c.label, np.array([np.nan if t is None else t for t in c.shortest_durations_s]))
+        for c in r.curves[1:]
+        if c.solver == r.curves[0].solver
+    ]
     if spread:
         with np.errstate(invalid="ignore"):
             worst = max(spread, key=lambda item: np.nanmax(np.abs(item[1] / shortest - 1.0), initial=0.0))
         change = np.nanmax(np.abs(worst[1] / shortest - 1.0), initial=0.0)
         text += f" The greatest change, {100 * change:.0f} %, comes with {worst[0]}."
+    if r.cross_check is not None:
+        other = [f"{t:.3f}" if t is not None else "none" for t in r.curves[-1].shortest_durations_s]
+        text += (
+            f" By {r.curves[-1].label}: {', '.join(other)} s; both solvers agree in {100 * r.cross_check.agreement_ratio:.0f} % "
+            f"of {r.cross_check.cells} cells."
+        )
     mode = r.four_hinge_mode_I_durations_s
     if mode and all(t is not None for t in mode) and np.isfinite(shortest).all():
         text += f" The four-hinge model gives {', '.join(f'{t:.3f}' for t in mode)} s (after one impact)."
