@@ -160,7 +160,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 1e3 * other["rotation"].data,
                 color="#999999",
                 linewidth=2.4,
-                label="rigid-block model",
+                label="rocking by one mechanism",
             )
         for i in most:
             top.plot(time, 1e3 * rotation[:, i], label=label[int(i)])
@@ -248,7 +248,11 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     with style.figure(6.5, 4.6) as (fig, (ax,)):
         for k, (label, row) in enumerate(zip(labels, shortest, strict=True)):
             shown = "discrete elements" if k == 0 else label
+            if k == 0 and run[name].cross_check is not None:
+                shown += f" ({run[name].curves[0].solver})"
             ax.plot(row, amplitude, "o-" if k == 0 else ".-", linewidth=1.8 if k == 0 else 0.9, label=shown)
+        if run[name].mode_II_durations_s is not None:
+            ax.plot(run.array(name, "elements_mode_II"), amplitude, "s-", label="discrete elements, mode II")
         for mode, mark in (("mode_I", "--"), ("mode_II", ":")):
             if mode in run.arrays[name]:
                 ax.plot(

@@ -171,6 +171,9 @@ class DemDomain(KindResults):
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
     curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")
+    mode_II_durations_s: list[float | None] | None = maybe(
+        "shortest durations that bring it down in its first swing; null where none of those tried does", "s"
+    )
     convergence: Convergence | None = maybe("of rigid contacts, in all runs")
     cross_check: CrossCheck | None = maybe("by both solvers")
     energy_residual_ratio: float = fact("greatest error of the energy ledgers over the energy that went round")

@@ -1,5 +1,6 @@
 """dem-domain: the shortest pulses that bring a structure down, by discrete elements (thesis Figs 7-11, 7-13, 7-14)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,6 +25,8 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
 FAILED = ("collapse", "left")
+#: Times at which a swing is looked at [s], and rotations below which bodies vibrate [rad].
+SWING, VIBRATES = 0.01, 2e-3
 COMPLIANT, RIGID = "springs (compliant)", "rigid contacts (nonsmooth)"
 #: Solvers that agree in fewer cells do not confirm each other.
 AGREE = 0.95
@@ -54,8 +57,18 @@ class Search:
     def fails(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
         """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down; Unfinished where
         some have no answer, Refused where one is not to be trusted."""
+        return [run.reason in FAILED for run in self._runs(pulses)]
+
+    def falls_at_once(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
+        """Whether each pulse brings it down in its first swing: no body turns back beyond where it began."""
+        return [
+            run.reason in FAILED and _swings_once(run, self.model.rigid.count)
+            for run in self._runs(pulses, output_step=SWING)
+        ]
+
+    def _runs(self, pulses: list[tuple[int, float, float]], output_step: float = 1e3) -> list[dem.Run]:
         runs = answered(
-            self.context, "dem-domain", Runs(self.bodies, [self._task(*one) for one in pulses]), "",
+            self.context, "dem-domain", Runs(self.bodies, [self._task(*one, output_step) for one in pulses]), "",
             tell=lambda done: self.context.progress(
                 min(self.asked + done, self.total), self.total, "failure domain by discrete elements"
             ),
@@ -66,16 +79,16 @@ class Search:
             self.residual = max(self.residual, run.residual)
             self.steps += run.steps
             self.effort = self.effort.with_(run.effort)
-        return [run.reason in FAILED for run in runs]
+        return runs
 
     def convergence(self) -> out.Convergence | None:
         """Of the rigid contacts in all runs, None where there were none."""
         return measures.convergence(self.effort) if self.effort.steps else None
 
-    def _task(self, curve: int, amplitude: float, duration: float) -> Task:
+    def _task(self, curve: int, amplitude: float, duration: float, output_step: float) -> Task:
         motion = unit_pulse(self.options.pulse, duration)
         options = dem.Options(
-            end_time=motion.end + self.settle, output_step=1e3, fraction=self.options.fraction, collapse=self.limit,
+            end_time=motion.end + self.settle, output_step=output_step, fraction=self.options.fraction, collapse=self.limit,
             stop_at_rest=True, mass_damping=self.options.mass_damping, settlement=self.settlement[curve],
             rigid=self.curves[curve].rigid, rebound=self.options.rebound, step=self.options.time_step or 0.0,
         )  # fmt: skip
@@ -99,7 +112,10 @@ def run(context: Context, options: DemDomain) -> Result:
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
     search = Search(context, options, model, curves, len(durations) + refining)
     with interruptible():  # Ctrl-C between two rounds stops the next one
-        shortest = _shortest(search, len(curves), amplitudes, durations, options.accuracy)
+        shortest = _shortest(search.fails, len(curves), amplitudes, durations, options.accuracy)
+        at_once = (
+            _shortest(search.falls_at_once, 1, amplitudes, durations, options.accuracy)[0] if options.mode_II else None
+        )
         checked = _cross_check(search, amplitudes, durations) if options.cross_check else None
     result = Result("dem-domain")
     numbers = {
@@ -129,6 +145,12 @@ def run(context: Context, options: DemDomain) -> Result:
         "curve": Array(np.array(labels), ("curve",), "", "what was varied"),
         "shortest": Array(np.array(shortest), ("curve", "amplitude"), "s", "shortest failing duration"),
     }
+    if at_once is not None:
+        numbers["mode_II_durations_s"] = at_once
+        result.arrays["elements_mode_II"] = Array(
+            at_once, ("amplitude",), "s", "shortest duration that brings the elements down in their first swing"
+        )
+        table["shortest duration, mode II"], units["shortest duration, mode II"] = at_once, "s"
     if checked is not None:
         numbers["cross_check"] = _compared(checked, amplitudes, durations)
         result.arrays |= {
@@ -192,8 +214,15 @@ def _apart(check: out.CrossCheck) -> str:
     return f"the solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells only: {where}"
 
 
+def _swings_once(run: dem.Run, count: int) -> bool:
+    """Does each of the bodies 0 to count - 1 turn to one side only until it falls? Vibrations do not count."""
+    turn = run.place[:, :count, 2] - run.settled[:count, 2]
+    side = np.sign(turn[-1])
+    return bool((turn * side).min() > -VIBRATES)
+
+
 def _shortest(
-    search: Search, curves: int, amplitudes: np.ndarray, durations: np.ndarray, accuracy: float
+    fails: Callable[[list[tuple[int, float, float]]], list[bool]], curves: int, amplitudes: np.ndarray, durations: np.ndarray, accuracy: float
 ) -> np.ndarray:
     """Shortest failing duration (curves, amplitudes): the first failing one of those tried, refined by bisection.
 
@@ -204,13 +233,13 @@ def _shortest(
     low, high = np.zeros(len(rows)), np.full(len(rows), np.nan)
     open_rows = list(range(len(rows)))
     for duration in durations:
-        fails = search.fails([(*rows[r], float(duration)) for r in open_rows]) if open_rows else []
-        for r, failed in zip(open_rows, fails, strict=True):
+        found = fails([(*rows[r], float(duration)) for r in open_rows]) if open_rows else []
+        for r, failed in zip(open_rows, found, strict=True):
             if failed:
                 high[r] = duration
             else:
                 low[r] = duration
-        open_rows = [r for r, failed in zip(open_rows, fails, strict=True) if not failed]
+        open_rows = [r for r, failed in zip(open_rows, found, strict=True) if not failed]
     while True:
         wide = [
             r for r in range(len(rows))
@@ -219,8 +248,8 @@ def _shortest(
         ]  # fmt: skip
         if not wide:
             return high.reshape(curves, len(amplitudes))
-        fails = search.fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide])
-        for r, failed in zip(wide, fails, strict=True):
+        found = fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide])
+        for r, failed in zip(wide, found, strict=True):
             middle = 0.5 * (low[r] + high[r])
             if failed:
                 high[r] = middle

@@ -114,6 +114,10 @@ class DemDomain(DemTable):
     accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
     settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
     collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    mode_II: bool = key(
+        False, "also the shortest pulses that bring it down in its first swing, before any impact; with merge = "
+        '"three-bars" beside the four-hinge curve of that name', source="thesis Fig. 7-11",
+    )  # fmt: skip
     cross_check: bool = key(
         False, "also by the other solver: its curve, and the share of the cells of all amplitudes and durations in which both "
         "have the same outcome",
