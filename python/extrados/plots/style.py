@@ -76,6 +76,21 @@ def numbers(axis: Axis) -> None:
     axis.set_major_locator(MaxNLocator(integer=True))
 
 
+#: Energies below this are rounding, in J
+NO_ENERGY = 1e-6
+
+
+def energies(ax: Axes, what: str, curves: list[tuple[np.ndarray, np.ndarray, dict]]) -> None:
+    """Energies [J] over times, each with the options of its line, in J or kJ by their size; rounding is drawn as zero."""
+    most = max((float(np.abs(energy).max(initial=0.0)) for _, energy, _ in curves), default=0.0)
+    factor, unit = (1e3, "kJ") if most >= 100.0 else (1.0, "J")
+    for time, energy, options in curves:
+        ax.plot(time, energy / factor, **options)
+    ax.set_ylabel(f"{what} [{unit}]")
+    if most < NO_ENERGY:
+        ax.set_ylim(-1.0, 1.0)
+
+
 def section_axes(ax: Axes) -> None:
     """Axes for a drawing of a structure that is already in them: equal scales, metres."""
     ax.set_aspect("equal")
