@@ -33,11 +33,13 @@ def draw_building(run: Stored, folder: Path) -> tuple[str, str] | None:
         ax.update_datalim(points)
         ax.autoscale_view()
         off = OFF * float(extent.max())
-        below = 0
+        taken: list[tuple[float, float]] = []  # widths below that are drawn: those that do not meet share a line
         for row in rows:
+            ends = sorted((row["start"][0], row["end"][0]))
+            level = 1 + sum(a < ends[1] and ends[0] < b for a, b in taken) if row["aside"] == "below" else 1
             if row["aside"] == "below":
-                below += 1
-            _dimension(ax, row, off, below)
+                taken.append((ends[0], ends[1]))
+            _dimension(ax, row, off, level)
         ax.set_aspect("equal")
         ax.margins(0.12)
         ax.grid(False)
