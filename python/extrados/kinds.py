@@ -39,6 +39,10 @@ STRUCTURES: dict[str, str] = {
     "brickwork": "building.templates.brickwork:Brickwork",
     "frame": "building.templates.frame:Frame",
     "stack": "building.templates.stack:Stack",
+    "building": "building.templates.plan:Plan",
+    "wall": "building.templates.wall:Wall",
+    "dome": "building.templates.dome:Dome",
+    "cross-vault": "building.templates.cross_vault:CrossVault",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
@@ -63,7 +67,9 @@ def _analysis(room: str, table: str, driver: str, figures: str, example: str) ->
 
 
 ANALYSES: dict[str, AnalysisKind] = {
-    "tilt": _analysis("limit", "Tilt", "tilt", "limit:draw_tilt", "limit/oppenheim"),
+    "tilt": AnalysisKind(
+        "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "plots.solids:draw_tilt", "limit/oppenheim.toml"
+    ),
     "thrust": _analysis("limit", "Thrust", "thrust", "limit:draw_thrust", "vault/dejong-a"),
     "sweep": _analysis("limit", "Sweep", "sweep", "limit:draw_sweep", "vault/vezelay-sweep"),
     "survey": _analysis("limit", "Survey", "survey", "limit:draw_survey", "limit/survey"),
@@ -97,6 +103,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
     "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
     "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla/beam"),
+    "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "building/two-rooms"),
     "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem/oppenheim"),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
     "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "assess/readme-arch"),

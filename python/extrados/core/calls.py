@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from extrados import _core
+from extrados import _core, interrupts
 from extrados.core.errors import check
 
 check(_core.api_support.init_libraries(), "loading the core")
@@ -85,7 +85,6 @@ def thread_count(threads: int) -> int:
 
 _lock = threading.Lock()
 _nesting = 0
-_stopped_by = 0
 
 
 def cancel_requested() -> bool:
@@ -93,14 +92,8 @@ def cancel_requested() -> bool:
     return bool(_core.api_support.cancel_requested())
 
 
-def stopped_by() -> int:
-    """The number of the signal that last asked to stop; 0 if none did."""
-    return _stopped_by
-
-
 def _ask(number: int = 0, _: object = None) -> None:
-    global _stopped_by
-    _stopped_by = number
+    interrupts.asked.append(number)
     _core.api_support.set_cancel(1)
 
 

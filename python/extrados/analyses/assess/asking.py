@@ -7,14 +7,14 @@ from typing import Any
 
 import tomlkit
 
-from extrados import kinds
+from extrados import interrupts, kinds
 from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.assess.strategies import Strategy
 from extrados.analyses.conclude import MotionDemand, concluded
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.run import run_one
 from extrados.analyses.statistics.summaries import wilson
-from extrados.core.calls import stopped_by, within
+from extrados.core.calls import within
 from extrados.decks.reader import DeckError, make_deck
 from extrados.results.assess import StrategyVerdict
 from extrados.results.limit import Tilt
@@ -93,10 +93,11 @@ class Asker:
             and not any(name in keys for name in ("material", "joints", "supports", "initial"))
         ):
             building = whole.building  # with the views that it has
+        signals = len(interrupts.asked)
         with within(self.deadline - self.clock()) as time:
             result = run_one(one, options, building)
         if result.status == "interrupted":
-            if time.passed and not stopped_by():
+            if time.passed and len(interrupts.asked) == signals:
                 raise OutOfTime
             raise Interrupted
         found = concluded(result, options, one, building)
