@@ -588,7 +588,7 @@ def assess(
             out_console.say(f"Ranking: {place / 'ranking.html'}")
     if len(rows) < total:
         err_console.say(f"{total - len(rows)} of {total} buildings are missing; --resume goes on from here")
-        raise typer.Exit(interrupted())
+        raise typer.Exit(interrupts.exit_code())
     raise typer.Exit(0 if all(one.status == "ok" for one in rows) else NOT_DONE)
 
 

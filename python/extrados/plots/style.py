@@ -129,7 +129,7 @@ def _spread(fig: Figure) -> None:
 
     Candidates stand on rings around the place; a letter far from it gets a hair line to it.
     """
-    pixel = fig.dpi / 72.0
+    pixel, renderer = fig.dpi / 72.0, FigureCanvasAgg(fig).get_renderer()
     for ax in fig.axes:
         texts = [t for t in ax.texts if t.get_gid() == LETTER]
         if not texts:
@@ -143,7 +143,9 @@ def _spread(fig: Figure) -> None:
         ]
         ink = np.concatenate([*drawn, np.empty((0, 2))])
         frame = ax.get_window_extent()
-        taken: list[np.ndarray] = []  # boxes: left, low, right, high
+        # boxes: left, low, right, high; what else is written there stays where it is
+        fixed = [t for t in ax.texts if t not in texts and t.get_visible() and t.get_text().strip()]
+        taken = [np.ravel(t.get_window_extent(renderer).get_points()) for t in fixed]
         for text, place in zip(texts, places, strict=True):
             half = pixel * np.array([2.9 * len(text.get_text()) + 1.0, 5.0])
             best, least = np.zeros(2), np.inf
