@@ -11,7 +11,6 @@ from extrados.plots import report, style
 CASES = Path(__file__).resolve().parents[2] / "cases"
 #: Quick decks whose figures are unlike each other
 SOME = (
-    "limit/church",
     "vault/vezelay-like",
     "arch/readme",
     "rocking/facade",
