@@ -290,3 +290,17 @@ def test_what_only_elements_know_is_tried_on_them() -> None:
     assert moved.value is not None and moved.value > 2.0 * probes["joints 4 times as stiff"].value, (
         "it opens as its support moves"
     )
+
+
+def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = driver._Work.ask
+
+    def stopped(work: driver._Work, strategy: strategies.Strategy) -> Result | None:
+        if strategy.name == "dem":
+            raise driver.Interrupted
+        return asked(work, strategy)
+
+    monkeypatch.setattr(driver._Work, "ask", stopped)
+    (first, *parts) = extrados.run(deck(assess={"strategies": ["tilt", "dem"]})).analyses
+    assert first["status"] == "interrupted" and [p["name"] for p in parts] == ["tilt"]
+    assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"]["outcome"] == "falls"
