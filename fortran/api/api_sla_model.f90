@@ -142,19 +142,22 @@ contains
       call group_added(handle, model, connect, group, status)
    end subroutine plane
 
-   !> Bars
-   subroutine bars(handle, elements, connect, property, choice, bad, status)
-      use common_status, only : status_ok, status_out_of_memory
+   !> Bars by the strain that the displacements of their nodes make
+   subroutine bars(handle, per, elements, connect, gradient, property, choice, bad, status)
+      use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
       use sla_bar, only : bar_group, bar_group_new
-      use sla_group, only : element_group
+      use sla_group, only : element_group, most_entries
       use sla_handle, only : group_added, group_begun
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: per                           !! nodes of a bar
       integer(c_int), intent(in) :: elements
-      integer(c_int), intent(in) :: connect(2, elements)
-      real(c_double), intent(in) :: property(2, elements)     !! area [m^2], Young's modulus [Pa]
-      integer(c_int), intent(in) :: choice(2, elements)       !! table of tension teeth, of compression teeth, 0 none
-      integer(c_int), intent(out) :: bad                      !! bar without length
+      integer(c_int), intent(in) :: connect(per, elements)
+      real(c_double), intent(in) :: gradient(2, per, elements)    !! strain per displacement in x and y [1/m]
+      real(c_double), intent(in) :: property(2, elements)         !! volume [m^3], Young's modulus [Pa]
+      !> Table of tension teeth, of compression teeth, 0 none; 0 bears both, 1 tension, 2 pressure alone
+      integer(c_int), intent(in) :: choice(3, elements)
+      integer(c_int), intent(out) :: bad                          !! bar without length
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       type(bar_group), allocatable :: new_bars
@@ -162,12 +165,18 @@ contains
       integer :: info
       !f2py threadsafe
       bad = 0
-      call group_begun(handle, connect, choice, model, status)
+      call group_begun(handle, connect, choice(1:2, :), model, status)
       if (status /= status_ok) return
       allocate (new_bars, stat=info)
-      status = status_out_of_memory
-      if (info == 0) call bar_group_new(model%xy, connect, property(1, :), property(2, :), choice(1, :), choice(2, :), &
-         model%teeth, model%options, new_bars, bad, status)
+      if (any(choice(3, :) < 0) .or. any(choice(3, :) > 2) .or. 2 * per > most_entries) then
+         status = status_invalid_argument
+      else if (info /= 0) then
+         status = status_out_of_memory
+      else
+         call bar_group_new(reshape(gradient, [2 * int(per), int(elements)]), property(1, :), property(2, :), &
+            choice(1, :), choice(2, :), merge(-1_c_int, choice(3, :), choice(3, :) == 2), model%teeth, model%options, &
+            new_bars, bad, status)
+      end if
       call move_alloc(new_bars, group)
       call group_added(handle, model, connect, group, status)
    end subroutine bars

@@ -17,6 +17,7 @@ from extrados.core.sla_parts import (
     EVENTS,
     LAWS,
     STOPS,
+    BEARS,
     Bars,
     Bedding,
     Behaviour,
@@ -163,6 +164,7 @@ class Model(Owner):
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
         place = real("xy", np.transpose(xy), (2, None))
         self.nodes = place.shape[1]
+        self.xy = place.T
         equation = np.asarray(freedoms.equation)
         if equation.shape != (self.nodes, 2):
             raise ValueError(f"equations have shape {equation.shape}, expected ({self.nodes}, 2)")
@@ -245,15 +247,19 @@ class Model(Owner):
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        per = 2 if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
+        bars = isinstance(group, Bars)
+        per = np.shape(group.connect)[1] if bars else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
         young = _each("young", group.young, count)
         tables, ladder = self._tables(count, group)
         if isinstance(group, Bars):
+            gradient, length = group.strains(self.xy)
             bad, status = _core.api_sla_model.bars(
-                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(*tables)
-            )
+                self.handle, connect, real("gradient", np.transpose(gradient, (2, 1, 0)), (2, per, count)),
+                _rows(_each("area", group.area, count) * length, young),
+                _rows(*tables, np.full(count, BEARS[group.bears], dtype=np.int32)),
+            )  # fmt: skip
             what = "bar"
         elif isinstance(group, Joints):
             bad, status = self._add_joints(group, connect, tables)

@@ -138,7 +138,11 @@ class Plane:
 
 @dataclass(frozen=True)
 class Bars:
-    """Bars of two nodes: connect (bars, 2) 0-based, area [m^2], young [Pa], band [m], softening as of Plane."""
+    """Bars: connect (bars, nodes) 0-based, area [m^2], young [Pa], band [m], softening as of Plane.
+
+    Of two nodes, or of more whose displacements make the strain by `gradient` (bars, nodes, 2) [1/m], with the `length`
+    (bars) [m]. bears: "both", "tension" or "compression" alone.
+    """
 
     connect: np.ndarray
     area: float | np.ndarray
@@ -146,6 +150,23 @@ class Bars:
     band: float | np.ndarray = 0.0
     tension: Softening | Sequence[Softening | None] | None = None
     compression: Softening | Sequence[Softening | None] | None = None
+    gradient: np.ndarray | None = None
+    length: np.ndarray | None = None
+    bears: str = "both"
+
+    def strains(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gradient (bars, nodes, 2) [1/m] and length (bars) [m] between nodes at xy (nodes, 2) [m]."""
+        if self.gradient is not None and self.length is not None:
+            return np.asarray(self.gradient, dtype=float), np.asarray(self.length, dtype=float)
+        along = xy[self.connect[:, 1]] - xy[self.connect[:, 0]]
+        length = np.hypot(*along.T)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            each = along / (length**2)[:, None]
+        return np.stack([-each, each], axis=1), length
+
+
+#: What a bar bears, as the core numbers it
+BEARS = {"both": 0, "tension": 1, "compression": 2}
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extrados.analyses.context import Refused
+from extrados.analyses.sla.bars import bar_group, tie_group
 from extrados.analyses.sla.tables import Load, Sla
 from extrados.building.errors import BadGeometry
 from extrados.building.mesh.mesh import ElementGroup, Mesh, corner_count, element_areas
 from extrados.building.places import Placed
 from extrados.building.properties import Material
+from extrados.building.templates.walls import Bar
 from extrados.core import sla as core
 
 AXES = {"x": 0, "y": 1}
@@ -158,6 +160,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         points.append(point_positions(mesh.xy, group))
     for bar in mesh.bars:
         groups.append(_bar(mesh, bar, options))
+    groups += [tie_group(mesh, tie, rod, options) for tie, rod in mesh.rods]
     if springs:
         node, direction, stiffness = (np.array(column) for column in zip(*springs, strict=True))
         ground = np.full(len(node), -1)
@@ -367,20 +370,9 @@ def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Join
     )
 
 
-def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
-    ends = [int(np.hypot(*(mesh.xy - at).T).argmin()) for at in (bar.start, bar.end)]
-    if ends[0] == ends[1]:
-        raise BadGeometry(f"a bar from {bar.start} to {bar.end} begins and ends at the same node")
+def _bar(mesh: Mesh, bar: Bar, options: Sla) -> core.Bars:
     material = mesh.named[bar.material]
-    if material.tensile_strength_parallel is not None:
-        raise BadGeometry(
-            f"a bar of {bar.material!r}: tensile_strength_parallel is for masonry, a bar has one strength"
-        )
-    length = float(np.hypot(*(mesh.xy[ends[1]] - mesh.xy[ends[0]])))
-    return core.Bars(
-        np.array([ends]), bar.area, material.young, options.crack_band or length,
-        _softening(material, options), _crushing(material, options),
-    )  # fmt: skip
+    return bar_group(mesh, bar, _softening(material, options), _crushing(material, options), options)
 
 
 def point_positions(xy: np.ndarray, group: ElementGroup) -> np.ndarray:
