@@ -119,12 +119,13 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
             # The worst first: a stone all of whose points slid at once, each its way, would drift off
             beyond = np.where(begins, np.abs(tau) / (strength + dry.small), 0.0)
             begins &= beyond >= WORST * beyond.max()
-            back = touching & ~stuck & (sense * (slip - mark) < 0.0)
+            plastic = slip - tau / dry.stiffness
+            back = touching & ~stuck & (sense * (plastic - mark) < 0.0)
             if not (wrong | begins | back).any():
                 core_model.end_stage(1.0)
                 return True
             fresh = np.flatnonzero(begins)[np.argsort(-beyond[begins])]
-            mark = np.where(begins, slip, np.where(back, slip - tau / dry.stiffness, mark))
+            mark = np.where(back, plastic, mark)
             mode = np.where(begins, np.where(tau > 0.0, SLIDES_UP, SLIDES_DOWN), np.where(back, STICKS, mode))
             mode = np.where(wrong, STICKS, mode)
             mark = np.where(wrong, np.where(touching, mark, slip), mark)
