@@ -110,8 +110,9 @@ contains
       !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
       !> angle of the only crack normal allowed [rad], growth of the compressive strength per lateral pressure;
       !> angle of the bed joints [rad], tensile strength (0: none is bedded) and fracture energy along over across them,
-      !> shear factor, crack band or 0, see sla_bedding
-      real(c_double), intent(in) :: property(11, elements)
+      !> shear factor, crack band or 0, compressive strength along over across them (0: one for all), its b and c, see
+      !> sla_bedding
+      real(c_double), intent(in) :: property(14, elements)
       !> Table of tension teeth (0 none), first and last of them where the crack band follows the direction of the crack
       !> (0 where not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
       integer(c_int), intent(in) :: choice(5, elements)
@@ -136,7 +137,7 @@ contains
       else
          call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
             property(3, :), choice(1:3, :), choice(4, :), property(4, :), property(6, :), choice(5, :), &
-            property(5, :), property(7:11, :), model%teeth, model%options, new_plane, bad, status)
+            property(5, :), property(7:14, :), model%teeth, model%options, new_plane, bad, status)
       end if
       call move_alloc(new_plane, group)
       call group_added(handle, model, connect, group, status)

@@ -61,7 +61,7 @@ contains
       real(wp), intent(in) :: confinement(:)
       integer(c_int), intent(in) :: axis(:)         !! 0 cracks choose, 1 one normal given, 2 also the shear is kept
       real(wp), intent(in) :: axis_angle(:)         !! of the crack normal [rad]
-      real(wp), intent(in) :: bed(:, :)             !! (5, elements) the components of `bedding` in their order
+      real(wp), intent(in) :: bed(:, :)             !! (8, elements) the components of `bedding` in their order
       type(tooth_tables), intent(in) :: teeth
       type(material_options), intent(in) :: options
       type(plane_group), intent(out) :: group
@@ -108,7 +108,7 @@ contains
       group%axis(:) = axis
       group%pair = 0
       do e = 1, ne
-         group%bed(e) = bedding(bed(1, e), bed(2, e), bed(3, e), bed(4, e), bed(5, e))
+         group%bed(e) = bedding(bed(1, e), bed(2, e), bed(3, e), bed(4, e), bed(5, e), bed(6, e), bed(7, e), bed(8, e))
          p = per * (e - 1)
          do k = 1, size(connect, 1)   ! a list of columns as an argument would be a copy that nobody checks
             corner(:, k) = xy(:, connect(k, e))

@@ -21,10 +21,10 @@ module sla_plane_points
    use common_lists, only : isotropic => sla_cracking_isotropic, code_tension => sla_event_tension, &
       code_compression => sla_event_compression, code_close => sla_event_close, code_open => sla_event_open, &
       element_t3 => sla_element_t3, element_t6 => sla_element_t6
-   use sla_bedding, only : bedding, between, in_joint_axes
+   use sla_bedding, only : bedding, between, hill, hill_strength, in_joint_axes
    use sla_element, only : element_rule, most_nodes
    use sla_group, only : point_group, scan_result, unbounded, offer_hi, offer_lo, offer_empty, linear_bound
-   use sla_interval, only : cone_interval, overload
+   use sla_interval, only : cone_interval, overload, quadratic_interval
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -101,6 +101,9 @@ contains
             share_of(group, e, p, k) * modulus(k) / tension)
          group%limit(k + 2, p) = group%teeth%strength_of(group%crush_table(e), group%crush(k, p), &
             modulus(k) / compression)
+         if (group%bed(e)%crush > 0.0_wp .and. group%cracked(p) > 0 .and. group%limit(k + 2, p) < unbounded) then
+            group%limit(k + 2, p) = group%limit(k + 2, p) * hill_strength(group%bed(e), normal_of(group, p, k))
+         end if
       end do
       if (group%options%cracking == isotropic) modulus(2) = modulus(1)
       ratio = 1.0_wp / (1.0_wp - nu**2 * modulus(1) * modulus(2) / e0**2)
@@ -271,8 +274,12 @@ contains
          end if
          f = group%limit(3, p)
          more = group%confinement(e)
-         if (f < unbounded) call cone(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, lambda, noise, &
-            p, code_compression + 1, found)
+         if (f < unbounded .and. group%bed(e)%crush > 0.0_wp) then
+            call ellipse(group%bed(e), f, sa, sb, noise, lambda, p, code_compression + 1, found)
+         else if (f < unbounded) then
+            call cone(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, lambda, noise, &
+               p, code_compression + 1, found)
+         end if
          return
       end if
       do k = 1, merge(1, 2, group%axis(e) /= axis_free)
@@ -327,6 +334,32 @@ contains
       end if
    end subroutine cone
 
+   !> Limits of an uncracked point under Hill's criterion
+   pure subroutine ellipse(bed, f, sa, sb, noise, lambda, p, code, found)
+      type(bedding), intent(in) :: bed
+      real(wp), intent(in) :: f                  !! compressive strength across the beds [Pa]
+      real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
+      real(wp), intent(in) :: noise
+      real(wp), intent(in) :: lambda
+      integer, intent(in) :: p, code
+      type(scan_result), intent(inout) :: found
+      real(wp) :: lo, hi, state(3), over
+      found%bounded = .true.
+      state = sa + lambda * sb
+      over = sqrt(hill(bed, state, state)) / f - 1.0_wp
+      if (maxval(abs(sb)) <= noise) then
+         if (over > 1.0e-9_wp) call offer_empty(found, over, p, code)
+         return
+      end if
+      call quadratic_interval(hill(bed, sa, sa) - f**2, hill(bed, sa, sb), hill(bed, sb, sb), lo, hi)
+      if (lo > hi) then
+         call offer_empty(found, over, p, code)
+      else
+         call offer_hi(found, hi, p, code)
+         call offer_lo(found, lo, p, code)
+      end if
+   end subroutine ellipse
+
    !> True where the stress lies safely inside r <= alpha - beta m; in this module so that it is inlined
    pure function inside_cone(alpha, beta, s) result(inside)
       real(wp), intent(in) :: alpha, beta
@@ -352,7 +385,7 @@ contains
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
          ! Both have no bound yet: crushing that depends on both principal stresses, and the criterion of another stress
-         if (group%confinement(e) > 0.0_wp .or. is_bedded(group, e)) then
+         if (group%confinement(e) > 0.0_wp .or. is_bedded(group, e) .or. group%bed(e)%crush > 0.0_wp) then
             least = -1.0_wp
             return
          end if

@@ -69,7 +69,7 @@ contains
       allocate (plane)
       call plane_group_new(element_q4, 2_c_int, 2_c_int, .false., xy, connect, 0.21_wp * each, 7.0e9_wp * each, &
          0.19_wp * each, spread(one_table, 2, size(each)), 0 * nint(each, c_int), 0.0_wp * each, &
-         0.0_wp * each, 0 * nint(each, c_int), 0.0_wp * each, spread(0.0_wp * each, 1, 5), &
+         0.0_wp * each, 0 * nint(each, c_int), 0.0_wp * each, spread(0.0_wp * each, 1, 8), &
          teeth, options, plane, bad, status)
       if (status /= status_ok) error stop 'no elements'
       call move_alloc(plane, group)

@@ -72,7 +72,9 @@ def test_an_embedded_bar_moves_with_the_wall() -> None:
 
 def test_a_bar_yields_and_breaks() -> None:
     """What is left of the concrete's teeth carries a few per cent beside it."""
-    found = run_deck(prism([bar(0, 1, bonded=True, yield_strength=YIELD, ultimate_strain=0.02)], ripple=0.1, events=3000))
+    found = run_deck(
+        prism([bar(0, 1, bonded=True, yield_strength=YIELD, ultimate_strain=0.02)], ripple=0.1, events=3000)
+    )
     load, moved = found["event_load"], found["event_displacement"]
     assert load.max() == pytest.approx(AREA * YIELD, rel=0.035)
     yields = load > 0.9 * AREA * YIELD
@@ -82,7 +84,12 @@ def test_a_bar_yields_and_breaks() -> None:
 
 
 def capacity(kind: str, structure: dict, tie: dict, **more):
-    deck = {"structure": structure, "joints": {"friction": "no-sliding"}, "ties": [tie], "analysis": {"kind": kind, **more}}
+    deck = {
+        "structure": structure,
+        "joints": {"friction": "no-sliding"},
+        "ties": [tie],
+        "analysis": {"kind": kind, **more},
+    }
     return run_analyses(Context(make_deck(deck)))[0]
 
 

@@ -11,18 +11,19 @@ from extrados.core.calls import indices, integers, long_call, real, room_for, th
 from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
+    BEARS,
     CRACKING,
     ELEMENTS,
     EVENT,
     EVENTS,
     LAWS,
     STOPS,
-    BEARS,
     Bars,
     Bedding,
     Behaviour,
     Events,
     Freedoms,
+    Hill,
     Joints,
     Monitor,
     Plane,
@@ -47,6 +48,7 @@ __all__ = [
     "Events",
     "FreeNode",
     "Freedoms",
+    "Hill",
     "Joints",
     "Model",
     "Monitor",
@@ -485,15 +487,18 @@ def _beddings(group: Plane | Bars | Joints, count: int) -> list[Bedding | None]:
 
 
 def _bed_rows(group: Plane, count: int) -> np.ndarray:
-    """(5, elements) the components of the core's `bedding`: none where nothing cracks."""
-    rows = np.zeros((5, count))
+    """(8, elements) the components of the core's `bedding`: none where nothing cracks or crushes."""
+    rows = np.zeros((8, count))
     rows[3] = 1.0
+    for k, criterion in enumerate(group.hill or ()):
+        if criterion is not None:
+            rows[[0, 5, 6, 7], k] = criterion.angle, criterion.ratio, criterion.coupling, criterion.shear
     if group.bedding is None:
         return rows
     width = _each("band", group.band, count) if group.reach is None else np.zeros(count)
     for k, (bed, law) in enumerate(zip(_beddings(group, count), _softenings(group.tension, count), strict=True)):
         if bed is not None and law is not None:
-            rows[:, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
+            rows[:5, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
     return rows
 
 

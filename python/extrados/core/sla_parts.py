@@ -101,6 +101,26 @@ class Bedding:
 
 
 @dataclass(frozen=True)
+class Hill:
+    """Compressive strength of masonry in courses by Hill's criterion: the compression law is that across the bed joints.
+
+    angle of the bed joints to x [rad]; ratio fx / fy of the strengths along and across them; coupling b and shear c of
+    (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) = 1.
+    """
+
+    angle: float
+    ratio: float
+    coupling: float
+    shear: float
+
+    def __post_init__(self) -> None:
+        if not (self.ratio > 0.0 and self.shear > 0.0 and abs(self.coupling) < 2.0):
+            raise ValueError(
+                "Hill's criterion needs a ratio and a shear factor above 0 and a coupling between -2 and 2"
+            )
+
+
+@dataclass(frozen=True)
 class Plane:
     """Plane-stress elements of one kind, all arrays by element (or one value for all).
 
@@ -129,6 +149,7 @@ class Plane:
     reach: np.ndarray | None = None
     confinement: float | np.ndarray = 0.0
     bedding: Bedding | Sequence[Bedding | None] | None = None
+    hill: Sequence[Hill | None] | None = None
 
     @property
     def points_each(self) -> int:

@@ -45,7 +45,9 @@ def dry_points(core_model: core.Model, model: SlaModel) -> DryPoints:
         found.append((first + at, *(np.repeat(value * each, per)[at] for value in (*values, 1.0))))
     if any(len(number) for number, *_ in found):
         bars = [group for group in model.groups if isinstance(group, core.Bars)]
-        first = np.cumsum([core_model.points - sum(len(bar.connect) for bar in bars), *(len(bar.connect) for bar in bars)])
+        first = np.cumsum(
+            [core_model.points - sum(len(bar.connect) for bar in bars), *(len(bar.connect) for bar in bars)]
+        )
         for bar, start in zip(bars, first[:-1].tolist(), strict=True):
             each = np.ones(len(bar.connect))
             if bar.bears != "both":
@@ -68,7 +70,9 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     if not len(at):
         return False
     damage = core_model.damage()
-    joints = at[at < core_model.damage().shape[1] - sum(len(g.connect) for g in model.groups if isinstance(g, core.Bars))]
+    joints = at[
+        at < core_model.damage().shape[1] - sum(len(g.connect) for g in model.groups if isinstance(g, core.Bars))
+    ]
     damage[CRACKED, joints] = 1.0
     damage[TOOTH, joints] = core.MOST_TEETH + 1.0  # beyond the last tooth, whatever their number
     touching, mode = np.ones(len(at), dtype=bool), np.full(len(at), STICKS)

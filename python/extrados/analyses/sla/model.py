@@ -270,6 +270,16 @@ def _softening(material: Material, options: Sla, factor: float = 1.0) -> core.So
     )  # fmt: skip
 
 
+def _hill(material: Material) -> core.Hill | None:
+    """Compressive strength that depends on the direction."""
+    along, across = material.compressive_strength_parallel, material.compressive_strength
+    if along is None or across is None:
+        return None
+    return core.Hill(
+        float(np.radians(material.bed_angle)), along / across, material.compressive_coupling, material.compressive_shear
+    )
+
+
 def _bedding(material: Material) -> core.Bedding | None:
     """Bed joints of masonry whose strength depends on the direction."""
     along, across = material.tensile_strength_parallel, material.tensile_strength
@@ -301,6 +311,9 @@ def _plane(
         for m, s, f in zip(materials, group.linear, factors, strict=True)
     ]
     beds = [None if t is None else _bedding(m) for m, t in zip(materials, tension, strict=True)]
+    hill = [None if s else _hill(m) for m, s in zip(materials, group.linear, strict=True)]
+    if options.cracking == "isotropic" and any(criterion is not None for criterion in hill):
+        raise BadGeometry("compressive_strength_parallel needs cracks with a direction: isotropic cracking has none")
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
         raise BadGeometry("tensile_strength_parallel needs cracks with a direction: isotropic cracking has none")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
@@ -321,8 +334,8 @@ def _plane(
         crushing if any(c is not None for c in crushing) else None,
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
         group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None, reach,
-        np.array([m.confinement for m in materials]),
-        beds if any(bed is not None for bed in beds) else None,
+        np.array([m.confinement for m in materials]), beds if any(bed is not None for bed in beds) else None,
+        hill if any(criterion is not None for criterion in hill) else None,
     )  # fmt: skip
 
 

@@ -1,13 +1,14 @@
 """Bars in a finite-element mesh: where a point lies in an element, and the strain of a bar by the nodes around it."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.polygons import inside
-from extrados.building.mesh.mesh import Mesh, element_areas
+from extrados.building.mesh.mesh import Mesh
 from extrados.building.ties import Tie
 
 if TYPE_CHECKING:
@@ -133,7 +134,7 @@ def bonded(corners: Corners, ends: np.ndarray, what: str) -> Rod:
     among = np.flatnonzero(near)
     nodes, gradient, lengths = [], [], []
     unit = along / length
-    for start, end in zip(places[:-1], places[1:], strict=True):
+    for start, end in pairwise(places):
         middle = ends[0] + 0.5 * (start + end) * along
         e, natural = corners.at(middle, among) if len(among) else (0, None)
         if natural is None:
