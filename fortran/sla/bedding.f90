@@ -5,8 +5,8 @@
 !> one of the image (sx - fx + f, sy - fy + f, sqrt(a) t) with the strength f, so lambda has the same closed form; the
 !> crack's normal is the principal direction of the image, which is turned towards that of the weaker joints.
 !>
-!> Crushed it is by Hill's criterion in the same axes (Lourenco, de Borst and Rots 1997), with the strengths fx along and
-!> fy across the beds: (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) <= 1, a quadratic in lambda.
+!> Crushed it is by Hill's criterion in the same axes (Lourenco, de Borst and Rots 1997), with the strengths fx along
+!> and fy across the beds: (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) <= 1, a quadratic in lambda.
 module sla_bedding
    use common_kinds, only : wp
    implicit none

@@ -36,6 +36,7 @@ module sla_interface
       procedure :: hold
       procedure :: advance
       procedure :: excess
+      procedure :: elastic
    end type interface_group
 
 contains
@@ -267,6 +268,23 @@ contains
          energy = energy + 0.5_wp * group%area(p) * soft * shear(group, e, p) * d(2)**2
       end do
    end function excess
+
+   pure function elastic(group, lambda, u) result(energy)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: u(0:)
+      real(wp) :: energy, local(8), d(2), friction
+      integer :: e, p
+      energy = 0.0_wp
+      do p = 1, group%points
+         if (.not. is_sliding(group, p)) cycle
+         e = (p + 1) / 2
+         call group%gather(e, u, local)
+         d = jump(group, e, p, local)
+         friction = group%held(1, p) + lambda * group%held(2, p) + soft * shear(group, e, p) * d(2)
+         energy = energy + 0.5_wp * group%area(p) * friction**2 / (shear(group, e, p) - bond(group, e, p))
+      end do
+   end function elastic
 
    pure subroutine advance(group, lambda, ua, ub)
       class(interface_group), intent(inout) :: group
