@@ -379,13 +379,13 @@ contains
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)
-      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), sa(3), sb(3), share, f, fc
+      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), sa(3), sb(3), share, f, fc, nu, more, change
       integer :: e, p, k
 
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
-         ! Both have no bound yet: crushing that depends on both principal stresses, and the criterion of another stress
-         if (group%confinement(e) > 0.0_wp .or. is_bedded(group, e) .or. group%bed(e)%crush > 0.0_wp) then
+         ! Hill's criterion has no bound yet
+         if (group%bed(e)%crush > 0.0_wp) then
             least = -1.0_wp
             return
          end if
@@ -398,13 +398,20 @@ contains
                 group%axis(e) == axis_free)) then
                share = sqrt(group%weight(p) / group%stiff(1, p))
                f = group%limit(1, p)
-               if (f < unbounded) then
+               if (f < unbounded .and. is_bedded(group, e)) then
+                  ! Shear of the image changes more than that of the stress: c' D c of the worst direction c
+                  nu = group%stiff(2, p) / group%stiff(1, p)
+                  call lower(f, 1.0_wp, in_joint_axes(group%bed(e), sa, f), in_joint_axes(group%bed(e), sb, 0.0_wp), &
+                     share / sqrt(1.0_wp + 0.5_wp * (1.0_wp - nu) * (group%bed(e)%shear**2 - 1.0_wp)), lambda, least)
+               else if (f < unbounded) then
                   call lower(f, 1.0_wp, sa, sb, share, lambda, least)
                   fc = group%lateral(e)
                   if (fc > 0.0_wp) call lower(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, share, lambda, least)
                end if
                f = group%limit(3, p)
-               if (f < unbounded) call lower(f, -1.0_wp, sa, sb, share, lambda, least)
+               more = group%confinement(e)
+               if (f < unbounded) call lower(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, share, lambda, &
+                  least)
                cycle
             end if
             do k = 1, merge(1, 2, group%axis(e) /= axis_free)
@@ -412,7 +419,13 @@ contains
                f = group%limit(k, p)
                if (f < unbounded) least = min(least, share * (f - sa(k) - lambda * sb(k)))
                fc = group%limit(k + 2, p)
-               if (fc < unbounded) least = min(least, share * (fc + sa(k) + lambda * sb(k)))
+               if (fc < unbounded) then
+                  more = group%confinement(e)
+                  change = group%stiff(2 * k - 1, p) - 2.0_wp * more * group%stiff(2, p) + &
+                     more**2 * group%stiff(5 - 2 * k, p)
+                  least = min(least, sqrt(group%weight(p) / change) * (fc + sa(k) - more * sa(3 - k) + lambda * ( &
+                     sb(k) - more * sb(3 - k))))
+               end if
                if (.not. group%options%closure .or. group%tooth(k, p) == 1) cycle
                if (group%shut(k, p) /= 0) then
                   least = min(least, -share * (sa(k) + lambda * sb(k)))

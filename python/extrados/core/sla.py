@@ -249,8 +249,10 @@ class Model(Owner):
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        bars = isinstance(group, Bars)
-        per = np.shape(group.connect)[1] if bars else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
+        per = (
+            np.shape(group.connect)[1] if isinstance(group, Bars)
+            else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
+        )  # fmt: skip
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
         young = _each("young", group.young, count)
