@@ -61,7 +61,7 @@ contains
             new_joints, bad, status)
       end if
       call move_alloc(new_joints, group)
-      call group_added(handle, model, connect, group, status)
+      call group_added(handle, model, connect, 2, group, status)
    end subroutine joints
 
 end module api_sla_joints

@@ -35,17 +35,19 @@ contains
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
-   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, &
-                     status)
+   subroutine create(axes, freedoms, nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, &
+                     floor, handle, status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register
       use sla_model, only : element_model, model_new
+      integer(c_int), intent(in) :: axes                  !! 2 in the plane, 3 in space
+      integer(c_int), intent(in) :: freedoms              !! of a node: 2, of shells 6
       integer(c_int), intent(in) :: nodes
-      real(c_double), intent(in) :: xy(2, nodes)          !! [m]
-      integer(c_int), intent(in) :: equation(2, nodes)
+      real(c_double), intent(in) :: xy(axes, nodes)       !! [m]
+      integer(c_int), intent(in) :: equation(freedoms, nodes)
       integer(c_int), intent(in) :: moved
-      real(c_double), intent(in) :: factor(2, nodes)
+      real(c_double), intent(in) :: factor(freedoms, nodes)
       integer(c_int), intent(in) :: cracking              !! of the list sla_cracking
       real(c_double), intent(in) :: retention             !! negative: thesis Eq. 4.11
       integer(c_int), intent(in) :: closure               !! 1: closed cracks regain their stiffness
@@ -132,29 +134,31 @@ contains
       else if (any(choice(2, :) > choice(3, :)) .or. per /= kind .or. &
                any(property(8, :) > 0.0_c_double .and. choice(1, :) > 0 .and. choice(2, :) == 0)) then
          status = status_invalid_argument   ! the number of a kind is that of its nodes
+      else if (size(model%xy, 1) /= 2) then
+         status = status_invalid_argument   ! shells are for the space
       else if (info /= 0) then
          status = status_out_of_memory
       else
-         call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
-            property(3, :), choice(1:3, :), choice(4, :), property(4, :), property(6, :), choice(5, :), &
-            property(5, :), property(7:14, :), model%teeth, model%options, new_plane, bad, status)
+         call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property, choice, model%teeth, &
+            model%options, new_plane, bad, status)
       end if
       call move_alloc(new_plane, group)
-      call group_added(handle, model, connect, group, status)
+      call group_added(handle, model, connect, 2, group, status)
    end subroutine plane
 
    !> Bars by the strain that the displacements of their nodes make
-   subroutine bars(handle, per, elements, connect, gradient, property, choice, bad, status)
+   subroutine bars(handle, ways, per, elements, connect, gradient, property, choice, bad, status)
       use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
       use sla_bar, only : bar_group, bar_group_new
       use sla_group, only : element_group, most_entries
       use sla_handle, only : group_added, group_begun
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: ways                          !! directions of a node, 2 or in space 3
       integer(c_int), intent(in) :: per                           !! nodes of a bar
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: connect(per, elements)
-      real(c_double), intent(in) :: gradient(2, per, elements)    !! strain per displacement in x and y [1/m]
+      real(c_double), intent(in) :: gradient(ways, per, elements) !! strain per displacement in x, y and z [1/m]
       real(c_double), intent(in) :: property(2, elements)         !! volume [m^3], Young's modulus [Pa]
       !> Table of tension teeth, of compression teeth, 0 none; 0 bears both, 1 tension, 2 pressure alone
       integer(c_int), intent(in) :: choice(3, elements)
@@ -169,17 +173,18 @@ contains
       call group_begun(handle, connect, choice(1:2, :), model, status)
       if (status /= status_ok) return
       allocate (new_bars, stat=info)
-      if (any(choice(3, :) < 0) .or. any(choice(3, :) > 2) .or. 2 * per > most_entries) then
+      if (any(choice(3, :) < 0) .or. any(choice(3, :) > 2) .or. ways * per > most_entries .or. &
+          ways /= size(model%xy, 1)) then
          status = status_invalid_argument
       else if (info /= 0) then
          status = status_out_of_memory
       else
-         call bar_group_new(reshape(gradient, [2 * int(per), int(elements)]), property(1, :), property(2, :), &
+         call bar_group_new(reshape(gradient, [int(ways * per), int(elements)]), property(1, :), property(2, :), &
             choice(1, :), choice(2, :), merge(-1_c_int, choice(3, :), choice(3, :) == 2), model%teeth, model%options, &
             new_bars, bad, status)
       end if
       call move_alloc(new_bars, group)
-      call group_added(handle, model, connect, group, status)
+      call group_added(handle, model, connect, int(ways), group, status)
    end subroutine bars
 
    !> Linear springs between freedoms of two nodes, or of one and the ground (node 0)
@@ -193,7 +198,7 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: node(2, elements)
-      integer(c_int), intent(in) :: direction(2, elements)    !! 1 x, 2 y
+      integer(c_int), intent(in) :: direction(2, elements)    !! which freedoms of the nodes
       real(c_double), intent(in) :: stiffness(elements)       !! [N/m]
       integer(c_int), intent(out) :: status
       type(spring_group), allocatable :: new_springs
@@ -247,7 +252,7 @@ contains
       use sla_model, only : element_model, model_factor
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(out) :: node          !! free to move, 0 none
-      integer(c_int), intent(out) :: direction     !! 1 x, 2 y
+      integer(c_int), intent(out) :: direction     !! which of its freedoms
       real(c_double), intent(out) :: ratio         !! smallest over largest pivot
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model

@@ -293,16 +293,17 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       real(wp), intent(out) :: values(:, :)
-      real(wp) :: axis(2)
+      real(wp) :: axis(2), along
       type(scan_result) :: found
-      integer :: e, n
+      integer :: e, k
       values = 0.0_wp
-      n = group%freedoms
+      k = 1 + group%freedoms / 2          ! in the plane and in space: of a node of the far end
       do e = 1, group%elements
          values(1, e) = strain_of(group, e, ua) + lambda * strain_of(group, e, ub)
          values(4, e) = group%modulus(e) * values(1, e)
-         axis = [group%gradient(n - 1, e), group%gradient(n, e)]   ! of any node: all are along the bar
-         if (norm2(axis) > 0.0_wp) values(7:8, e) = axis / norm2(axis)
+         axis = group%gradient(k:k + 1, e)
+         along = norm2(group%gradient(k:, e))
+         if (along > 0.0_wp) values(7:8, e) = axis / along
          values(9, e) = group%modulus(e) / group%young(e)
          values(10, e) = 1.0_wp
          values(11, e) = real(group%tooth(1, e), wp)

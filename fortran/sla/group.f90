@@ -25,7 +25,7 @@
 !>
 !> A constructor returns the offending element and a status of extrados_status.h (bad geometry, out of memory, invalid
 !> argument); none of the procedures above may fail. The facade is that of `bars` in api_sla_model. Equations are by
-!> node and direction (model_add): a node with rotations needs more directions there, and a wider `most_entries`.
+!> node and direction (model_add): x and y in the plane, and of shells z and three rotations.
 module sla_group
    use common_kinds, only : wp
    use common_lists, only : orthotropic => sla_cracking_orthotropic
@@ -37,7 +37,7 @@ module sla_group
       component, along, admitted, report_rows, state_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
-   integer, parameter :: most_entries = 24, most_rank = 4
+   integer, parameter :: most_entries = 24, most_rank = 5
    integer, parameter :: most_slider = 8
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19

@@ -21,17 +21,22 @@ module sla_plane_points
    use common_lists, only : isotropic => sla_cracking_isotropic, code_tension => sla_event_tension, &
       code_compression => sla_event_compression, code_close => sla_event_close, code_open => sla_event_open, &
       element_t3 => sla_element_t3, element_t6 => sla_element_t6
+   use common_status, only : status_ok, status_out_of_memory
    use sla_bedding, only : bedding, between, hill, hill_strength, in_joint_axes
-   use sla_element, only : element_rule, most_nodes
-   use sla_group, only : point_group, scan_result, unbounded, offer_hi, offer_lo, offer_empty, linear_bound
+   use sla_element, only : element_rule
+   use sla_group, only : point_group, scan_result, material_options, most_entries, unbounded, offer_hi, offer_lo, &
+      offer_empty, linear_bound
    use sla_interval, only : cone_interval, overload, quadratic_interval
-   use sla_tables, only : tooth_tables
+   use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: plane_points, axis_free
-   public :: strain_at, stress_at, nodal, scan_point, is_bedded, open_bedded, share_of, direction_modulus, set_pair, &
-      set_band, width_across, is_triangle
+   public :: plane_points, points_new, points_ready, refresh_plane, axis_free, axis_joint, most_per
+   public :: in_crack_axes, in_element_axes, stress_at, scan_point, is_bedded, open_bedded, share_of
+   public :: direction_modulus, set_pair, set_band, width_across, is_triangle
+
+   !> Points of an element, at most: four places of fifteen layers
+   integer, parameter :: most_per = 60
 
    !> Cracks choose their direction; or they have a given one and keep the shear stiffness: a joint that opens and
    !> closes but does not slide
@@ -42,11 +47,11 @@ module sla_plane_points
    !> Into how many steps that part is rounded
    real(wp), parameter :: share_steps = 1.0e6_wp
 
+   !> Points of plane-stress elements, and of the layers of shells. A kind of element provides `strains` and `nodal`.
    type, abstract, extends(point_group) :: plane_points
       type(element_rule) :: rule
+      integer :: per = 0                                 !! points of an element
       logical :: selective = .false.                     !! shear strain from the element's middle
-      real(wp), allocatable :: gradient(:, :, :)         !! (2, nodes, points) [1/m]
-      real(wp), allocatable :: shear_gradient(:, :, :)   !! (2, nodes, elements), if selective
       real(wp), allocatable :: weight(:)                 !! volume of a point [m^3]
       real(wp), allocatable :: young(:)                  !! (elements) [Pa]
       real(wp), allocatable :: nu(:)
@@ -71,22 +76,113 @@ module sla_plane_points
       real(wp), allocatable :: stiff(:, :)               !! (4, points) Dnn, Dns, Dss, G [Pa]
       real(wp), allocatable :: limit(:, :)               !! (4, points) tension n, s, compression n, s [Pa]
    contains
+      procedure(strains_interface), deferred :: strains
+      procedure(nodal_interface), deferred :: nodal
       procedure :: scan
       procedure :: margin
-      procedure :: refresh
+      procedure :: refresh => refresh_plane
       procedure :: table_of
    end type plane_points
 
+   abstract interface
+
+      !> Strains x, y, xy of all points of an element, in its axes, from the displacements of its freedoms
+      pure subroutine strains_interface(group, e, local, eps)
+         import :: plane_points, wp
+         implicit none (type, external)
+         class(plane_points), intent(in) :: group
+         integer, intent(in) :: e
+         real(wp), intent(in) :: local(:)
+         real(wp), intent(out) :: eps(:, :)     !! (3, points of the element)
+      end subroutine strains_interface
+
+      !> Forces in the freedoms of an element of the stress v, in its axes, in a unit of volume at a point
+      pure subroutine nodal_interface(group, e, p, v, local)
+         import :: plane_points, wp
+         implicit none (type, external)
+         class(plane_points), intent(in) :: group
+         integer, intent(in) :: e
+         integer, intent(in) :: p
+         real(wp), intent(in) :: v(3)
+         real(wp), intent(out) :: local(:)
+      end subroutine nodal_interface
+
+   end interface
+
 contains
 
+   !> Material and damage, which is none, of a group that knows its elements and the points of each; its maker sets
+   !> `weight` and `diagonal`, then calls points_ready
+   subroutine points_new(group, property, choice, teeth, options, status)
+      class(plane_points), intent(inout) :: group
+      !> (14, elements) thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength [Pa], angle of the only
+      !> crack normal allowed [rad], confinement, and the components of `bedding` in their order
+      real(wp), intent(in) :: property(:, :)
+      !> (5, elements) tables of tension teeth of uncracked points, of the narrowest and the widest band, of compression
+      !> teeth; 0 cracks choose their direction, 1 one normal is given, 2 also the shear is kept
+      integer(c_int), intent(in) :: choice(:, :)
+      type(tooth_tables), intent(in) :: teeth
+      type(material_options), intent(in) :: options
+      integer(c_int), intent(out) :: status
+      integer :: e, k, ne, np, info
+
+      ne = group%elements
+      np = ne * group%per
+      group%points = np
+      group%options = options
+      call tooth_tables_copy(teeth, group%teeth, status)
+      if (status /= status_ok) return
+      allocate (group%weight(np), group%young(ne), group%nu(ne), group%table(ne), group%crush_table(ne), &
+         group%lateral(ne), group%axis(ne), group%ladder(2, ne), group%diagonal(2, 2, ne), group%confinement(ne), &
+         group%bed(ne), group%pair(2, merge(np, 0, any(property(8, :) > 0.0_wp))), group%turn(2, np), &
+         group%cracked(np), group%tooth(2, np), group%crush(2, np), group%shut(2, np), group%changes(2, np), &
+         group%stiff(4, np), group%limit(4, np), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      group%young(:) = property(2, :)
+      group%nu(:) = property(3, :)
+      group%table(:) = choice(1, :)
+      group%ladder(:, :) = choice(2:3, :)
+      group%crush_table(:) = choice(4, :)
+      group%lateral(:) = property(4, :)
+      group%confinement(:) = property(6, :)
+      group%axis(:) = choice(5, :)
+      group%pair = 0
+      group%tooth = 1
+      group%crush = 1
+      group%shut = 0
+      group%changes = 0
+      do e = 1, ne
+         associate (bed => property(7:14, e))
+            group%bed(e) = bedding(bed(1), bed(2), bed(3), bed(4), bed(5), bed(6), bed(7), bed(8))
+         end associate
+         do k = (e - 1) * group%per + 1, e * group%per
+            group%turn(:, k) = [1.0_wp, 0.0_wp]
+            if (choice(5, e) /= axis_free) group%turn(:, k) = [cos(property(5, e)), sin(property(5, e))]
+            group%cracked(k) = merge(1_c_int, 0_c_int, choice(5, e) /= axis_free)
+         end do
+      end do
+   end subroutine points_new
+
+   !> What follows from the material of all points once their geometry is known
+   pure subroutine points_ready(group)
+      class(plane_points), intent(inout) :: group
+      integer :: e, p
+      do p = 1, group%points
+         e = (p - 1) / group%per + 1
+         if (group%cracked(p) /= 0 .and. is_bedded(group, e)) call set_pair(group, e, p)
+         call group%refresh(p)
+      end do
+   end subroutine points_ready
+
    !> Stiffness (thesis Eqs 4.9 to 4.11) and strengths of a point from its damage
-   pure subroutine refresh(group, p)
+   pure subroutine refresh_plane(group, p)
       class(plane_points), intent(inout) :: group
       integer, intent(in) :: p
       integer :: e, k
       real(wp) :: e0, nu, modulus(2), tension, compression, ratio, least
 
-      e = (p - 1) / group%rule%points + 1
+      e = (p - 1) / group%per + 1
       e0 = group%young(e)
       nu = group%nu(e)
       group%limit(:, p) = unbounded
@@ -123,7 +219,7 @@ contains
       else
          group%stiff(4, p) = group%options%retention * 0.5_wp * e0 / (1.0_wp + nu)
       end if
-   end subroutine refresh
+   end subroutine refresh_plane
 
    !> Secant modulus of one crack direction [Pa]
    pure function direction_modulus(group, e, p, k) result(modulus)
@@ -135,38 +231,24 @@ contains
          group%teeth%modulus_of(group%table_of(e, p, k), group%tooth(k, p), group%young(e), group%options%floor))
    end function direction_modulus
 
-   !> Strain at a point from its element's displacements, in the crack axes
-   pure function strain_at(group, e, p, local) result(eps)
+   !> A strain in the axes of the element as it is in those of the crack
+   pure function in_crack_axes(group, p, eps) result(turned)
       class(plane_points), intent(in) :: group
-      integer, intent(in) :: e
       integer, intent(in) :: p
-      real(wp), intent(in) :: local(:)
-      real(wp) :: eps(3), x, y, g, c, s
-      integer :: i
+      real(wp), intent(in) :: eps(3)
+      real(wp) :: turned(3), c, s
 
-      x = 0.0_wp
-      y = 0.0_wp
-      g = 0.0_wp
-      do i = 1, group%rule%nodes
-         x = x + group%gradient(1, i, p) * local(2 * i - 1)
-         y = y + group%gradient(2, i, p) * local(2 * i)
-         g = g + group%gradient(2, i, p) * local(2 * i - 1) + group%gradient(1, i, p) * local(2 * i)
-      end do
-      if (group%selective) then
-         g = 0.0_wp
-         do i = 1, group%rule%nodes
-            g = g + group%shear_gradient(2, i, e) * local(2 * i - 1) + group%shear_gradient(1, i, e) * local(2 * i)
-         end do
-      end if
       if (group%cracked(p) == 0) then
-         eps = [x, y, g]
+         turned = eps
       else
          c = group%turn(1, p)
          s = group%turn(2, p)
-         eps = [c**2 * x + s**2 * y + c * s * g, s**2 * x + c**2 * y - c * s * g, &
-            2.0_wp * c * s * (y - x) + (c**2 - s**2) * g]
+         associate (x => eps(1), y => eps(2), g => eps(3))
+            turned = [c**2 * x + s**2 * y + c * s * g, s**2 * x + c**2 * y - c * s * g, &
+               2.0_wp * c * s * (y - x) + (c**2 - s**2) * g]
+         end associate
       end if
-   end function strain_at
+   end function in_crack_axes
 
    !> Stress from strain, both in the crack axes [Pa]
    pure function stress_at(group, p, eps) result(sigma)
@@ -178,15 +260,12 @@ contains
          group%stiff(2, p) * eps(1) + group%stiff(3, p) * eps(2), group%stiff(4, p) * eps(3)]
    end function stress_at
 
-   !> B' R' v: nodal forces of a unit volume under the stress v in the crack axes
-   pure subroutine nodal(group, e, p, v, local)
+   !> R' v: a stress in the axes of the crack as it is in those of the element
+   pure function in_element_axes(group, p, v) result(straight)
       class(plane_points), intent(in) :: group
-      integer, intent(in) :: e
       integer, intent(in) :: p
       real(wp), intent(in) :: v(3)
-      real(wp), intent(out) :: local(:)
-      real(wp) :: c, s, x, y, t
-      integer :: i
+      real(wp) :: straight(3), c, s
 
       c = group%turn(1, p)
       s = group%turn(2, p)
@@ -194,19 +273,10 @@ contains
          c = 1.0_wp
          s = 0.0_wp
       end if
-      x = c**2 * v(1) + s**2 * v(2) - 2.0_wp * c * s * v(3)
-      y = s**2 * v(1) + c**2 * v(2) + 2.0_wp * c * s * v(3)
-      t = c * s * (v(1) - v(2)) + (c**2 - s**2) * v(3)
-      do i = 1, group%rule%nodes
-         if (group%selective) then
-            local(2 * i - 1) = group%gradient(1, i, p) * x + group%shear_gradient(2, i, e) * t
-            local(2 * i) = group%gradient(2, i, p) * y + group%shear_gradient(1, i, e) * t
-         else
-            local(2 * i - 1) = group%gradient(1, i, p) * x + group%gradient(2, i, p) * t
-            local(2 * i) = group%gradient(2, i, p) * y + group%gradient(1, i, p) * t
-         end if
-      end do
-   end subroutine nodal
+      straight = [c**2 * v(1) + s**2 * v(2) - 2.0_wp * c * s * v(3), &
+         s**2 * v(1) + c**2 * v(2) + 2.0_wp * c * s * v(3), &
+         c * s * (v(1) - v(2)) + (c**2 - s**2) * v(3)]
+   end function in_element_axes
 
    pure subroutine scan(group, first, last, ua, ub, lambda, noise, found)
       class(plane_points), intent(in) :: group
@@ -217,9 +287,9 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
-      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), sa(3), sb(3)
+      real(wp) :: la(most_entries), lb(most_entries), ea(3, most_per), eb(3, most_per), sa(3), sb(3)
       logical :: simple
-      integer :: e, p, i
+      integer :: e, p, i, j
 
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
@@ -231,11 +301,14 @@ contains
             la(1:group%freedoms) = la(1:group%freedoms) * group%factor(:, e)
             lb(1:group%freedoms) = lb(1:group%freedoms) * group%factor(:, e)
          end if
+         call group%strains(e, la, ea)
+         call group%strains(e, lb, eb)
          simple = group%table(e) /= 0 .and. group%crush_table(e) == 0 .and. group%lateral(e) <= 0.0_wp .and. &
             .not. is_bedded(group, e)
-         do p = (e - 1) * group%rule%points + 1, e * group%rule%points
-            sa = stress_at(group, p, strain_at(group, e, p, la))
-            sb = stress_at(group, p, strain_at(group, e, p, lb))
+         do p = (e - 1) * group%per + 1, e * group%per
+            j = p - (e - 1) * group%per
+            sa = stress_at(group, p, in_crack_axes(group, p, ea(:, j)))
+            sb = stress_at(group, p, in_crack_axes(group, p, eb(:, j)))
             if (simple .and. group%cracked(p) == 0 .and. found%hi%value < unbounded .and. &
                 found%lo%value > -unbounded) then
                ! Nearly all points end here: they admit both limits found so far, see cone.
@@ -379,8 +452,9 @@ contains
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)
-      real(wp) :: la(2 * most_nodes), lb(2 * most_nodes), sa(3), sb(3), share, f, fc, nu, more, change
-      integer :: e, p, k
+      real(wp) :: la(most_entries), lb(most_entries), ea(3, most_per), eb(3, most_per), sa(3), sb(3), share, f, fc, &
+         nu, more, change
+      integer :: e, p, k, j
 
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
@@ -391,9 +465,12 @@ contains
          end if
          call group%gather(e, ua, la)
          call group%gather(e, ub, lb)
-         do p = (e - 1) * group%rule%points + 1, e * group%rule%points
-            sa = stress_at(group, p, strain_at(group, e, p, la))
-            sb = stress_at(group, p, strain_at(group, e, p, lb))
+         call group%strains(e, la, ea)
+         call group%strains(e, lb, eb)
+         do p = (e - 1) * group%per + 1, e * group%per
+            j = p - (e - 1) * group%per
+            sa = stress_at(group, p, in_crack_axes(group, p, ea(:, j)))
+            sb = stress_at(group, p, in_crack_axes(group, p, eb(:, j)))
             if (group%cracked(p) == 0 .or. (group%options%cracking == isotropic .and. &
                 group%axis(e) == axis_free)) then
                share = sqrt(group%weight(p) / group%stiff(1, p))
