@@ -91,10 +91,14 @@ def _draw_forces(run: Stored, name: str, folder: Path, r: SolidTilt, stones: sce
         scene.ground(ax, stones.vertices, VIEW)
         scene.compass(ax, stones.vertices, VIEW, r.load_direction_deg)
         ax.add_collection(
-            LineCollection(np.stack([middle - half, middle + half], axis=1), colors=style.THRUST, linewidths=1.1, zorder=3)
+            LineCollection(
+                np.stack([middle - half, middle + half], axis=1), colors=style.THRUST, linewidths=1.1, zorder=3
+            )
         )
         ax.plot(*middle.T, ".", color=style.THRUST, markersize=2.0, zorder=3)
-        ax.set_title(f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the longest is {size.max() / 1e3:.3g} kN")
+        ax.set_title(
+            f"Forces between the stones at {r.collapse_acceleration_g:.4f} g; the longest is {size.max() / 1e3:.3g} kN"
+        )
         saved = style.save(fig, folder, f"{name}-forces")
     return saved, (
         "Forces between the stones and from the ground at collapse, through the stones: each at the centre of its compression, "
