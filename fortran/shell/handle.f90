@@ -44,8 +44,8 @@ contains
       else if (info /= 0) then
          status = status_out_of_memory
       else
-         call shell_points_new(kind, section, selective, model%xy, frame, flat, connect, property, choice, model%teeth, &
-            model%options, shells, bad, status)
+         call shell_points_new(kind, section, selective, model%xy, frame, flat, connect, property, choice, &
+            model%teeth, model%options, shells, bad, status)
       end if
       call move_alloc(shells, group)
       call group_added(handle, model, connect, 6, group, status)
