@@ -76,7 +76,7 @@ class Pushover(PushCurve, KindResults):
     factor_bytes: int = fact("memory of the factor, in bytes")
     minus: PushCurve = maybe("the curve of the second sense")
     variants: list[Variation] = maybe("the first sense with other assumptions")
-    band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own")
+    band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses: an acceleration [g] where the forces are those of the masses."""
