@@ -502,6 +502,97 @@ def report(
 
 
 @app.command()
+def compare(
+    old: Annotated[Path, typer.Argument(help="a results folder")],
+    new: Annotated[Path, typer.Argument(help="another one")],
+    tolerance: Annotated[
+        float, typer.Option(min=0.0, help="relative difference up to which numbers are the same")
+    ] = 1e-9,
+    page: Annotated[Path | None, typer.Option(help="also write the comparison as an HTML page")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="print it as JSON")] = False,
+) -> None:
+    """What changed between two results: deck, verdicts, numbers, warnings, program."""
+    from dataclasses import asdict
+
+    from rich.table import Table
+
+    from extrados.plots.comparing import MOST, document, row
+    from extrados.results.compare import compare as compared
+    from extrados.results.store import StoreError, read
+
+    with _errors(as_json):
+        found = compared(read(old), read(new), tolerance)
+        if as_json:
+            print(json.dumps(asdict(found), indent=2))
+        elif found.same:
+            out_console.say("Nothing but the time it took differs.")
+        tables = {"verdicts": found.verdicts, "deck": found.deck, "program": found.program, **found.numbers}
+        for title, there in tables.items() if not as_json else ():
+            if not there:
+                continue
+            table = Table(box=None, pad_edge=False, title=printable(title), title_justify="left")
+            for head in ("key", "before", "after", "after / before"):
+                table.add_column(head, overflow="fold")
+            for change in there[:MOST]:
+                table.add_row(*(printable(text) for text in row(change)))
+            out_console.print(table)
+            if len(there) > MOST:
+                out_console.say(f"and {len(there) - MOST} smaller ones")
+        for words, lines in (("gone", found.warnings_gone), ("new", found.warnings_new)):
+            for line in lines if not as_json else ():
+                out_console.say(f"warning {words}: {line}")
+        if page is not None:
+            from extrados.plots import html
+
+            try:
+                page.write_text(
+                    html.page(document((str(old), str(new)), found), page.parent),
+                    encoding="utf-8",
+                    errors="backslashreplace",
+                )
+            except OSError as error:
+                raise StoreError(f"{page}: cannot be written: {error.strerror or error}") from None
+
+
+@app.command()
+def assess(
+    folder: Annotated[Path, typer.Argument(help="a folder of decks; common.toml gives them what they lack")],
+    out: Annotated[Path | None, typer.Option(help="results folder; default results/<folder name>")] = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
+    resume: Annotated[bool, typer.Option(help="go on from the checkpoint of an interrupted run")] = False,
+    scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the buildings")] = "",
+    figures: Annotated[bool, typer.Option(help="draw figures and reports")] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no ranking")] = False,
+) -> None:
+    """Assess every building of a folder: a ranking, worst first, and a page for each."""
+    from rich.table import Table
+
+    from extrados.running.survey import assess_folder, decks_of
+
+    with _errors():
+        total = len(decks_of(folder))
+        place = out or Path("results") / (folder.resolve().name or "survey")
+        progress = _Progress(quiet)
+        try:
+            rows = assess_folder(folder, place, _threads(threads), progress, resume, scheduler, figures)
+        finally:
+            progress.stop()
+        table = Table(box=None, pad_edge=False)
+        for head in ("rank", "building", "overall", "least margin", "of"):
+            table.add_column(head)
+        for k, one in enumerate(rows, 1):
+            known = f"{one.least_margin:.3g}" if one.least_margin == one.least_margin else ""
+            table.add_row(str(k), printable(one.building), one.overall or one.status, known, one.strategy)
+        if not quiet:
+            out_console.print(table)
+            out_console.say(f"Ranking: {place / 'ranking.html'}")
+    if len(rows) < total:
+        err_console.say(f"{total - len(rows)} of {total} buildings are missing; --resume goes on from here")
+        raise typer.Exit(interrupts.exit_code())
+    raise typer.Exit(0 if all(one.status == "ok" for one in rows) else NOT_DONE)
+
+
+@app.command()
 def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
     """Draw the figures and the report anew, and list the figures."""
     from extrados.plots.report import write_report

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_every_strategy import quick_save
 
 import extrados
-from extrados.analyses.assess import driver, hazard, strategies
+from extrados.analyses.assess import driver, hazard, sensitivity, strategies
 from extrados.analyses.assess.reasons import Facts, explained
 from extrados.analyses.assess.words import conclusion, margin_of, table_of
 from extrados.analyses.context import Context
@@ -17,7 +18,7 @@ from extrados.core.calls import within
 from extrados.decks.reader import make_deck
 from extrados.motions import pulses
 from extrados.motions.tables import Compatible, Record, SinePulse
-from extrados.plots import report
+from extrados.plots import report, style
 from extrados.results.assess import StrategyVerdict
 from extrados.results.model import Result
 from extrados.results.rocking import Rocking
@@ -70,7 +71,8 @@ def test_decks_of_the_parts_run_by_themselves(whole: Run, tmp_path: Path) -> Non
         assert again[again.analyses[0]["name"]].as_json() == whole[name].as_json()
 
 
-def test_written_and_drawn(whole: Run, tmp_path: Path) -> None:
+def test_written_and_drawn(whole: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(style, "save", quick_save)
     whole.write(tmp_path / "out", figures=False)
     assert (tmp_path / "out" / "assess" / "dem.toml").exists()
     drawn = report.draw(Run.read(tmp_path / "out"), tmp_path)
@@ -237,3 +239,68 @@ def test_relations_and_overall_statement() -> None:
     overall, words = conclusion(split, [], [("tilt", "dem")], "block", (None, None), list(split.rows.values()))
     assert overall == "depends" and "No rule finds a reason" in words
     assert margin_of(far[1]) == "above 2" and "tilt" in table_of(far)
+
+
+# ----- sensitivity
+
+
+def test_a_value_turns_the_verdict_where_the_closed_form_says() -> None:
+    """A block bears width over height; statics turns where that is the peak of the motion."""
+    block = {"kind": "block", "width": 1.0, "height": 5.0}
+    data = {"structure": block, "motion": PULSE}
+    given = {"strategies": ["tilt", "rocking"], "vary": {"structure.width": 0.1, "structure.height": 0.1}}
+    r = extrados.run({**data, "analysis": {"kind": "assess", "budget": 5, **given}})["assess"]
+    rows = {m.key: m for m in r.sensitivity}
+    width, height = rows["structure.width"], rows["structure.height"]
+    assert (width.low, width.high) == (0.9, 1.1) and width.unit == "m"
+    assert width.tilt_low == pytest.approx(0.9 / 5.0 / 0.3) and width.tilt_high == pytest.approx(1.1 / 5.0 / 0.3)
+    assert width.tilt_turns == pytest.approx(1.5, rel=0.01) and height.tilt_turns == pytest.approx(1.0 / 0.3, rel=0.01)
+    for factor, falls in ((0.97, True), (1.03, False)):
+        if width.rocking_turns is None:
+            break
+        found = extrados.run(
+            {**data, "structure": {**block, "width": factor * width.rocking_turns}, "analysis": {"kind": "rocking"}}
+        )
+        assert (found["rocking"].outcome == "collapse") == falls
+
+
+def test_what_is_moved_by_default() -> None:
+    arch = make_deck(
+        deck(structure={"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9})
+    ).building
+    keys = {v.key: v for v in sensitivity.varied(arch, None, 0.8)}
+    assert set(keys) == {
+        "structure.thickness",
+        "structure.thickness_factor",
+        "joints.friction",
+        "joints.restitution",
+        "material.density",
+    }
+    assert keys["joints.restitution"].base == 0.8 and keys["structure.thickness_factor"].bounded(1.1) == 1.0
+    block = make_deck(deck(structure={"kind": "block", "width": 1.0, "height": 4.0})).building
+    assert "structure.width" in {v.key for v in sensitivity.varied(block, None, None)}
+
+
+def test_what_only_elements_know_is_tried_on_them() -> None:
+    arch = {"kind": "arch", "radius": 1.0, "thickness": 0.25, "embrace": 150.0, "voussoirs": 6}
+    data = deck(structure=arch, assess={"strategies": ["dem"], "vary": {"material.density": 0.1}})
+    probes = {p.changed: p for p in extrados.run(data)["assess"].probes}
+    assert {"joints 4 times as stiff", "joints 4 times as soft"} <= set(probes)
+    (moved,) = [p for text, p in probes.items() if "right support" in text]
+    assert moved.value is not None and moved.value > 2.0 * probes["joints 4 times as stiff"].value, (
+        "it opens as its support moves"
+    )
+
+
+def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = driver._Work.ask
+
+    def stopped(work: driver._Work, strategy: strategies.Strategy) -> Result | None:
+        if strategy.name == "dem":
+            raise driver.Interrupted
+        return asked(work, strategy)
+
+    monkeypatch.setattr(driver._Work, "ask", stopped)
+    (first, *parts) = extrados.run(deck(assess={"strategies": ["tilt", "dem"]})).analyses
+    assert first["status"] == "interrupted" and [p["name"] for p in parts] == ["tilt"]
+    assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"]["outcome"] == "falls"

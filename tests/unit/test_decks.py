@@ -197,9 +197,6 @@ def test_explain_schema_and_starters() -> None:
     assert "joints.types.cohesion: " in explain.explain("joints.types")
     assert explain.explain("analysis.tilt").startswith('[analysis] kind = "tilt"')
     assert explain.explain("tilt.fracture").startswith("analysis.fracture (tilt): ")
-    with pytest.raises(KeyError, match="now called 'brickwork'"):
-        explain.starter("wall")
-    assert "name of the wall" in explain.explain("wall")  # the keys of buildings that are called so
     for kind in kinds.ANALYSES:
         assert tomllib.loads(explain.starter(kind))["analysis"][0]["kind"] == kind
     assert "`radius`" in explain.manual()

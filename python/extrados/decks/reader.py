@@ -16,7 +16,7 @@ from extrados.analyses.table import OVERRIDES, Analysis
 from extrados.building.building import Building
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.building.structure import Structure
-from extrados.decks.moved import MOVED, MOVED_KINDS
+from extrados.decks.moved import MOVED
 from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import key_lines, line_of
 from extrados.schema import files
@@ -261,8 +261,6 @@ class _Checker:
         if not isinstance(kind, str) or kind not in known:
             if kind is None:
                 self.complain(path, f"kind is missing: expected one of {_words(known)}")
-            elif isinstance(kind, str) and (section, kind) in MOVED_KINDS:
-                self.complain((*path, "kind"), f"'{kind}' is now called '{MOVED_KINDS[section, kind]}'")
             else:
                 self.complain((*path, "kind"), f"unknown kind {_shown(kind)}{_nearest(str(kind), known)}")
             return None

@@ -21,7 +21,12 @@ REACH = 1.35
 def draw_assess(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Margins of all strategies, their agreement, and the motion with what statics bears."""
     r = run[name]
-    found = [_margins(r, folder, name), _agreement(r, folder, name), _hazard(run, r, name, folder)]
+    found = [
+        _margins(r, folder, name),
+        _agreement(r, folder, name),
+        _hazard(run, r, name, folder),
+        _tornado(r, folder, name),
+    ]
     return [one for one in found if one is not None]
 
 
@@ -153,3 +158,43 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
         style.legend_below(fig, ax)
         saved = style.save(fig, folder, f"{name}-hazard")
     return saved, f"{r.hazard.told[:1].upper()}{r.hazard.told[1:]}.{told}"
+
+
+def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
+    """Margins of limit analysis and rocking with each value moved down and up, the widest above."""
+    rows = r.sensitivity or []
+    if not rows:
+        return None
+    panels = [("tilt", "limit analysis"), ("rocking", "rocking")]
+    panels = [p for p in panels if any(getattr(row, f"{p[0]}_low") is not None for row in rows)]
+    if not panels:
+        return None
+    with style.figure(7.4, 1.7 + 0.42 * len(rows), columns=len(panels), sharey=True) as (fig, axes):
+        for ax, (strategy, label) in zip(axes, panels, strict=True):
+            here = next((v for row in rows if (v := getattr(row, f"{strategy}_base")) is not None), None)
+            for k, row in enumerate(rows):
+                low, high = getattr(row, f"{strategy}_low"), getattr(row, f"{strategy}_high")
+                for value, colour in ((low, "#d98200"), (high, style.HINGE)):
+                    if value is not None and here is not None:
+                        ax.plot([here, value], [k, k], color=colour, linewidth=8.0, solid_capstyle="butt")
+            ax.plot([], [], color="#d98200", linewidth=8.0, label="value below")
+            ax.plot([], [], color=style.HINGE, linewidth=8.0, label="value above")
+            if here is not None:
+                ax.axvline(here, color=style.EDGE, linewidth=0.8)
+            ax.axvline(1.0, color=style.THRUST, linewidth=1.0, linestyle="--", label="the verdict turns")
+            ax.set_title(f"Margin of {label}")
+            ax.set_xlabel("factor on the hazard")
+            ax.grid(axis="y", visible=False)
+        units = [f" {row.unit}" if row.unit else "" for row in rows]
+        labels = [
+            f"{row.key.split('.', 1)[1]}\n{row.low:.4g} to {row.high:.4g}{u}"
+            for row, u in zip(rows, units, strict=True)
+        ]
+        axes[0].set_yticks(range(len(rows)), labels, fontsize=7.5)
+        axes[0].set_ylim(len(rows) - 0.4, -0.6)
+        style.legend_below(fig, axes[0])
+        saved = style.save(fig, folder, f"{name}-sensitivity")
+    turned = [f"{row.key} {value:.3g}{f' {row.unit}' if row.unit else ''} ({label})" for row in rows
+              for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns)) if value is not None]  # fmt: skip
+    told = f" Verdicts turn at: {'; '.join(turned)}." if turned else " No value tried turns a verdict."
+    return saved, f"Margins with one value of the deck moved, all else as it is.{told}"

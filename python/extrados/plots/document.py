@@ -5,8 +5,11 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Heading:
+    """fresh: it begins a page of its own."""
+
     text: str
     level: int = 1
+    fresh: bool = False
 
 
 @dataclass(frozen=True)
@@ -29,10 +32,11 @@ class Table:
 
 @dataclass(frozen=True)
 class Figure:
-    """A picture of folder/figures by its name, numbered in its order."""
+    """A picture by its place below the report's folder, without its ending; numbered in its order. width: of the page's."""
 
     name: str
     caption: str
+    width: float = 1.0
 
 
 @dataclass(frozen=True)

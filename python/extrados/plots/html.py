@@ -23,13 +23,13 @@ table{border-collapse:collapse;font:13px/1.4 sans-serif}td,th{border-bottom:1px 
 tr{break-inside:avoid}td.stands,td.holds{color:#3b7a57;font-weight:bold}td.falls,td.fails{color:#b3261e;font-weight:bold}td.open{color:#a86400;font-weight:bold}
 nav ol{columns:2}nav a{color:inherit}
 pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px;white-space:pre-wrap}footer{margin-top:3rem;font-size:.8rem;color:#666}
-@media print{body{font-size:10.5pt;margin:0;max-width:none;padding:0}h2,h3{break-after:avoid}table{font-size:8.5pt}}
+@media print{body{font-size:10.5pt;margin:0;max-width:none;padding:0}h2,h3{break-after:avoid}.fresh{break-before:page}table{font-size:8.5pt}}
 </style></head><body>
 <h1>{{ document.title }}</h1>
 <table>{% for label, text in document.facts %}<tr><th>{{ label }}</th><td>{{ text }}</td></tr>{% endfor %}</table>
 <nav><h2>Contents</h2><ol>{% for text in contents %}<li><a href="#part-{{ loop.index }}">{{ text }}</a></li>{% endfor %}</ol></nav>
 {% for kind, b, number in blocks %}
-{% if kind == "Heading" %}<h{{ b.level + 1 }}{% if b.level == 1 %} id="part-{{ number }}"{% endif %}>{% if b.level == 1 %}{{ number }} {% endif %}{{ b.text }}</h{{ b.level + 1 }}>
+{% if kind == "Heading" %}<h{{ b.level + 1 }}{% if b.level == 1 %} id="part-{{ number }}"{% endif %}{% if b.fresh %} class="fresh"{% endif %}>{% if b.level == 1 %}{{ number }} {% endif %}{{ b.text }}</h{{ b.level + 1 }}>
 {% elif kind == "Words" %}<p{% if b.look %} class="{{ b.look }}"{% endif %}>{{ b.text }}</p>
 {% elif kind == "Table" %}<table>{% if b.head %}<tr>{% for cell in b.head %}<th>{{ cell }}</th>{% endfor %}</tr>{% endif %}
 {% for row in b.rows %}<tr>{% for cell in row %}{% if loop.first %}<th>{{ cell }}</th>{% else %}<td{% if cell in looks %} class="{{ cell }}"{% endif %}>{{ cell }}</td>{% endif %}{% endfor %}</tr>{% endfor %}</table>
@@ -43,7 +43,7 @@ LOOKS = ("stands", "falls", "open", "holds", "fails")
 
 
 def page(document: Document, folder: Path) -> str:
-    """The page; pictures are folder/figures/NAME.svg."""
+    """The page; pictures are folder/NAME.svg."""
     numbers = {"Heading": 0, "Figure": 0}
     blocks = []
     for block in document.blocks:
@@ -52,7 +52,7 @@ def page(document: Document, folder: Path) -> str:
             numbers[kind] += 1
         blocks.append((kind, block, numbers.get(kind, 0)))
     images = {
-        b.name: base64.b64encode((folder / "figures" / f"{b.name}.svg").read_bytes()).decode()
+        b.name: base64.b64encode((folder / f"{b.name}.svg").read_bytes()).decode()
         for b in document.blocks if isinstance(b, Figure)
     }  # fmt: skip
     return jinja2.Environment(autoescape=True).from_string(TEMPLATE).render(

@@ -74,10 +74,10 @@ def _assessed(run: Stored, name: str) -> list[Block]:
     r = run[name]
     rows = []
     for v in r.verdicts:
-        margin = _margin(v)
+        factor = margin(v)
         if v.status == "ok":
             rows.append(
-                (v.label, OUTCOMES[v.outcome], cell(v.demand, ""), cell(v.capacity, ""), v.unit, margin, v.statement)
+                (v.label, OUTCOMES[v.outcome], cell(v.demand, ""), cell(v.capacity, ""), v.unit, factor, v.statement)
             )
         else:
             rows.append((v.label, v.status, "", "", "", "", v.reason))
@@ -102,6 +102,15 @@ def _assessed(run: Stored, name: str) -> list[Block]:
         labels = {v.strategy: v.label for v in r.verdicts}
         text = "; ".join(f"{labels[a]} and {labels[b]}" for a, b in r.unexplained)
         found.append(Words(f"No rule has found a reason why these differ: {text}.", "bad"))
+    if r.sensitivity:
+        found.append(Heading("What the verdicts hang on", 2))
+        rows = [
+            (m.key, f"{cell(m.base)} {m.unit}".strip(), f"{m.low:.4g} to {m.high:.4g}", _both(m.tilt_low, m.tilt_high), cell(m.tilt_turns, ""),
+             _both(m.rocking_low, m.rocking_high), cell(m.rocking_turns, ""))
+            for m in r.sensitivity
+        ]  # fmt: skip
+        head = ("key", "value", "moved", "margin of limit analysis", "turns at", "margin of rocking", "turns at")
+        found.append(Table(head, rows, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
     if r.probes:
         found.append(Heading("Further runs", 2))
         rows = [(p.strategy, p.changed, OUTCOMES[p.outcome], cell(p.value, "")) for p in r.probes]
@@ -113,7 +122,12 @@ def _assessed(run: Stored, name: str) -> list[Block]:
     return found
 
 
-def _margin(v: Any) -> str:
+def _both(low: float | None, high: float | None) -> str:
+    return f"{cell(low, '?')} to {cell(high, '?')}" if low is not None or high is not None else ""
+
+
+def margin(v: Any) -> str:
+    """The margin of a strategy in words: a factor, or between which ones it lies."""
     if v.margin is not None:
         return cell(v.margin)
     low, high = v.margin_at_least, v.margin_below
@@ -127,7 +141,7 @@ def _building(deck: dict[str, Any], drawing: tuple[str, str] | None) -> list[Blo
     structure = [p for p in properties if p["table"] == "structure"]
     found: list[Block] = [Heading("Building")] if structure or drawing else []
     if drawing:
-        found.append(Figure(*drawing))
+        found.append(Figure(f"figures/{drawing[0]}", drawing[1]))
     if deck.get("dimensions"):
         found.append(
             Table(
@@ -195,7 +209,7 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures) -> list[Block]:
     if a["answer"] and a["kind"] != "assess":
         found.append(Words(a["answer"], "answer"))
     found += [Words(f"Warning: {w}", "warn") for w in a["warnings"]]
-    found += [Figure(name, caption) for name, caption in figures]
+    found += [Figure(f"figures/{name}", caption) for name, caption in figures]
     found += [table for kind, name, table in _own_tables(run) if name == a["name"]]
     if a["assumptions"]:
         rows = [
@@ -326,7 +340,7 @@ def flat(values: dict[str, Any], prefix: str = "") -> list[tuple[str, str]]:
 def cell(value: Any, nothing: str = "none") -> str:
     """A value as a table shows it; long lists by their first values."""
     if isinstance(value, float):
-        return f"{value:.5g}"
+        return f"{value:.5g}" if value == value else nothing
     if isinstance(value, list) and value and isinstance(value[0], dict | ResultModel):
         shown = " | ".join(cell(v) for v in value[:MOST_ROWS])
         return shown + (f" | ... ({len(value)})" if len(value) > MOST_ROWS else "")

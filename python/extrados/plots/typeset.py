@@ -60,7 +60,7 @@ def _words(value: str) -> str:
 
 
 def markup(document: Document, folder: Path) -> str:
-    """The document in the language of typst; pictures lie in folder/figures."""
+    """The document in the language of typst; pictures lie below the folder."""
     lines = [HEAD.replace("{title}", text_of(document.title)).replace("{foot}", text_of(document.foot))]
     if document.facts:
         rows = ", ".join(f"strong({text_of(a)}), {_words(b)}" for a, b in document.facts)
@@ -68,6 +68,8 @@ def markup(document: Document, folder: Path) -> str:
     lines.append("#outline(depth: 1, title: [Contents])")
     for block in document.blocks:
         if isinstance(block, Heading):
+            if block.fresh:
+                lines.append("#pagebreak(weak: true)")
             lines.append(f"#heading(level: {block.level}, {text_of(block.text)})")
         elif isinstance(block, Words):
             lines.append(_paragraph(block))
@@ -111,11 +113,11 @@ def _table(block: Table) -> str:
 
 
 def _figure(block: Figure, folder: Path) -> str:
-    drawing = folder / "figures" / f"{block.name}.svg"
-    name = f"figures/{block.name}.{'svg' if drawing.stat().st_size <= LARGEST else 'png'}"
+    drawing = folder / f"{block.name}.svg"
+    name = f"{block.name}.{'svg' if drawing.stat().st_size <= LARGEST else 'png'}"
     size = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', drawing.read_text(encoding="utf-8")[:2000])
     tall = float(size[2]) / float(size[1]) if size else 1.0
-    width = min(100.0, 100.0 * TALLEST / tall)
+    width = 100.0 * block.width * min(1.0, TALLEST / tall)
     return f"#figure(image({text_of('/' + name)}, width: {width:.3g}%), caption: {_words(block.caption)})"
 
 

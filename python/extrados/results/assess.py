@@ -64,6 +64,24 @@ class Probe(ResultModel):
     value: float | None = fact("its demand over its capacity; null: not known")
 
 
+class Sensitivity(ResultModel):
+    """One value of the deck moved, all else as it is: margins of limit analysis and of rocking."""
+
+    key: str = fact("the key of the deck")
+    base: float = fact("its value, in `unit`")
+    unit: str = fact("unit of the value")
+    low: float = fact("a value below")
+    high: float = fact("a value above")
+    tilt_base: float | None = fact("margin of limit analysis at the value as it is; null: none")
+    rocking_base: float | None = fact("margin of rocking at the value as it is; null: none")
+    tilt_low: float | None = fact("margin of limit analysis at the value below; null: none")
+    tilt_high: float | None = fact("margin of limit analysis at the value above")
+    rocking_low: float | None = fact("margin of rocking at the value below")
+    rocking_high: float | None = fact("margin of rocking at the value above")
+    tilt_turns: float | None = fact("value at which the verdict of limit analysis turns; null: at none that was tried")
+    rocking_turns: float | None = fact("value at which the verdict of rocking turns; null: at none that was tried")
+
+
 class Assess(KindResults):
     """assess: every strategy that applies, compared."""
 
@@ -78,6 +96,7 @@ class Assess(KindResults):
     unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
     parts: dict[str, str] = fact("analyses of this run that it has asked for: name -> what they are, in words")
     probes: list[Probe] = fact("further runs")
+    sensitivity: list[Sensitivity] = maybe("what the verdicts hang on, the most decisive first")
     not_done: list[str] = fact("what the budget did not allow")
     least_margin: float | None = fact("least factor on the hazard at which a strategy turns to fall; null: none known")
     least_margin_strategy: str | None = fact("whose it is")

@@ -33,6 +33,11 @@ LIMITS: dict[str, tuple[str, str]] = {
         "Rules of codes with their own reductions of demand and capacity.",
         "Clauses marked `verify clause` were not read in the standard: compare them with its text before use.",
     ),
+    "local-mechanism": (
+        "A part of the building turns as rigid bodies about hinges, by the kinematic analysis of codes.",
+        "It holds for the mechanism that was named; others may be weaker. Clauses marked `verify clause` were not read in the "
+        "standard.",
+    ),
     "sla": (
         "Elastic stones or walls whose joints or elements crack one after the other under a growing load, in the plane.",
         "Static: it asks how hard, not how long. What it bears depends on the strengths that the deck gives.",

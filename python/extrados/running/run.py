@@ -12,7 +12,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.decks.reader import Deck
 from extrados.results import checkpoint, store
-from extrados.results.model import Result
+from extrados.results.model import Result, Streamed
 from extrados.results.store import Stored
 from extrados.running.described import described
 from extrados.running.provenance import provenance
@@ -66,6 +66,8 @@ class Run(Stored):
                     (scratch / name).parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(self.folder / name, scratch / name)
         self.folder = Path(folder) if making.place == making.out else making.place
+        if any(isinstance(a.data, Streamed) for arrays in self.arrays.values() for a in arrays.values()):
+            self.arrays = store.read(self.folder).arrays  # what lay beside the folder until now lies in it
         if figures:  # the results are safe by now, whatever happens while drawing
             from extrados.plots.report import write_report
 

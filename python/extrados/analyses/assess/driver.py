@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from extrados import kinds
-from extrados.analyses.assess import hazard, strategies
+from extrados.analyses.assess import hazard, sensitivity, strategies
 from extrados.analyses.assess.asking import STOPPED_AFTER, Asker, Interrupted, OutOfTime, no_row, row_of, scaled_margin
 from extrados.analyses.assess.reasons import SLID, Facts, Pair, explained
 from extrados.analyses.assess.strategies import Asked, Choice, LeftOut, Strategy
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.assess.words import answer, conclusion, table_of
+from extrados.analyses.batches import Unfinished
 from extrados.analyses.context import Context, Refused
 from extrados.building.errors import BadGeometry
 from extrados.motions.from_deck import is_set
@@ -28,6 +29,8 @@ from extrados.results.store import group_names
 
 #: Factors on the hazard at which discrete elements are tried, from 1 up while they stand, down while they fall
 UP, DOWN = (1.25, 1.5, 2.0, 3.0, 4.0), (0.8, 0.65, 0.5, 0.35, 0.25)
+#: Elements with joints so many times as stiff and as soft; a support that moves by this part of the size
+STIFFER, SPREAD = 4.0, 0.002
 #: Factors between two of the first ones, where the margin of rocking is thin
 FINE = 16
 
@@ -43,6 +46,8 @@ def run(context: Context, options: Assess) -> Result:
         context.tell(f"First answers:\n{table_of(list(work.rows.values()))}")
         work.costly()
         work.refine()
+        if options.sensitivity or options.vary:
+            work.move()
     except Interrupted:
         result.status, result.reason = "interrupted", "interrupted; what was asked before is told"
     work.conclude(result)
@@ -66,6 +71,7 @@ class _Work:
         self.not_done: list[str] = []
         self.chosen: dict[str, Any] = {}
         self.bare: dict[str, tuple[str, ...]] = {}
+        self.moved: list[sensitivity.Moved] = []
         self.asker = Asker(
             context,
             dict(context.deck.data["motion"]),
@@ -98,16 +104,16 @@ class _Work:
                 return None
             choice = Choice({}, "")
         words = "; ".join([w for w in (choice.words,) if w] + ([f"of the deck: {_told(given)}"] if given else []))
-        choice = Choice(_merged(choice.keys, given), words, choice.seconds)
+        choice = replace(choice, keys=_merged(choice.keys, given), words=words)
         self.choices[name] = choice
-        without = self.asker.cannot_bear(strategy.kind)
+        without = self.asker.cannot_bear(choice.kind or strategy.kind)
         if without and name != "scaled":
             self.bare[name] = without
             words = f"{words}; without {' and '.join(without)}, with which it does not reckon"
         whole = name == "scaled" or (name == "probability" and self.many)
         motion = dict(self.context.deck.data["motion"]) if whole else None
         try:
-            result, deck = self.asker.ask(strategy.kind, choice.keys, motion, None, without)
+            result, deck = self.asker.ask(choice.kind or strategy.kind, choice.keys, motion, None, without)
         except OutOfTime:
             self.rows[name] = no_row(strategy, "left out", f"was stopped after {STOPPED_AFTER:g} budgets", words)
             self.not_done.append(f"{strategy.label}: stopped by the clock")
@@ -360,6 +366,66 @@ class _Work:
             self._pushes = needed
         return self._pushes
 
+    # ----- sensitivity
+
+    def move(self) -> None:
+        """Margins with values of the deck moved one by one."""
+        rocked = self.results.get("rocking")
+        restitution = rocked.results.restitution if rocked is not None else None
+        keys = sensitivity.varied(self.context.building, self.options.vary, restitution)
+        data = {k: v for k, v in self.context.deck.data.items() if k not in ("analysis", "title", "note")}
+        count = self.motions if self.many else None
+        margins = sensitivity.Margins(
+            self.context, data, strategies.LEVELS_OF_A_SET if self.many else strategies.LEVELS, count,
+            self.options.acceptable_probability, self.peak,
+        )  # fmt: skip
+        try:
+            self.moved = margins.moved(keys)
+        except Unfinished as stop:
+            if stop.interrupted:
+                raise Interrupted from None
+            self.not_done.append(f"sensitivity: {stop}")
+        self._move_elements()
+
+    def _move_elements(self) -> None:
+        """What only discrete elements know: stiffness of the joints, and a support that gives way while it shakes."""
+        if "dem" not in self.results:
+            return
+        choice, stones = self.choices["dem"], self.context.building.blocks()
+        r = self.results["dem"].results
+        if not isinstance(r, DemRun):
+            return
+        stiffness = choice.keys.get("joints", {}).get("normal_stiffness", r.joint_stiffness_max_Pa_per_m)
+        for factor, told in (
+            (STIFFER, f"joints {STIFFER:g} times as stiff"),
+            (1.0 / STIFFER, f"joints {STIFFER:g} times as soft"),
+        ):
+            keys = _merged(choice.keys, {"joints": {"normal_stiffness": factor * stiffness}})
+            self._probe("dem", told, "dem", keys)
+        grounded = np.flatnonzero((stones.a < 0) | (stones.b < 0))
+        if len(grounded) > 1:
+            right = int(grounded[np.argmax(stones.middle[grounded, 0])])
+            spread = SPREAD * stones.size
+            keys = _merged(
+                choice.keys, {"initial": {"movements": [{"joint": stones.joint_names[right], "dx": spread}]}}
+            )
+            self._probe("dem", f"the right support moves out by {1e3 * spread:.3g} mm in the first second", "dem", keys)
+
+    def _sensitivity(self) -> list[out.Sensitivity]:
+        """Rows of the tornado, the widest first."""
+
+        def width(m: sensitivity.Moved) -> float:
+            spans = [abs(np.log(b / a)) for a, b in zip(m.at_low, m.at_high, strict=True) if a and b]
+            return max(spans, default=0.0)
+
+        return [
+            out.Sensitivity(
+                key=m.what.key, base=m.what.base, unit=m.what.unit, low=m.low, high=m.high, tilt_base=m.at_base[0], rocking_base=m.at_base[1], tilt_low=m.at_low[0], tilt_high=m.at_high[0],
+                rocking_low=m.at_low[1], rocking_high=m.at_high[1], tilt_turns=m.turns[0], rocking_turns=m.turns[1],
+            )
+            for m in sorted(self.moved, key=width, reverse=True)
+        ]  # fmt: skip
+
     # ----- the answer
 
     def conclude(self, result: Result) -> None:
@@ -393,7 +459,7 @@ class _Work:
             ),
             verdicts=rows, agreement=agreement, reasons=reasons, unexplained=[list(p) for p in unexplained],
             parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
-            not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
+            **({"sensitivity": self._sensitivity()} if self.moved else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
         )  # fmt: skip
         result.parts = [r for _, _, r in self.parts]
         for name, deck in zip(names, self.decks, strict=True):
@@ -402,7 +468,7 @@ class _Work:
             )
             result.files[f"assess/{name}.toml"] = (head + deck).encode()
         self._arrays(facts, rows, result)
-        result.answer = answer(statement, rows, reasons)
+        result.answer = answer(statement, rows, reasons, result.results.sensitivity or [])
         result.warnings += [
             f"{row.label}: {row.status}: {row.reason}" for row in rows if row.status in ("failed", "left out")
         ]
@@ -424,6 +490,12 @@ class _Work:
         result.arrays |= {
             "time": Array(time_s[thin], ("time",), "s"), "ground": Array(ground[thin], ("time",), "m/s^2", "the motion"),
         }  # fmt: skip
+        if self.moved:
+            flat = [(m.what.key, value, *margins) for m in self.moved for value, margins in m.tried]
+            names = ("key", "value", "margin_tilt", "margin_rocking")
+            result.tables["sensitivity"] = TableData({
+                n: [np.nan if row[k] is None else row[k] for row in flat] for k, n in enumerate(names)
+            })  # fmt: skip
         columns = ("strategy", "part", "status", "axis", "demand", "capacity", "unit", "outcome", "margin", "margin_at_least",
                    "margin_below", "parameters", "statement", "reason")  # fmt: skip
         result.tables["assess"] = TableData({

@@ -10,7 +10,6 @@ from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
 from extrados.motions.tables import Compatible
 from extrados.results.limits import LIMITS
 from extrados.schema.constants import GRAVITY
@@ -46,11 +45,13 @@ class LeftOut(Exception):
 
 @dataclass(frozen=True)
 class Choice:
-    """The table of a strategy without its kind, the rules it was made by, in words, and its nominal seconds."""
+    """The table of a strategy without its kind, the rules it was made by, in words, its nominal seconds, and its kind where
+    that is not the strategy's own."""
 
     keys: dict[str, Any]
     words: str
     seconds: float = 0.0
+    kind: str | None = None
 
 
 @dataclass(frozen=True)
@@ -130,14 +131,23 @@ def _probability(asked: Asked) -> Choice:
 
 
 def _codes(asked: Asked) -> Choice:
+    from extrados.analyses.codes.tables import CodeChecks
+
     spectrum = asked.options.spectrum
     if asked.building.structure.rocks_as == "piers":
         raise LeftOut("the pier rules need axial_load: give options.code-checks")
+    own = asked.building.structure.kind in (CodeChecks.structures or ())
+    keys: dict[str, Any] = {} if own else {"mechanism": "building"}
+    words = "" if own else "the local mechanism that limit analysis finds; "
+    kind = None if own else "local-mechanism"
     if spectrum is not None:
-        return Choice({"spectrum": spectrum.model_dump(exclude_none=True)}, "the spectrum of the deck")
+        return Choice(
+            {**keys, "spectrum": spectrum.model_dump(exclude_none=True)}, f"{words}the spectrum of the deck", 0.0, kind
+        )
     if isinstance(asked.context.deck.motion, Compatible):
-        return Choice({}, "the spectrum that the motions match")
-    return Choice({"peak_acceleration": f"{asked.peak_g!r} g"}, "a_g S is the peak of the motion; no spectrum is given")
+        return Choice(keys, f"{words}the spectrum that the motions match", 0.0, kind)
+    told = f"{words}a_g S is the peak of the motion; no spectrum is given"
+    return Choice({**keys, "peak_acceleration": f"{asked.peak_g!r} g"}, told, 0.0, kind)
 
 
 def _sla(asked: Asked) -> Choice:
@@ -236,12 +246,3 @@ SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "pr
 def of(name: str) -> Strategy:
     """The strategy that decks call so."""
     return next(s for s in ALL if s.name == name)
-
-
-def has_stones(building: Building) -> bool:
-    """Whether limit analysis and discrete elements have anything to look at."""
-    try:
-        building.blocks()
-    except BadGeometry:
-        return False
-    return True

@@ -22,6 +22,7 @@ class Assess(Analysis):
 
     kind: Literal["assess"]
     view: ClassVar = "blocks"
+    solid: ClassVar = True
     needs_motion: ClassVar = True
     starter_motion: ClassVar = "record"
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
@@ -52,6 +53,14 @@ class Assess(Analysis):
     spectrum: CodeSpectrum | None = key(
         None,
         "elastic spectrum for `code-checks`; default that of a `compatible` motion, without one the peak of the motion",
+    )
+    sensitivity: bool = key(
+        False, "also move thickness, corners, friction, restitution and density one by one: margins of limit analysis and rocking "
+        "anew, and the value at which each verdict turns; not counted in the budget"
+    )  # fmt: skip
+    vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
+        None,
+        'keys that are moved in place of these, with the shares by which they are: { "structure.thickness" = 0.1 }',
     )
     options: dict[Strategy, dict[str, Any]] = key(
         {},

@@ -1,7 +1,7 @@
 """What an assessment says: the table of verdicts as text, and one overall statement."""
 
 from extrados.analyses.assess.reasons import Facts, Pair
-from extrados.results.assess import Overall, Reason, StrategyVerdict
+from extrados.results.assess import Overall, Reason, Sensitivity, StrategyVerdict
 
 _HEAD = ("strategy", "verdict", "demand", "capacity", "unit", "margin")
 
@@ -36,9 +36,21 @@ def table_of(rows: list[StrategyVerdict]) -> str:
     return "\n".join("  " + "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in cells)
 
 
-def answer(statement: str, rows: list[StrategyVerdict], reasons: list[Reason]) -> str:
-    """All that is told on the terminal: the statement, the table, the reasons."""
-    return "\n".join([statement, table_of(rows), *(f"- {one.text}" for one in reasons)])
+def answer(statement: str, rows: list[StrategyVerdict], reasons: list[Reason], moved: list[Sensitivity]) -> str:
+    """All that is told on the terminal: the statement, the table, the reasons, where verdicts turn."""
+    return "\n".join([statement, table_of(rows), *(f"- {one.text}" for one in reasons), *turning(moved)])
+
+
+def turning(moved: list[Sensitivity]) -> list[str]:
+    """Where the verdicts turn, a line for each value that turns one."""
+    said = []
+    for one in moved:
+        unit = f" {one.unit}" if one.unit else ""
+        told = [f"{label} at {value:.3g}{unit}" for label, value in (("limit analysis", one.tilt_turns), ("rocking", one.rocking_turns))
+                if value is not None]  # fmt: skip
+        if told:
+            said.append(f"- {one.key} ({one.base:.3g}{unit} here) turns the verdict of {' and of '.join(told)}.")
+    return said
 
 
 def conclusion(
@@ -68,7 +80,7 @@ def conclusion(
             f"The {word} {'stands' if stands else 'falls'} by {_list(stands or falls)}." if stands or falls else ""
         )
     if left:
-        said.append(f"{_list(left).capitalize()} {'leave' if len(left) > 1 else 'leaves'} it open.")
+        said.append(f"It stays open by {_list(left)}.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]  # type: ignore[misc]
     if decisive:
         said.append(f"What decides is {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")

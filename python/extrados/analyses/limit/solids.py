@@ -7,6 +7,7 @@ from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.limit.errors import Immovable
 from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.results import solids as out
 from extrados.results.model import Array, Result
@@ -31,15 +32,20 @@ def run(context: Context, options: Tilt) -> Result:
     limit = SolidLimit(assembly, building.friction(assembly))
     word = building.structure.word  # type: ignore[union-attr]
     first = 0.0 if options.direction is None else options.direction
-    there, back = (_stands(limit.push(d), assembly, word) for d in (first, first + 180.0))
+    count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
+    angles = first + 360.0 * np.arange(count) / count if count else np.array([first, first + 180.0])
+    asked = np.unique(np.round(np.concatenate([[first, first + 180.0], angles]), 9))
+    given = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
+    found_at = dict(zip(asked.tolist(), given, strict=True))
+    there, back = (_stands(found_at[round(d, 9)], assembly, word) for d in (first, first + 180.0))
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise Refused(
             f"the {word} cannot stand under its own weight: it stands only when pushed along {first:g} degrees by {low:.4f} to "
             f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work"
         )
-    count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
-    angles, capacity = _rose(context, limit, assembly, word, first, count, there, back)
+    rose = [found_at[round(d, 9)] for d in angles.tolist()]
+    capacity = np.array([np.inf if one is None else _stands(one, assembly, word).gamma for one in rose])
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
     opens = _openings(assembly, limit, there)
@@ -57,11 +63,14 @@ def run(context: Context, options: Tilt) -> Result:
         **({} if options.pyramids is None else {"pyramids": _pyramids(limit, first, options.pyramids)}),
     )  # fmt: skip
     result.results = found
+    force, centre = _resultants(assembly, there)
     result.arrays |= scene_arrays(assembly) | {
         "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
         "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
         "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, into their first stone"),
         "collapse_force": Array(there.force, ("contact_corner", "component"), "N", "compression and both shears at the corners at collapse"),
+        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first stone of each contact at collapse"),
+        "contact_centre": Array(centre, ("contact", "axis3"), "m", "where it acts: the centre of the compression"),
         "velocity": Array(there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, spin"),
         "mechanism_pose": Array(pose, ("block", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on: shift, rotation vector"),
         "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
@@ -98,7 +107,9 @@ def _refuse(building: Building, options: Tilt) -> None:
             raise Refused(f"tilt of solids does not reckon with {what}: leave it out, or look at a plane section")
 
 
-def _stands(found: Programme | Falls, assembly: SolidAssembly, word: str) -> Programme:
+def _stands(found: Programme | Falls | None, assembly: SolidAssembly, word: str) -> Programme:
+    if found is None:
+        raise Immovable("no push of its weight brings it down: its contacts hold it from all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
         raise Refused(
@@ -106,23 +117,6 @@ def _stands(found: Programme | Falls, assembly: SolidAssembly, word: str) -> Pro
             "hinders and by which the weights do work"
         )
     return found
-
-
-def _rose(
-    context: Context, limit: SolidLimit, assembly: SolidAssembly, word: str, first: float, count: int, there: Programme,
-    back: Programme,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Directions [deg] and capacities [g]: all around, or only there and back."""
-    if not count:
-        return np.array([first, first + 180.0]), np.array([there.gamma, back.gamma])
-    angles = first + 360.0 * np.arange(count) / count
-    known = {0.0: there.gamma, 180.0: back.gamma}
-    found = []
-    for k, angle in enumerate(angles.tolist()):
-        context.progress(k, count, "directions")
-        turn = round(angle - first, 9)
-        found.append(known[turn] if turn in known else _stands(limit.push(angle), assembly, word).gamma)
-    return angles, np.array(found)
 
 
 def _pyramids(limit: SolidLimit, direction: float, sides: int) -> out.Pyramids:
@@ -161,6 +155,21 @@ def _pose(assembly: SolidAssembly, motion: np.ndarray) -> np.ndarray:
     owner = np.repeat(assembly.owner, [len(p.vertices) for p in assembly.parts])
     speed = np.linalg.norm(_rates(assembly, motion, points, owner), axis=1).max()
     return motion * (SHOWN * assembly.size / speed)
+
+
+def _resultants(assembly: SolidAssembly, found: Programme) -> tuple[np.ndarray, np.ndarray]:
+    """Force on the first stone of each contact (nj, 3) [N], and the centre of its compression (nj, 3) [m], the middle of a
+    contact without any."""
+    joint, count = assembly.corner_joint, len(assembly.a)
+    frames = np.stack([assembly.normal, *assembly.tangents], axis=1)
+    at_corner = np.einsum("vk,vkx->vx", found.force, frames[joint])
+    pressure = np.maximum(found.force[:, 0], 0.0) + 1e-12 * max(float(found.force[:, 0].max()), 1e-300)
+    total = np.bincount(joint, pressure, count)
+    force, centre = (
+        np.stack([np.bincount(joint, values[:, k], count) for k in range(3)], axis=1)
+        for values in (at_corner, pressure[:, None] * assembly.corner)
+    )
+    return force, centre / total[:, None]
 
 
 def _openings(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> list[out.OpenContact]:

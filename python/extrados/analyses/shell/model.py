@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.shell.tables import Pushover
-from extrados.analyses.sla.model import POINTS_PER_THREAD, bands_of, crushing_of, laws_of, softening_of
+from extrados.analyses.sla.model import POINTS_PER_THREAD, bands_of, crushing_of, hills_of, laws_of, softening_of
 from extrados.building.errors import BadGeometry
 from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellPart
 from extrados.core import sla as core
@@ -291,7 +291,8 @@ def _shells(
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
         selective=options.mesh.selective and part.kind == "Q4", reach=reach,
         confinement=np.array([m.confinement for m in materials]),
-        bedding=beds if any(bed is not None for bed in beds) else None, frames=frames, flat=flat,
+        bedding=beds if any(bed is not None for bed in beds) else None, hill=hills_of(materials, part.linear, options),
+        frames=frames, flat=flat,
         layers=options.mesh.layers if part.bends else 1, through=options.mesh.through if part.bends else "gauss",
         bends=part.bends,
     )  # fmt: skip
