@@ -100,11 +100,16 @@ contains
       n = rule%nodes
       call shell_frame(xyz, geometry%axes, status)
       if (status /= status_ok) return
-      centre = sum(xyz, dim=2) / real(n, wp)
+      centre = 0.0_wp
       do i = 1, n
-         from = matmul(geometry%axes, xyz(:, i) - centre)
-         geometry%corner(:, i) = from(1:2)
-         geometry%arm(i) = from(3)
+         centre = centre + xyz(1:3, i) / real(n, wp)
+      end do
+      do i = 1, n
+         from = xyz(1:3, i) - centre
+         do k = 1, 2
+            geometry%corner(k, i) = dot_product(geometry%axes(k, :), from)
+         end do
+         geometry%arm(i) = dot_product(geometry%axes(3, :), from)
       end do
       call element_gradients(rule, geometry%corner(:, 1:n), gradient(:, 1:n, :), geometry%area, middle(:, 1:n), status)
       if (status /= status_ok) return
@@ -160,7 +165,7 @@ contains
       real(wp), intent(in) :: extra(:, :)
       real(wp), intent(in) :: along(:, :)
       real(wp) :: bubble(2, most_corners)
-      integer :: i, n
+      integer :: i, j, n
       n = rule%nodes
       bubble = side_gradients(rule, k, geometry)
       associate (b => geometry%bend(:, :, k))
@@ -175,9 +180,11 @@ contains
          end do
          do i = 1, n
             associate (p => bubble(:, i), s => along(:, i))
-               b(1, 1:3 * n) = b(1, 1:3 * n) + p(1) * s(1) * extra(1:3 * n, i)
-               b(2, 1:3 * n) = b(2, 1:3 * n) + p(2) * s(2) * extra(1:3 * n, i)
-               b(3, 1:3 * n) = b(3, 1:3 * n) + (p(2) * s(1) + p(1) * s(2)) * extra(1:3 * n, i)
+               do j = 1, 3 * n
+                  b(1, j) = b(1, j) + p(1) * s(1) * extra(j, i)
+                  b(2, j) = b(2, j) + p(2) * s(2) * extra(j, i)
+                  b(3, j) = b(3, j) + (p(2) * s(1) + p(1) * s(2)) * extra(j, i)
+               end do
             end associate
          end do
       end associate
@@ -216,8 +223,14 @@ contains
       integer, intent(in) :: k
       type(shell_geometry), intent(in) :: geometry
       real(wp) :: j(2, 2), n(most_nodes), dn(2, most_nodes)
+      integer :: i, l
       call shape_functions(rule%kind, rule%place(:, k), n, dn)
-      j = matmul(dn(:, 1:rule%nodes), transpose(geometry%corner(:, 1:rule%nodes)))
+      j = 0.0_wp
+      do i = 1, rule%nodes
+         do l = 1, 2
+            j(:, l) = j(:, l) + dn(:, i) * geometry%corner(l, i)
+         end do
+      end do
    end function jacobian
 
    pure function inverse(a) result(b)
@@ -260,7 +273,7 @@ contains
          before = 1 + mod(i + 1, 3)
          sides(1, :) = -2.0_wp / 3.0_wp * phi(i) * extra(:, i)
          sides(2, :) = -2.0_wp / 3.0_wp * phi(before) * extra(:, before)
-         to_plane = inverse(transpose(reshape([along(:, i), along(:, before)], [2, 2])))
+         to_plane = inverse(reshape([along(1, i), along(1, before), along(2, i), along(2, before)], [2, 2]))
          geometry%shear(:, :, k) = geometry%shear(:, :, k) + n(i) * matmul(to_plane, sides)
       end do
    end subroutine shear_of_triangle

@@ -220,7 +220,7 @@ contains
       do k = 1, group%rule%points
          middle = membrane(group, e, k, v)
          curved = 0.0_wp
-         if (group%section%bends) curved = group%thickness(e) * product_of(group%bend(:, :, k, e), v)
+         if (group%section%bends) curved = group%thickness(e) * curvature(group, e, k, v)
          do l = 1, int(group%section%layers)
             p = p + 1
             eps(:, p) = middle + group%height(l) * curved
@@ -228,17 +228,35 @@ contains
       end do
    end subroutine strains
 
-   !> Curvatures or shear strains from w and the rotations about x and y of the nodes
-   pure function product_of(b, v) result(values)
-      real(wp), intent(in) :: b(:, :)
+   !> Curvatures from w and the rotations about x and y of the nodes
+   pure function curvature(group, e, k, v) result(values)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: e, k
       real(wp), intent(in) :: v(6, most_corners)
-      real(wp) :: values(size(b, 1))
+      real(wp) :: values(3)
       integer :: i
       values = 0.0_wp
-      do i = 1, size(b, 2) / 3
-         values = values + b(:, 3 * i - 2) * v(3, i) + b(:, 3 * i - 1) * v(4, i) + b(:, 3 * i) * v(5, i)
-      end do
-   end function product_of
+      associate (b => group%bend(:, :, k, e))
+         do i = 1, group%rule%nodes
+            values = values + b(1:3, 3 * i - 2) * v(3, i) + b(1:3, 3 * i - 1) * v(4, i) + b(1:3, 3 * i) * v(5, i)
+         end do
+      end associate
+   end function curvature
+
+   !> Transverse shear strains, likewise
+   pure function shearing(group, e, k, v) result(values)
+      class(shell_points), intent(in) :: group
+      integer, intent(in) :: e, k
+      real(wp), intent(in) :: v(6, most_corners)
+      real(wp) :: values(2)
+      integer :: i
+      values = 0.0_wp
+      associate (b => group%shear(:, :, k, e))
+         do i = 1, group%rule%nodes
+            values = values + b(1:2, 3 * i - 2) * v(3, i) + b(1:2, 3 * i - 1) * v(4, i) + b(1:2, 3 * i) * v(5, i)
+         end do
+      end associate
+   end function shearing
 
    !> The transposed product is added to f
    pure subroutine add_product(b, s, f)
@@ -368,7 +386,7 @@ contains
    pure subroutine add_forces(group, e, a, b, d, g, v, f)
       class(shell_points), intent(in) :: group
       integer, intent(in) :: e
-      real(wp), intent(in) :: a(:, :, :), b(:, :, :), d(:, :, :), g(:, :, :)
+      real(wp), intent(in) :: a(3, 3, most_points), b(3, 3, most_points), d(3, 3, most_points), g(2, 2, most_points)
       real(wp), intent(in) :: v(6, most_corners)
       real(wp), intent(inout) :: f(6, most_corners)
       real(wp) :: middle(3), curved(3), spin, pull
@@ -379,10 +397,10 @@ contains
             call add_membrane(group, e, k, matmul(a(:, :, k), middle), f)
             cycle
          end if
-         curved = product_of(group%bend(:, :, k, e), v)
+         curved = curvature(group, e, k, v)
          call add_membrane(group, e, k, matmul(a(:, :, k), middle) + matmul(b(:, :, k), curved), f)
          call add_product(group%bend(:, :, k, e), matmul(b(:, :, k), middle) + matmul(d(:, :, k), curved), f)
-         call add_product(group%shear(:, :, k, e), matmul(g(:, :, k), product_of(group%shear(:, :, k, e), v)), f)
+         call add_product(group%shear(:, :, k, e), matmul(g(:, :, k), shearing(group, e, k, v)), f)
       end do
       if (.not. any(group%tie(:, e) > 0.0_wp)) return
       spin = 0.0_wp

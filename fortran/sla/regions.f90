@@ -229,7 +229,7 @@ contains
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: energy(:, :, :)
       real(wp) :: k(most_entries, most_entries), phi(most_terms, most_entries)
-      real(wp) :: half(most_terms * most_directions, most_entries), middle(size(xy, 1)), extent
+      real(wp) :: half(most_terms * most_directions, most_entries), middle(3), extent
       integer :: g, e, i, j, d, q, n, own, info, m, all, side(most_entries)
 
       n = size(tree%of)
@@ -241,8 +241,11 @@ contains
          energy(all, all, size(tree%part)), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
-      middle = 0.5_wp * (minval(xy, dim=2) + maxval(xy, dim=2))
-      extent = maxval(maxval(xy, dim=2) - minval(xy, dim=2))
+      extent = 0.0_wp
+      do i = 1, size(xy, 1)
+         middle(i) = 0.5_wp * (minval(xy(i, :)) + maxval(xy(i, :)))
+         extent = max(extent, maxval(xy(i, :)) - minval(xy(i, :)))
+      end do
       tree%share = 0.0_wp
       tree%direction = 1
       tree%place = 0.0_wp
@@ -254,7 +257,7 @@ contains
             if (abs(tree%share(q)) > 0.0_wp) cycle    ! tied freedoms go by the first of them
             tree%share(q) = 1.0_wp / factor(d, i)
             tree%direction(q) = d
-            tree%place(:, q) = (xy(:, i) - middle) / extent
+            tree%place(:, q) = (xy(:, i) - middle(1:size(xy, 1))) / extent
          end do
       end do
       energy = 0.0_wp
@@ -269,7 +272,7 @@ contains
                   q = int(group%equation(i, e))
                   if (q == 0 .or. q > n) cycle
                   side(i) = m * (tree%direction(q) - 1)
-                  phi(1:m, i) = group%factor(i, e) * tree%share(q) * monomials(tree%place(:, q), m)
+                  phi(:, i) = group%factor(i, e) * tree%share(q) * monomials(tree%place(:, q))
                   do j = 1, group%freedoms
                      if (group%equation(j, e) > 0 .and. group%equation(j, e) <= n) tree%weight(q) = tree%weight(q) + &
                         abs(k(i, j) * group%factor(i, e) * group%factor(j, e))
@@ -298,13 +301,13 @@ contains
       tree%measured = .true.
    end subroutine regions_measure
 
-   !> Up to the second degree
-   pure function monomials(at, count) result(values)
+   !> Up to the second degree, of x and y or of x, y and z
+   pure function monomials(at) result(values)
       real(wp), intent(in) :: at(:)
-      integer, intent(in) :: count          !! 6 of x and y, 10 of x, y and z
-      real(wp) :: values(count)
-      if (count == 6) then
-         values = [1.0_wp, at(1), at(2), at(1)**2, at(1) * at(2), at(2)**2]
+      real(wp) :: values(most_terms)
+      values = 0.0_wp
+      if (size(at) == 2) then
+         values(1:6) = [1.0_wp, at(1), at(2), at(1)**2, at(1) * at(2), at(2)**2]
       else
          values = [1.0_wp, at(1), at(2), at(3), at(1)**2, at(1) * at(2), at(1) * at(3), at(2)**2, at(2) * at(3), &
             at(3)**2]
@@ -312,13 +315,12 @@ contains
    end function monomials
 
    !> The monomials about a centre c from those of the whole, not scaled yet
-   pure function shifted(c, count) result(shift)
+   pure function shifted(c) result(shift)
       real(wp), intent(in) :: c(:)
-      integer, intent(in) :: count
-      real(wp) :: shift(count, count)
+      real(wp) :: shift(most_terms, most_terms)
       shift = 0.0_wp
       shift(1, 1) = 1.0_wp
-      if (count == 6) then
+      if (size(c) == 2) then
          shift(2, 1:2) = [-c(1), 1.0_wp]
          shift(3, [1, 3]) = [-c(2), 1.0_wp]
          shift(4, [1, 2, 4]) = [c(1)**2, -2.0_wp * c(1), 1.0_wp]
@@ -343,10 +345,11 @@ contains
       type(region), intent(inout) :: part
       real(wp), intent(in) :: energy(:, :)           !! of the monomials of the whole [N/m]
       integer(c_int), intent(out) :: status
-      real(wp) :: gram(tree%terms, tree%terms), shift(tree%terms, tree%terms), values(tree%terms)
-      real(wp) :: rows(tree%terms, tree%terms, tree%directions), full(tree%terms, tree%terms * tree%directions)
-      real(wp) :: whole(tree%terms * tree%directions, tree%terms * tree%directions)
-      integer :: of(tree%terms * tree%directions), i, d, q, count, linear, terms, axes, info
+      real(wp) :: gram(most_terms, most_terms), shift(most_terms, most_terms), values(most_terms), at(3)
+      real(wp) :: rows(most_terms, most_terms), fit(most_terms, most_terms * most_directions)
+      real(wp) :: full(most_terms, most_terms * most_directions)
+      real(wp) :: whole(most_terms * most_directions, most_terms * most_directions)
+      integer :: of(most_terms * most_directions), i, j, d, q, count, terms, axes, info
 
       terms = tree%terms
       axes = size(tree%place, 1)
@@ -360,43 +363,48 @@ contains
       do i = part%edge + 1, part%edge + part%edges
          part%size = max(part%size, maxval(abs(tree%place(:, tree%edge(i)) - part%centre(1:axes))))
       end do
-      shift = shifted(part%centre(1:axes), terms)
-      linear = 1 + axes
-      shift(2:linear, :) = shift(2:linear, :) / part%size
-      shift(linear + 1:, :) = shift(linear + 1:, :) / part%size**2
+      shift = shifted(part%centre(1:axes))
+      shift(2:1 + axes, :) = shift(2:1 + axes, :) / part%size
+      shift(2 + axes:, :) = shift(2 + axes:, :) / part%size**2
       count = 0
       do d = 1, tree%directions
          gram = 0.0_wp
          do i = part%edge + 1, part%edge + part%edges
             q = tree%edge(i)
             if (tree%direction(q) /= d) cycle
-            values = tree%share(q) * monomials((tree%place(:, q) - part%centre(1:axes)) / part%size, terms)
-            do q = 1, terms
-               gram(:, q) = gram(:, q) + tree%weight(tree%edge(i)) * values(q) * values
+            at(1:axes) = (tree%place(:, q) - part%centre(1:axes)) / part%size
+            values = tree%share(q) * monomials(at(1:axes))
+            do j = 1, terms
+               gram(:, j) = gram(:, j) + tree%weight(q) * values(j) * values
             end do
          end do
-         call inverse_cholesky(gram, rows(:, :, d))
+         call inverse_cholesky(gram, rows)
          do i = 1, terms      ! in a plane and along a line monomials depend on others: rows of zeros
-            if (.not. any(abs(rows(i, :, d)) > 0.0_wp)) cycle
+            if (.not. any(abs(rows(i, :)) > 0.0_wp)) cycle
             count = count + 1
             of(count) = d
-            whole(1:terms, count) = rows(i, :, d)
-            full(:, count) = matmul(rows(i, :, d), shift)
+            fit(:, count) = rows(i, :)
+            do j = 1, terms
+               full(j, count) = dot_product(rows(i, :), shift(:, j))
+            end do
          end do
       end do
       allocate (part%fit(terms, count), part%of(count), part%energy(count, count), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
-      part%fit(:, :) = whole(1:terms, 1:count)
+      part%fit(:, :) = fit(1:terms, 1:count)
       part%of(:) = of(1:count)
       do i = 1, count
          d = terms * (of(i) - 1)
-         whole(:, i) = matmul(energy(:, d + 1:d + terms), full(:, i))
+         whole(:, i) = 0.0_wp
+         do j = 1, terms
+            whole(1:size(energy, 1), i) = whole(1:size(energy, 1), i) + energy(:, d + j) * full(j, i)
+         end do
       end do
       do i = 1, count
          do q = 1, count
             d = terms * (of(q) - 1)
-            part%energy(q, i) = dot_product(full(:, q), whole(d + 1:d + terms, i))
+            part%energy(q, i) = dot_product(full(1:terms, q), whole(d + 1:d + terms, i))
          end do
       end do
       part%stiffest = maxval(abs(part%energy))
@@ -404,13 +412,13 @@ contains
 
    !> Inverse of the lower Cholesky factor; a monomial that depends on those before it is left out (a row of zeros)
    pure subroutine inverse_cholesky(gram, inverse)
-      real(wp), intent(in) :: gram(:, :)
-      real(wp), intent(out) :: inverse(:, :)
+      real(wp), intent(in) :: gram(most_terms, most_terms)
+      real(wp), intent(out) :: inverse(most_terms, most_terms)
       real(wp), parameter :: dependent = 1.0e-6_wp
-      real(wp) :: row(size(gram, 1)), along
+      real(wp) :: row(most_terms), along
       integer :: i, j
       inverse = 0.0_wp
-      do i = 1, size(gram, 1)    ! Gram-Schmidt on the monomials, twice over
+      do i = 1, most_terms    ! Gram-Schmidt on the monomials, twice over
          row = 0.0_wp
          row(i) = 1.0_wp
          do j = 1, 2 * (i - 1)
@@ -608,7 +616,8 @@ contains
          if (axes == 2) then
             phi(1:6) = [1.0_wp, x(1), x(2), x(1) * x(1), x(1) * x(2), x(2) * x(2)]
          else
-            phi = [1.0_wp, x(1), x(2), x(3), x(1) * x(1), x(1) * x(2), x(1) * x(3), x(2) * x(2), x(2) * x(3), x(3) * x(3)]
+            phi = [1.0_wp, x(1), x(2), x(3), x(1) * x(1), x(1) * x(2), x(1) * x(3), x(2) * x(2), x(2) * x(3), &
+               x(3) * x(3)]
          end if
          d = tree%direction(q)
          do j = 1, terms

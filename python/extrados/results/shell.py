@@ -73,10 +73,10 @@ class Pushover(PushCurve, KindResults):
     elements: int = fact("elements of the mesh")
     equations: int = fact("equations")
     points: int = fact("integration points, those of bars too")
-    factor_bytes: int = fact("memory of the factor", "B")
+    factor_bytes: int = fact("memory of the factor, in bytes")
     minus: PushCurve = maybe("the curve of the second sense")
     variants: list[Variation] = maybe("the first sense with other assumptions")
-    band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own")
+    band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses: an acceleration [g] where the forces are those of the masses."""

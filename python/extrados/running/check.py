@@ -54,7 +54,7 @@ def check_building(deck: Deck) -> Checked:
         if not complaints:
             for analysis, building in zip(deck.analyses, deck.buildings, strict=True):
                 if analysis.view == "shell":
-                    plan = building.shell(analysis.mesh)
+                    plan = building.shell(getattr(analysis, "mesh", None))
                 if analysis.view != "blocks":
                     continue
                 try:

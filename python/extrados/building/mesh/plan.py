@@ -11,7 +11,7 @@ from extrados.building.mesh.options import LARGEST_MESH
 from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane
 from extrados.building.mesh.triangles import fill_ring
 from extrados.building.properties import Material
-from extrados.building.templates.plan import MEETS, Floor, Plan, PlanWall, meeting
+from extrados.building.templates.plan import MEETS, Floor, Plan, PlanWall, Prestress, Rod, meeting
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -63,7 +63,8 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
     materials, names = [building.material, *building.materials.values()], list(building.materials)
     parts = [_wall_part(plan, w, grids, junctions, number, names) for w in range(len(grids))]
     planes = [_plane(plan, grid) for grid in grids]
-    mass, push, bars = np.zeros(len(xyz)), np.zeros((len(xyz), 3)), []
+    mass, push = np.zeros(len(xyz)), np.zeros((len(xyz), 3))
+    bars: list[ShellBar] = []
     grown = xyz
     for floor in plan.floors:
         grown, mass, push = _add_floor(
@@ -142,7 +143,7 @@ def _grids(plan: Plan, junctions: dict, size: float, warnings: list[str]) -> lis
         for beam in (*_holes(plan, wall), *(lintel[:4] for lintel in _lintels(plan, wall))):
             heights.update(beam[2:4])
     z = _lines(heights, float(plan.levels[-1]), size, "the heights of openings and storeys", warnings)
-    grids = []
+    grids: list[_Grid] = []
     for w, wall in enumerate(plan.walls):
         breaks = {0.0, wall.length}
         for beam in (*_holes(plan, wall), *(lintel[:4] for lintel in _lintels(plan, wall))):
@@ -355,7 +356,9 @@ def _joists(
     return made
 
 
-def _prestress(plan: Plan, load, grids: list[_Grid], number: np.ndarray, used: np.ndarray, push: np.ndarray) -> None:
+def _prestress(
+    plan: Plan, load: Prestress, grids: list[_Grid], number: np.ndarray, used: np.ndarray, push: np.ndarray
+) -> None:
     """The force along the top of a wall as nodal forces."""
     w = next(i for i, wall in enumerate(plan.walls) if wall.name == load.wall)
     storey = load.level or plan.reach(plan.walls[w])[1]
@@ -367,7 +370,7 @@ def _prestress(plan: Plan, load, grids: list[_Grid], number: np.ndarray, used: n
     push[nodes, 2] -= load.force * share / share.sum()
 
 
-def _rod(rod, k: int, xyz: np.ndarray, used: np.ndarray, building: "Building") -> ShellBar:
+def _rod(rod: Rod, k: int, xyz: np.ndarray, used: np.ndarray, building: "Building") -> ShellBar:
     there = np.flatnonzero(used)
     ends = [int(there[np.linalg.norm(xyz[there] - np.asarray(p), axis=1).argmin()]) for p in (rod.start, rod.end)]
     if ends[0] == ends[1]:
