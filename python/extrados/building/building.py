@@ -15,6 +15,7 @@ from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.building.mesh.mesh import Mesh
 from extrados.building.mesh.options import MeshOptions
+from extrados.building.mesh.rods import rods_of
 from extrados.building.mesh.shells import ShellMesh, ShellOptions
 from extrados.building.properties import (
     NO_SLIDING,
@@ -212,8 +213,14 @@ class Building:
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
         of a random pattern."""
         options = options or MeshOptions()
-        tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
-        return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
+        tables = (
+            self.structure, self.material, *self.materials.items(), self.joints, self.supports, *self.ties, options, seed
+        )  # fmt: skip
+        return self._view("mesh", tables, lambda: self._meshed(options, seed))
+
+    def _meshed(self, options: MeshOptions, seed: int | None) -> Mesh:
+        mesh = self._structure().mesh(self, options, seed)
+        return replace(mesh, rods=rods_of(self, mesh))
 
     def shell(self, options: ShellOptions | None = None) -> ShellMesh:
         """Flat shells in space: walls on a plan with the floors between them."""
