@@ -225,7 +225,9 @@ def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -
         mass = mesh.mass()  # a propped top: what the forces of the push go
         nodes = np.flatnonzero(mass)
         share = mass[nodes] / mass.sum()
-        return core.Monitor(np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.outer(share, along[axis]).ravel())
+        return core.Monitor(
+            np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.outer(share, along[axis]).ravel()
+        )
     return core.Monitor(
         np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.tile(along[axis] / len(nodes), len(nodes))
     )
