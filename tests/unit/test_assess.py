@@ -304,3 +304,23 @@ def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> 
     (first, *parts) = extrados.run(deck(assess={"strategies": ["tilt", "dem"]})).analyses
     assert first["status"] == "interrupted" and [p["name"] for p in parts] == ["tilt"]
     assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"]["outcome"] == "falls"
+
+
+def test_elements_that_a_millionth_turns_are_open(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A probe under a nudged motion that ends otherwise leaves the verdict open, with the numbers of both."""
+    probed = driver._Work._probe
+
+    def nudged(work: driver._Work, strategy: str, changed: str, *rest, **more) -> Result | None:
+        found = probed(work, strategy, changed, *rest, **more)
+        if "0.999999" in changed:
+            found = replace(
+                found, results=found.results.model_copy(update={"outcome": "collapse", "peak_displacement_m": 9.0})
+            )
+        return found
+
+    monkeypatch.setattr(driver._Work, "_probe", nudged)
+    r = extrados.run(deck(assess={"strategies": ["tilt", "rocking", "dem"], "budget": 20}))["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["dem"].outcome == "open" and "last digits" in rows["dem"].statement
+    (one,) = [x for x in r.reasons if x.rule == "last-digits"]
+    assert one.numbers["displacement_nudged_m"] == 9.0

@@ -33,7 +33,7 @@ pre{background:#f7f7f7;padding:.7rem;overflow:auto;font-size:12px;white-space:pr
 {% elif kind == "Words" %}<p{% if b.look %} class="{{ b.look }}"{% endif %}>{{ b.text }}</p>
 {% elif kind == "Table" %}<table>{% if b.head %}<tr>{% for cell in b.head %}<th>{{ cell }}</th>{% endfor %}</tr>{% endif %}
 {% for row in b.rows %}<tr>{% for cell in row %}{% if loop.first %}<th>{{ cell }}</th>{% else %}<td{% if cell in looks %} class="{{ cell }}"{% endif %}>{{ cell }}</td>{% endif %}{% endfor %}</tr>{% endfor %}</table>
-{% elif kind == "Figure" %}<figure><img alt="{{ b.caption }}" src="data:image/svg+xml;base64,{{ images[b.name] }}"><figcaption>Figure {{ number }}. {{ b.caption }}</figcaption></figure>
+{% elif kind == "Figure" %}<figure><img alt="{{ b.caption }}"{% if b.width < 1 %} style="max-width:{{ (100 * b.width)|round|int }}%"{% endif %} src="data:image/svg+xml;base64,{{ images[b.name] }}"><figcaption>Figure {{ number }}. {{ b.caption }}</figcaption></figure>
 {% else %}<pre>{{ b.text }}</pre>{% endif %}{% endfor %}
 <footer>{{ document.foot }}</footer>
 </body></html>

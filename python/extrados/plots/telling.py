@@ -141,7 +141,7 @@ def _building(deck: dict[str, Any], drawing: tuple[str, str] | None) -> list[Blo
     structure = [p for p in properties if p["table"] == "structure"]
     found: list[Block] = [Heading("Building")] if structure or drawing else []
     if drawing:
-        found.append(Figure(f"figures/{drawing[0]}", drawing[1]))
+        found.append(Figure(f"figures/{drawing[0]}", drawing[1], 0.65))
     if deck.get("dimensions"):
         found.append(
             Table(
@@ -192,13 +192,10 @@ def _analysis(run: Stored, a: dict[str, Any], figures: Figures) -> list[Block]:
     )
     assumes = LIMITS.get(a["kind"], ("", ""))[0]
     label, _, how = words.partition(": ")
-    heading = (
-        "Comparison of the strategies"
-        if a["kind"] == "assess"
-        else f"{label[:1].upper()}{label[1:]} ({a['name']})"
-        if label
-        else a["name"]
+    named = (
+        f"{label[:1].upper()}{label[1:]}" + (f" ({a['name']})" if label != a["name"] else "") if label else a["name"]
     )
+    heading = "Comparison of the strategies" if a["kind"] == "assess" else named
     found: list[Block] = [Heading(heading)]
     if how:
         found.append(Words(f"How it was asked: {how}."))

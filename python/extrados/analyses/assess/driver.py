@@ -29,6 +29,8 @@ from extrados.results.store import group_names
 
 #: Factors on the hazard at which discrete elements are tried, from 1 up while they stand, down while they fall
 UP, DOWN = (1.25, 1.5, 2.0, 3.0, 4.0), (0.8, 0.65, 0.5, 0.35, 0.25)
+#: A motion stronger or weaker by this is the same motion to every instrument
+NUDGE = 1e-6
 #: Elements with joints so many times as stiff and as soft; a support that moves by this part of the size
 STIFFER, SPREAD = 4.0, 0.002
 #: Factors between two of the first ones, where the margin of rocking is thin
@@ -285,7 +287,29 @@ class _Work:
                 left -= 1
                 keys = _merged(choice.keys, {"joints": {"friction": "no-sliding"}})
                 self._keep("no-sliding", self._probe("dem", "no joint slides", "dem", keys))
-        self._turning(left, choice)
+        if self._of_last_digits(left, choice):
+            return
+        self._turning(left - 2, choice)
+
+    def _of_last_digits(self, left: int, choice: Choice) -> bool:
+        """Whether elements under a motion stronger or weaker by a millionth end otherwise: their verdict is open then."""
+        motion, model, row = self.asker.motion, self.one_motion().deck.motion, self.rows["dem"]
+        if left < 2:
+            self.not_done.append("discrete elements under a motion stronger and weaker by a millionth")
+            return False
+        for factor in (1.0 - NUDGE, 1.0 + NUDGE):
+            table = hazard.scaled(motion, model, factor)
+            found = (
+                None
+                if table is None
+                else self._probe("dem", f"the motion times {factor:.6f}", "dem", choice.keys, table)
+            )
+            if found is not None and found.results.judged(self.asker.demand(self.peak)).outcome != row.outcome:
+                self._keep("dem-nudged", found)
+                told = f"{row.statement} A motion {factor:.6f} times as strong ends otherwise: it is decided by its last digits."
+                self.rows["dem"] = row.model_copy(update={"outcome": "open", "statement": told})
+                return True
+        return False
 
     def _turning(self, left: int, choice: Choice) -> None:
         """The factors on the hazard between which discrete elements turn to fall."""

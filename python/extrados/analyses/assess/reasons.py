@@ -290,6 +290,20 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
     )  # fmt: skip
 
 
+def elements_of_last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Elements are decided by the last digits of the motion."""
+    dem, nudged = facts.of("dem"), facts.probes.get("dem-nudged")
+    mine = [p for p in pairs if "dem" in p]
+    if not mine or not isinstance(dem, DemRun) or nudged is None or not isinstance(nudged.results, DemRun):
+        return None
+    here, there = dem.peak_displacement_m, nudged.results.peak_displacement_m
+    return reason(
+        "last-digits", mine,
+        f"Discrete elements under this motion are decided by its last digits: their stones move by {here:.3g} m, under a motion stronger or "
+        f"weaker by a millionth by {there:.3g} m. A single run of them is one draw.", displacement_m=here, displacement_nudged_m=there,
+    )  # fmt: skip
+
+
 def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Buildings that differ as nobody can know end differently: a single run is one draw."""
     row = facts.rows.get("probability")
@@ -309,8 +323,8 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     mine = [
         p for p in pairs if "dem" in p and ("rocking" in p or "assessment" in p or "probability" in p or "tilt" in p)
     ]
-    if not mine or not isinstance(dem, DemRun):
-        return None
+    if not mine or not isinstance(dem, DemRun) or "dem-nudged" in facts.probes:
+        return None  # of one draw of many nothing can be compared
     shortest = float(facts.building.blocks().length.min())
     if dem.peak_slip_m < SLID * shortest:
         return None
@@ -358,6 +372,8 @@ def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Rocking takes a stack of stones as one body; as one body the elements do as it says."""
     mine = dynamic(pairs, "dem")
     one, dem, whole = facts.probes.get("monolith"), facts.of("dem"), facts.of("rocking")
+    if "dem-nudged" in facts.probes:
+        return None
     if not mine or one is None or not isinstance(one.results, DemRun) or not isinstance(dem, DemRun):
         return None
     if not isinstance(whole, Rocking) or (one.results.outcome == "collapse") != (whole.outcome == "collapse"):
@@ -439,7 +455,7 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors,
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors,
     chance,
 )  # fmt: skip
 
