@@ -222,7 +222,11 @@ def _swings_once(run: dem.Run, count: int) -> bool:
 
 
 def _shortest(
-    fails: Callable[[list[tuple[int, float, float]]], list[bool]], curves: int, amplitudes: np.ndarray, durations: np.ndarray, accuracy: float
+    fails: Callable[[list[tuple[int, float, float]]], list[bool]],
+    curves: int,
+    amplitudes: np.ndarray,
+    durations: np.ndarray,
+    accuracy: float,
 ) -> np.ndarray:
     """Shortest failing duration (curves, amplitudes): the first failing one of those tried, refined by bisection.
 
