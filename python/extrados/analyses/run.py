@@ -2,7 +2,7 @@
 
 import time
 
-from extrados import kinds
+from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
@@ -49,7 +49,7 @@ def _who(what: str) -> str:
 
 def run_one(context: Context, options: Analysis, building: Building) -> Result:
     """One analysis of a building, without its verdict; what it refuses and what fails is told in its result."""
-    begin = time.perf_counter()
+    begin, signals = time.perf_counter(), len(interrupts.asked)
     try:
         context.warnings, context.building = [], building
         for what, there in building.special.items() if options.view or options.uses else ():
@@ -77,6 +77,8 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     except Exception as error:
         if isinstance(error, ImportError) and "failed to map" in str(error):  # a library that is loaded when needed
             result = Result(options.kind, "failed", f"not enough memory: {error}")
+        elif len(interrupts.asked) > signals:  # a library that was interrupted while it is loaded says what it likes
+            result = Result(options.kind, "interrupted", "interrupted before it had a result")
         else:  # a fault of ours: the other analyses of the deck still count
             result = faulty(options.kind, error)
     remarks, _ = building.told()

@@ -12,8 +12,11 @@ from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.anchors import Anchored, stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
+from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.building.mesh.mesh import Mesh
 from extrados.building.mesh.options import MeshOptions
+from extrados.building.mesh.rods import rods_of
+from extrados.building.mesh.shells import ShellMesh, ShellOptions
 from extrados.building.properties import (
     NO_SLIDING,
     NO_SLIDING_COEFFICIENT,
@@ -67,6 +70,8 @@ class Building:
         return {
             "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
             "[supports] abutting_wall": self.supports.abutting_wall is not None,
+            "[supports] foundation": "foundation" in self.supports.model_fields_set,
+            "[supports] damping_ratio": self.supports.damping_ratio is not None,
         }  # fmt: skip
 
     def having(self, **tables: Any) -> "Building":
@@ -81,6 +86,10 @@ class Building:
         """Stones and joints."""
         return self._view("blocks", self._stones, self._blocks)
 
+    def solids(self) -> SolidAssembly:
+        """Blocks in space and the polygons along which they touch."""
+        return self._view("solids", self._stones, lambda: self._structure().solids(self))
+
     @property
     def _stones(self) -> tuple[Any, ...]:
         """What its stones depend on."""
@@ -88,7 +97,7 @@ class Building:
 
     def told(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Remarks and notes on its stones, where something has looked at them; else nothing."""
-        made = self._views.get(self._key("blocks", self._stones))
+        made = self._views.get(self._key("blocks", self._stones)) or self._views.get(self._key("solids", self._stones))
         return (made.remarks, made.notes) if made is not None else ((), ())
 
     def _blocks(self) -> Assembly:
@@ -140,30 +149,32 @@ class Building:
                     "material for all stones, that of [material]: leave it out, or give the joints their stiffness"
                 )
 
-    def friction(self) -> float | np.ndarray | None:
-        """Coefficient of friction of the joints, one for each where they differ; None excludes sliding."""
+    def friction(self, assembly: SolidAssembly | None = None) -> float | np.ndarray | None:
+        """Coefficient of friction of the joints, one for each where they differ; None excludes sliding. `assembly`: of
+        solids, in place of the plane stones."""
         if all(t.friction is None for t in self.joints.types):
             return self.joints.coefficient
-        return self.joint_property("friction")
+        return self.joint_property("friction", assembly)
 
-    def joint_property(self, name: str) -> np.ndarray:
-        """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given).
+    def joint_property(self, name: str, assembly: SolidAssembly | None = None) -> np.ndarray:
+        """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given), of
+        the plane stones or of the solids given.
 
         BadGeometry where [[joints.types]] names a joint that is not there, or one twice.
         """
-        assembly = self.blocks()
+        stones = self.blocks() if assembly is None else assembly
 
         def number(value: float | str | None) -> float:
             return np.nan if value is None else NO_SLIDING_COEFFICIENT if value == NO_SLIDING else float(value)
 
-        values = np.full(len(assembly.a), number(getattr(self.joints, name)))
-        for joints, table in self._typed_joints(assembly):
+        values = np.full(len(stones.a), number(getattr(self.joints, name)))
+        for joints, table in self._typed_joints(stones):
             given = getattr(table, name)
             if given is not None:
                 values[joints] = number(given)
         return values
 
-    def _typed_joints(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, JointType]]:
+    def _typed_joints(self, assembly: Assembly | SolidAssembly) -> Iterator[tuple[np.ndarray, JointType]]:
         """The joints that each of [[joints.types]] speaks of."""
         index = {name: j for j, name in enumerate(assembly.joint_names)}
         named: dict[str, int] = {}
@@ -202,8 +213,20 @@ class Building:
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
         of a random pattern."""
         options = options or MeshOptions()
-        tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
-        return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
+        tables = (
+            self.structure, self.material, *self.materials.items(), self.joints, self.supports, *self.ties, options, seed
+        )  # fmt: skip
+        return self._view("mesh", tables, lambda: self._meshed(options, seed))
+
+    def _meshed(self, options: MeshOptions, seed: int | None) -> Mesh:
+        mesh = self._structure().mesh(self, options, seed)
+        return replace(mesh, rods=rods_of(self, mesh))
+
+    def shell(self, options: ShellOptions | None = None) -> ShellMesh:
+        """Flat shells in space: walls on a plan with the floors between them."""
+        options = options or ShellOptions()
+        tables = (self.structure, self.material, *self.materials.items(), options)
+        return self._view("shell", tables, lambda: self._structure().shell(self, options))
 
     @property
     def meshed_by_stones(self) -> bool:

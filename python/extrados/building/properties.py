@@ -41,6 +41,17 @@ class Material(Table):
         "linear", "how the stress falls after the strength", source="thesis Fig. 4-1"
     )
     compressive_strength: Stress | None = key(None, "compressive strength; without it nothing crushes", gt=0)
+    compressive_strength_parallel: Stress | None = key(
+        None, "compressive strength along the bed joints; compressive_strength is then that across them (Hill's criterion)",
+        source="Lourenco, de Borst and Rots (1997)", gt=0,
+    )  # fmt: skip
+    compressive_coupling: float = key(
+        -1.0, "what pressure along and across the bed joints do for each other: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 "
+        "+ c t^2 / (fx fy) = 1", source="-1.05 of Page's panels, Lourenco (1996), from memory", gt=-2, lt=2,
+    )  # fmt: skip
+    compressive_shear: float = key(
+        1.2, "c of the same criterion", source="1.20 of Page's panels, Lourenco (1996), from memory", gt=0, le=20
+    )
     crushing_energy: Energy | None = key(
         None, "energy of crushing per area, Gc; sequentially linear analysis crushes only with it", gt=0
     )
@@ -63,6 +74,11 @@ class Material(Table):
             raise ValueError("lateral_reduction needs compressive_strength")
         if self.confinement and self.crushing_energy is None:
             raise ValueError("confinement needs compressive_strength and crushing_energy")
+        if self.compressive_strength_parallel is not None:
+            if self.crushing_energy is None:
+                raise ValueError("compressive_strength_parallel needs compressive_strength and crushing_energy")
+            if self.confinement:
+                raise ValueError("confinement is for one compressive strength: leave out compressive_strength_parallel")
         self._check_bedding()
         return self
 
@@ -72,8 +88,8 @@ class Material(Table):
             for name in ("fracture_energy_parallel", "shear_strength"):
                 if getattr(self, name) is not None:
                     raise ValueError(f"{name} needs tensile_strength_parallel")
-            if self.bed_angle:
-                raise ValueError("bed_angle needs tensile_strength_parallel")
+            if self.bed_angle and self.compressive_strength_parallel is None:
+                raise ValueError("bed_angle needs tensile_strength_parallel or compressive_strength_parallel")
             return
         if self.tensile_strength is None:
             raise ValueError("tensile_strength_parallel needs tensile_strength, that across the bed joints")
@@ -189,13 +205,23 @@ class Held(Placed):
 class Supports(Table):
     """What the building stands on. Stones stand on the joints to the ground that the structure has."""
 
-    stiffness: Stiffness | None = key(None, "stiffness of the ground per area, in series with the joints on it", gt=0)
+    stiffness: Stiffness | None = key(
+        None, "stiffness of the ground per area, in series with the joints on it; `rocking` takes joints as rigid", gt=0
+    )
+    foundation: Literal["winkler", "two-spring"] = key(
+        "winkler", "for `rocking`: springs of that stiffness all along the base, or half of them under each edge; neither pulls",
+        source="Psycharis and Jennings 1983",
+    )  # fmt: skip
+    damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(
+        None, "for `rocking`: dashpots beside these springs, by their fraction of critical damping of what stands on the whole "
+        "base and moves up and down; default none",
+    )  # fmt: skip
     abutting_wall: Literal["left", "right"] | None = key(
         None, "a wall that stands against it on this side: it rocks away from it only, and is thrown back by it"
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
-        None, "rate after over rate before it is thrown back by the wall; default, of a block, three impacts in a row: of the "
-        "far toe, of the top on the wall, of the near toe", source="Sorrentino and others 2011",
+        None, "rate after over rate before it is thrown back by the wall; default, of a block, three impacts: of the far toe, of "
+        "the top on the wall, of the near toe, which is an upper bound", source="Sorrentino and others 2011, from memory, to be verified",
     )  # fmt: skip
     held: list[Held] = key(
         [], "held nodes of finite-element meshes, [[supports.held]]; default the bottom edge, or the joints on the ground",
@@ -206,6 +232,13 @@ class Supports(Table):
     def _thrown_back_by_a_wall(self) -> "Supports":
         if self.rebound is not None and self.abutting_wall is None:
             raise ValueError("rebound needs abutting_wall, the side on which the wall stands")
+        return self
+
+    @model_validator(mode="after")
+    def _gives_way(self) -> "Supports":
+        for name in ("foundation", "damping_ratio"):
+            if name in self.model_fields_set and self.stiffness is None:
+                raise ValueError(f"{name} needs stiffness, that of the ground")
         return self
 
 

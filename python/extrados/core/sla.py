@@ -11,20 +11,25 @@ from extrados.core.calls import indices, integers, long_call, real, room_for, th
 from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
+    BEARS,
     CRACKING,
+    DIRECTIONS,
     ELEMENTS,
     EVENT,
     EVENTS,
     LAWS,
     STOPS,
+    THROUGH,
     Bars,
     Bedding,
     Behaviour,
     Events,
     Freedoms,
+    Hill,
     Joints,
     Monitor,
     Plane,
+    Shells,
     Softening,
     Springs,
     Stop,
@@ -32,12 +37,14 @@ from extrados.core.sla_parts import (
 
 __all__ = [
     "CRACKING",
+    "DIRECTIONS",
     "ELEMENTS",
     "EVENT",
     "EVENTS",
     "LAWS",
     "REPORT",
     "STOPS",
+    "THROUGH",
     "VARIANTS",
     "BadElement",
     "Bars",
@@ -46,10 +53,12 @@ __all__ = [
     "Events",
     "FreeNode",
     "Freedoms",
+    "Hill",
     "Joints",
     "Model",
     "Monitor",
     "Plane",
+    "Shells",
     "Softening",
     "Springs",
     "Stop",
@@ -57,6 +66,7 @@ __all__ = [
     "intervals",
     "largest_band",
     "memory_limit",
+    "shell_axes",
     "teeth",
 ]  # fmt: skip
 
@@ -127,6 +137,17 @@ def body_force(
     return np.array(force.T)
 
 
+def shell_axes(xyz: npt.ArrayLike, connect: npt.ArrayLike) -> np.ndarray:
+    """Axes (elements, 3, 3) of flat shells, rows x, y, normal: x is horizontal, y goes up; of horizontal ones x is x."""
+    place = real("xyz", np.transpose(xyz), (3, None))
+    nodes = indices("connect", np.transpose(connect), place.shape[1], (None, None))
+    axes, bad, status = _core.api_shell.axes_of(place, nodes)
+    if bad:
+        raise BadElement(bad - 1, "shell")
+    check(status, "axes of shells")
+    return np.array(np.transpose(axes, (2, 0, 1)))
+
+
 def memory_limit() -> int:
     """Bytes a factor may take: 60 % of the machine's memory."""
     try:
@@ -138,7 +159,7 @@ def memory_limit() -> int:
 class Model(Owner):
     """A model in the core; close it, or use it in a `with`.
 
-    xy (nodes, 2) [m]. `algorithm` "update" changes the factor at each event, "refactor" makes it anew. IndexError
+    xy (nodes, 2) [m], of shells (nodes, 3). `algorithm` "update" changes the factor at each event, "refactor" makes it anew. IndexError
     where an element, a spring or a monitor names a node that is not there.
     """
 
@@ -161,19 +182,24 @@ class Model(Owner):
         self.behaviour = behaviour = behaviour or Behaviour()
         self.plane_points: list[tuple[Plane | Joints, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
-        place = real("xy", np.transpose(xy), (2, None))
+        axes, self.freedoms = np.shape(xy)[-1], freedoms.of_node
+        place = real("xy", np.transpose(xy), (axes, None))
         self.nodes = place.shape[1]
+        self.xy = place.T
         equation = np.asarray(freedoms.equation)
-        if equation.shape != (self.nodes, 2):
-            raise ValueError(f"equations have shape {equation.shape}, expected ({self.nodes}, 2)")
+        if (axes, self.freedoms) not in ((2, 2), (3, 6)) or len(equation) != self.nodes:
+            raise ValueError(
+                f"places have shape {np.shape(xy)} and equations {equation.shape}, expected ({self.nodes}, 2) of both in "
+                f"the plane, ({self.nodes}, 3) and ({self.nodes}, 6) in space"
+            )
         equations = int(equation.max(initial=-1)) + 1
-        if equations > 2 * self.nodes:
-            raise IndexError(f"a freedom belongs to equation {equations} of {2 * self.nodes} freedoms")
+        if equations > self.freedoms * self.nodes:
+            raise IndexError(f"a freedom belongs to equation {equations} of {self.freedoms * self.nodes} freedoms")
         self.moved = int(freedoms.moved)
         handle, status = _core.api_sla_model.create(
             place,
-            indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1), self.moved,
-            real("factor", np.transpose(freedoms.factor), (2, self.nodes)),
+            indices("equation", equation.T + 1, equations + 1, (self.freedoms, self.nodes)) - np.int32(1), self.moved,
+            real("factor", np.transpose(freedoms.factor), (self.freedoms, self.nodes)),
             CRACKING[behaviour.cracking], retention, int(behaviour.closure), int(behaviour.most_changes),
             float(behaviour.floor),
         )  # fmt: skip
@@ -245,15 +271,21 @@ class Model(Owner):
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        per = 2 if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
+        per = (
+            np.shape(group.connect)[1] if isinstance(group, Bars)
+            else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
+        )  # fmt: skip
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
         young = _each("young", group.young, count)
         tables, ladder = self._tables(count, group)
         if isinstance(group, Bars):
+            gradient, length = group.strains(self.xy)
             bad, status = _core.api_sla_model.bars(
-                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(*tables)
-            )
+                self.handle, connect, real("gradient", np.transpose(gradient, (2, 1, 0)), (self.xy.shape[1], per, count)),
+                _rows(_each("area", group.area, count) * length, young),
+                _rows(*tables, np.full(count, BEARS[group.bears], dtype=np.int32)),
+            )  # fmt: skip
             what = "bar"
         elif isinstance(group, Joints):
             bad, status = self._add_joints(group, connect, tables)
@@ -266,10 +298,19 @@ class Model(Owner):
                 _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
                 _each("confinement", group.confinement, count), *_bed_rows(group, count),
             )  # fmt: skip
-            bad, status = _core.api_sla_model.plane(
-                self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32)),
-            )  # fmt: skip
+            choices = _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32))
+            if isinstance(group, Shells):
+                bad, status = _core.api_shell.shells(
+                    self.handle, ELEMENTS[group.kind],
+                    integers("section", [THROUGH[group.through], group.layers, int(group.bends), int(group.selective)], 4),
+                    real("frames", np.transpose(group.frames, (1, 2, 0)), (3, 3, self.nodes)),
+                    integers("flat", np.asarray(group.flat).astype(int), self.nodes), connect, properties, choices,
+                )  # fmt: skip
+            else:
+                bad, status = _core.api_sla_model.plane(
+                    self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3),
+                    connect, properties, choices,
+                )  # fmt: skip
             what = "element"
         if not isinstance(group, Bars):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
@@ -295,7 +336,7 @@ class Model(Owner):
         node = indices("node of a spring", np.asarray(group.node).T + 1, self.nodes + 1, (2, count)) - np.int32(1)
         direction = np.where(ground, 0, np.asarray(group.direction))
         status = _core.api_sla_model.springs(
-            self.handle, node, indices("direction of a spring", direction.T, 2, (2, count)),
+            self.handle, node, indices("direction of a spring", direction.T, self.freedoms, (2, count)),
             real("stiffness", group.stiffness, (count,)),
         )  # fmt: skip
         check(status, "springs")
@@ -304,7 +345,7 @@ class Model(Owner):
         """Factor of the present damage; returns the smallest over the largest pivot."""
         node, direction, ratio, status = long_call(_core.api_sla_model.factorise, self.handle)
         if status == status_code("not_positive_definite"):
-            raise FreeNode(int(node) - 1, "xy"[max(int(direction) - 1, 0)], float(ratio))
+            raise FreeNode(int(node) - 1, DIRECTIONS[max(int(direction) - 1, 0)], float(ratio))
         check(status, "factor of the stiffness matrix")
         return float(ratio)
 
@@ -317,12 +358,12 @@ class Model(Owner):
         events: int = 0,
         ledger: npt.ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        """Start a stage under nodal forces (nodes, 2) [N]: constant + lambda reference."""
+        """Start a stage under nodal forces (nodes, 2) [N], of shells (nodes, 6) [N], [N m]: constant + lambda reference."""
         status = long_call(
             _core.api_sla.loads,
             self.handle,
-            real("constant", np.transpose(constant), (2, self.nodes)),
-            real("reference", np.transpose(reference), (2, self.nodes)),
+            real("constant", np.transpose(constant), (self.freedoms, self.nodes)),
+            real("reference", np.transpose(reference), (self.freedoms, self.nodes)),
             int(carried),
             int(events),
             real("ledger", ledger, (3,)),
@@ -358,7 +399,9 @@ class Model(Owner):
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
-        direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
+        direction = indices(
+            "direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape
+        )
         limits = [
             min(stop.load, huge),
             min(stop.displacement, huge),
@@ -397,8 +440,8 @@ class Model(Owner):
         return int(damaged), float(cracked)
 
     def displacement(self, load: float) -> np.ndarray:
-        """Displacements (nodes, 2) [m] under constant + load * reference."""
-        ua, ub, status = _core.api_sla.displacement(self.handle, self.nodes)
+        """Displacements (nodes, 2) [m], of shells (nodes, 6) [m], [rad], under constant + load * reference."""
+        ua, ub, status = _core.api_sla.displacement(self.handle, self.freedoms, self.nodes)
         check(status, "displacements")
         return np.array((ua + load * ub).T)
 
@@ -479,15 +522,18 @@ def _beddings(group: Plane | Bars | Joints, count: int) -> list[Bedding | None]:
 
 
 def _bed_rows(group: Plane, count: int) -> np.ndarray:
-    """(5, elements) the components of the core's `bedding`: none where nothing cracks."""
-    rows = np.zeros((5, count))
+    """(8, elements) the components of the core's `bedding`: none where nothing cracks or crushes."""
+    rows = np.zeros((8, count))
     rows[3] = 1.0
+    for k, criterion in enumerate(group.hill or ()):
+        if criterion is not None:
+            rows[[0, 5, 6, 7], k] = criterion.angle, criterion.ratio, criterion.coupling, criterion.shear
     if group.bedding is None:
         return rows
     width = _each("band", group.band, count) if group.reach is None else np.zeros(count)
     for k, (bed, law) in enumerate(zip(_beddings(group, count), _softenings(group.tension, count), strict=True)):
         if bed is not None and law is not None:
-            rows[:, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
+            rows[:5, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
     return rows
 
 

@@ -1,16 +1,19 @@
 """What a sequentially linear analysis is made of: laws, elements, freedoms, monitors, and what it records."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from extrados.core import lists
 
 LAWS = lists.numbers("sla_law")
+#: The freedoms of a node; in the plane it has the first two
+DIRECTIONS = ("x", "y", "z", "rotation about x", "rotation about y", "rotation about z")
 ELEMENTS = lists.numbers("sla_element")
 CRACKING = lists.numbers("sla_cracking")
 EVENTS = lists.words("sla_event")
+THROUGH = lists.numbers("shell_through")
 #: Name of an event -> its number
 EVENT = {entry.name: entry.number for entry in lists.entries("sla_event")}
 STOPS = lists.words("sla_stop")
@@ -69,7 +72,7 @@ class Stop:
     already: float = 0.0
 
 
-#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane.f90)
+#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane_points.f90)
 LEAST_SHARE = 0.2
 
 
@@ -101,6 +104,26 @@ class Bedding:
 
 
 @dataclass(frozen=True)
+class Hill:
+    """Compressive strength of masonry in courses by Hill's criterion: the compression law is that across the bed joints.
+
+    angle of the bed joints to x [rad]; ratio fx / fy of the strengths along and across them; coupling b and shear c of
+    (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) = 1.
+    """
+
+    angle: float
+    ratio: float
+    coupling: float
+    shear: float
+
+    def __post_init__(self) -> None:
+        if not (self.ratio > 0.0 and self.shear > 0.0 and abs(self.coupling) < 2.0):
+            raise ValueError(
+                "Hill's criterion needs a ratio and a shear factor above 0 and a coupling between -2 and 2"
+            )
+
+
+@dataclass(frozen=True)
 class Plane:
     """Plane-stress elements of one kind, all arrays by element (or one value for all).
 
@@ -129,6 +152,7 @@ class Plane:
     reach: np.ndarray | None = None
     confinement: float | np.ndarray = 0.0
     bedding: Bedding | Sequence[Bedding | None] | None = None
+    hill: Sequence[Hill | None] | None = None
 
     @property
     def points_each(self) -> int:
@@ -137,8 +161,34 @@ class Plane:
 
 
 @dataclass(frozen=True)
+class Shells(Plane):
+    """Flat shells of three or four nodes in space, fields as of Plane; angles are to the element's own x axis, which is
+    horizontal.
+
+    frames (nodes, 3, 3) columns: axes of the rotations of each node of the model; flat (nodes) True where all shells at
+    a node lie in the plane across its third axis, whose rotation is then to be held. `layers` through the thickness at
+    Gauss's or Lobatto's points; a group that does not bend is a membrane of one layer.
+    """
+
+    frames: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 3)))
+    flat: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=bool))
+    layers: int = 5
+    through: str = "lobatto"
+    bends: bool = True
+
+    @property
+    def points_each(self) -> int:
+        """Integration points of an element, those of one place through the thickness one after the other."""
+        return {"T3": 3, "Q4": 4}[self.kind] * self.layers
+
+
+@dataclass(frozen=True)
 class Bars:
-    """Bars of two nodes: connect (bars, 2) 0-based, area [m^2], young [Pa], band [m], softening as of Plane."""
+    """Bars: connect (bars, nodes) 0-based, area [m^2], young [Pa], band [m], softening as of Plane.
+
+    Of two nodes, or of more whose displacements make the strain by `gradient` (bars, nodes, 2 or 3) [1/m], with the `length`
+    (bars) [m]. bears: "both", "tension" or "compression" alone.
+    """
 
     connect: np.ndarray
     area: float | np.ndarray
@@ -146,6 +196,23 @@ class Bars:
     band: float | np.ndarray = 0.0
     tension: Softening | Sequence[Softening | None] | None = None
     compression: Softening | Sequence[Softening | None] | None = None
+    gradient: np.ndarray | None = None
+    length: np.ndarray | None = None
+    bears: str = "both"
+
+    def strains(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gradient (bars, nodes, 2) [1/m] and length (bars) [m] between nodes at xy (nodes, 2) [m]."""
+        if self.gradient is not None and self.length is not None:
+            return np.asarray(self.gradient, dtype=float), np.asarray(self.length, dtype=float)
+        along = xy[self.connect[:, 1]] - xy[self.connect[:, 0]]
+        length = np.hypot(*along.T) if along.shape[1] == 2 else np.linalg.norm(along, axis=1)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            each = along / (length**2)[:, None]
+        return np.stack([-each, each], axis=1), length
+
+
+#: What a bar bears, as the core numbers it
+BEARS = {"both": 0, "tension": 1, "compression": 2}
 
 
 @dataclass(frozen=True)
@@ -209,26 +276,32 @@ class Behaviour:
 
 @dataclass
 class Freedoms:
-    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it; the last `moved` equations are
-    those of supports whose displacements are given."""
+    """Which equation each freedom belongs to (-1 held) and its share of it, both (nodes, 2), of shells (nodes, 6) with
+    the rotations; the last `moved` equations are those of supports whose displacements are given."""
 
     equation: np.ndarray
     factor: np.ndarray
     moved: int = 0
+
+    @property
+    def of_node(self) -> int:
+        """Freedoms of a node."""
+        return int(np.shape(self.equation)[1])
 
     @staticmethod
     def make(
         nodes: int,
         held: Iterable[tuple[int, int]] = (),
         ties: Sequence[Sequence[tuple[int, int, float]]] = (),
+        of_node: int = 2,
     ) -> "Freedoms":
-        """held: (node, direction) pairs; ties: lists of (node, direction, factor) that move as one."""
+        """held: (node, direction) pairs; ties: lists of (node, direction, factor) that move as one; `of_node` freedoms."""
         held = list(held)
         for node, direction, *_ in [*held, *(entry for tie in ties for entry in tie)]:
-            if not (0 <= node < nodes and direction in (0, 1)):
-                raise IndexError(f"a freedom names node {node}, direction {direction} of {nodes} nodes in the plane")
-        equation = np.zeros((nodes, 2), dtype=np.int64)
-        factor = np.ones((nodes, 2))
+            if not (0 <= node < nodes and 0 <= direction < of_node):
+                raise IndexError(f"a freedom names node {node}, direction {direction} of {nodes} nodes with {of_node}")
+        equation = np.zeros((nodes, of_node), dtype=np.int64)
+        factor = np.ones((nodes, of_node))
         for node, direction in held:
             equation[node, direction] = -1
         number = 0
@@ -236,7 +309,7 @@ class Freedoms:
             for node, direction, share in tie:
                 if equation[node, direction] != 0:
                     what = "held" if equation[node, direction] < 0 else "tied already"
-                    raise ValueError(f"node {node + 1} cannot be tied in {'xy'[direction]}: it is {what}")
+                    raise ValueError(f"node {node + 1} cannot be tied in {DIRECTIONS[direction]}: it is {what}")
                 equation[node, direction] = number + 1
                 factor[node, direction] = share
             number += 1

@@ -8,7 +8,6 @@ from typing import Any, get_args
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
-from extrados.decks.moved import MOVED_KINDS
 from extrados.decks.plural import PLURAL
 from extrados.schema import quantities
 from extrados.schema.table import Table
@@ -46,6 +45,7 @@ def json_schema() -> dict[str, Any]:
         "required": ["analysis"],
         "properties": {
             "title": {"type": "string"},
+            **{word: {"type": "string"} for word in ("project", "author", "date")},
             "note": {"type": "string"},
             **one,
             **{name: {"type": "array", "items": one[name]} for name in PLURAL},
@@ -185,7 +185,6 @@ def explain(word: str) -> str:
                 if any(name == one or name.startswith(f"{one}.") for one in asked)
             ]
     if not found:
-        _renamed(word)
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
         raise KeyError(f"no key or kind '{word}'" + (f"; near are {', '.join(close)}" if close else ""))
     return "\n".join(found)
@@ -194,13 +193,6 @@ def explain(word: str) -> str:
 def _called(section: str, kind: str, name: str) -> set[str]:
     """What a user may call a key."""
     return {name, name.rsplit(".", 1)[-1], f"{section}.{name}", f"{kind}.{name}", f"{section}.{kind}.{name}"}
-
-
-def _renamed(kind: str) -> None:
-    """KeyError with the new name of a kind that had another one."""
-    for (_, old), new in MOVED_KINDS.items():
-        if kind == old:
-            raise KeyError(f"'{old}' is now called '{new}'")
 
 
 def _header(section: str) -> str:
@@ -217,7 +209,6 @@ def starter(kind: str) -> str:
     section = next((name for name in ("analysis", "structure", "motion") if kind in kinds.TABLES[name]), None)
     if section is None:
         known = [kind for there in kinds.TABLES.values() for kind in there]
-        _renamed(kind)
         close = difflib.get_close_matches(kind, known, n=1, cutoff=0.4)
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
     asked = kind

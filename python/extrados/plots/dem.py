@@ -181,14 +181,13 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         "damping": "lost in damping", "friction": "lost in friction", "residual": "residual",
     }  # fmt: skip
     with style.figure(8.0, 5.4, rows=2, sharex=True) as (fig, (top, low)):
-        top.plot(time, run.array(name, "kinetic_energy") / 1e3, color=style.THRUST)
-        top.set_ylabel("kinetic energy [kJ]")
+        style.energies(top, "kinetic energy", [(time, run.array(name, "kinetic_energy"), {"color": style.THRUST})])
         top.set_title("Drops are impacts")
-        for key, word in words.items():
-            low.plot(
-                time, run.array(name, f"{key}_energy") / 1e3, label=word, linestyle="--" if key == "residual" else "-"
-            )
-        low.set_ylabel("energy [kJ]")
+        lines = [
+            (time, run.array(name, f"{key}_energy"), {"label": word, "linestyle": "--" if key == "residual" else "-"})
+            for key, word in words.items()
+        ]
+        style.energies(low, "energy", lines)
         low.set_xlabel("time [s]")
         low.set_xlim(0.0, time[-1])
         low.legend(loc="best", ncols=2)

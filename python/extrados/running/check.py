@@ -9,8 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.inspection import Inspection
+from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.building.mesh.shells import ShellMesh
 from extrados.decks.reader import Deck
 from extrados.results import written
 
@@ -30,32 +32,48 @@ class Place:
 @dataclass(frozen=True)
 class Checked:
     """complaints: why the deck would be refused; remarks and notes on its geometry; the list of places, the refused
-    first, then the open, then those that the tolerance closes; inspection: None where it is no survey."""
+    first, then the open, then those that the tolerance closes; inspection: None where it is no survey; solids: what has
+    no plane section, or is asked for in a direction; plan: the mesh of a building on a plan."""
 
     complaints: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
     inspection: Inspection | None = None
+    solids: SolidAssembly | None = None
+    plan: ShellMesh | None = None
 
 
 def check_building(deck: Deck) -> Checked:
     """Make the building as the analyses will, without computing anything."""
-    inspection, complaints = None, []
+    inspection, complaints, solids, plan = None, [], None, None
     try:
         if deck.structure is not None:
             inspection = deck.structure.inspection(deck.folder)
             complaints = [] if inspection is None else inspection.complaints()
         if not complaints:
             for analysis, building in zip(deck.analyses, deck.buildings, strict=True):
-                if analysis.view == "blocks":
+                if analysis.view == "shell":
+                    plan = building.shell(analysis.mesh)
+                if analysis.view != "blocks":
+                    continue
+                try:
                     building.blocks()
                     building.friction()
+                except NoView:
+                    if not analysis.solid:
+                        raise
+                    solids = building.solids()
+                    building.friction(solids)
+                if getattr(analysis, "direction", None) is not None:
+                    solids = building.solids()
     except BadGeometry as error:
         complaints = [str(error)]
     complaints = [f"{deck.path or 'deck'}: structure: {text}" for text in dict.fromkeys(complaints)]
+    if solids is not None and not complaints:
+        return Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids)
     if inspection is None:
-        return Checked(complaints)
+        return Checked(complaints, plan.warnings if plan else [], plan=plan)
     return Checked(complaints, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
 
 
@@ -103,3 +121,37 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
         with written.alone(folder.parent):
             names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
     return folder / names["geometry.png"], folder / names["geometry.csv"]
+
+
+def write_plan(mesh: ShellMesh, folder: Path) -> Path:
+    """Plan and elevations of a building with its mesh into a folder: plan.png (and .svg), under the rule of write_check."""
+    from extrados.plots.plan import Elevation, draw_plan
+
+    folder = Path(os.path.abspath(folder))
+    folder.mkdir(parents=True, exist_ok=True)
+    walls = []
+    for number, wall in enumerate(mesh.walls):
+        part = next(p for p in mesh.parts if p.wall == number)
+        corner = wall.unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        end = wall.origin + wall.length * wall.along
+        walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear))
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        scratch = Path(place)
+        draw_plan(scratch, "plan", walls, mesh.levels)
+        with written.alone(folder.parent):
+            names = written.put(scratch, folder, lambda name: name.startswith("plan"))
+    return folder / names["plan.png"]
+
+
+def write_solids(solids: SolidAssembly, folder: Path) -> Path:
+    """The picture of solids into a folder: geometry.png (and .svg). What extrados did not write there stays."""
+    from extrados.plots.geometry import draw_stones
+
+    folder = Path(os.path.abspath(folder))
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        scratch = Path(place)
+        draw_stones(scratch, "geometry", solids.parts, solids.owner, solids.polygon, solids.b < 0)
+        with written.alone(folder.parent):
+            names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
+    return folder / names["geometry.png"]

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.drawing import MOST_BLOCKS, UNITS, Drawing, Polygon
 from extrados.building.geometry.polygons import following, signed_area
 
@@ -26,13 +26,13 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     one is given.
 
     The plane is xz or yz, whichever all blocks are prisms across, or xy where all have a height in z alone. Supports
-    become ground along their faces. BadGeometry names the block that is no prism.
+    become ground along their faces. NoView names the block that is no prism.
     """
     scale = UNITS[unit or "m"]
-    nodes = _nodes(value, name)
+    nodes = nodes_of(value, name)
     if len(nodes) > MOST_BLOCKS:
         raise BadGeometry(f"{name}: {len(nodes)} blocks, at most {MOST_BLOCKS}")
-    meshes = {key: _mesh(node, f"{name}: block {key}") for key, node in nodes.items()}
+    meshes = {key: mesh_of(node, f"{name}: block {key}") for key, node in nodes.items()}
     for axis in (1, 0, 2):
         sections = {key: _section(xyz, faces, axis) for key, (xyz, faces) in meshes.items()}
         if all(s is not None for s in sections.values()):
@@ -40,7 +40,7 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     else:
         faults = {AXES[a]: next(k for k, m in meshes.items() if _section(*m, a) is None) for a in (1, 0, 2)}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
-        raise BadGeometry(f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms")
+        raise NoView(f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms")
     blocks, ground, depths = [], [], []
     for key, found in sections.items():
         assert found is not None
@@ -72,7 +72,7 @@ def _inner(value: Any) -> Any:
     return value
 
 
-def _nodes(value: Any, name: str) -> dict[str, dict[str, Any]]:
+def nodes_of(value: Any, name: str) -> dict[str, dict[str, Any]]:
     inner = _inner(value)
     if isinstance(inner, dict) and "graph" in inner:
         inner = _inner(inner["graph"])
@@ -82,7 +82,7 @@ def _nodes(value: Any, name: str) -> dict[str, dict[str, Any]]:
     return dict(sorted(nodes.items(), key=lambda item: (len(item[0]), item[0])))
 
 
-def _mesh(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int]]]:
+def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int]]]:
     """Vertices (n, 3) and the faces as indices of them."""
     mesh = _inner(node.get("block"))
     try:

@@ -74,6 +74,12 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
         raise NoView("the deck has no [structure]")
     if structure.rocks_as == "stack":
         raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow")
+    if building.supports.stiffness is not None:
+        raise NoView(
+            "[supports] stiffness: on a base that gives way a building moves in more than one coordinate, which `rocking` "
+            "(under one block, column or wall) and `dem` follow; leave it out, or give it to these analyses alone "
+            "([analysis.supports] below them)"
+        )
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
     if structure.rocks_as == "block" or (piers is not None and len(piers.mass) == 1):
         block = block_model(building, linear, stones)
@@ -144,7 +150,14 @@ def _restrained(free: Rocker, building: "Building") -> Rocker:
     ratio = building.initial.rotation_ratio
     if ratio and not sides[0 if ratio > 0.0 else 1]:
         raise NoView(f"it cannot start turned to the {wall}, where the wall stands")
+    told = free.warnings
+    if wall is not None and building.supports.rebound is None:
+        told += (
+            f"the wall throws it back with {rebound[0 if sides[0] else 1]:.3f} times the rate, by three impacts, which is an upper "
+            "bound: discrete elements leave less, nothing where they are well damped (docs/rocking.md); give [supports] rebound where "
+            "it matters",
+        )
     return replace(
-        free, body=body, restraints=held, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
+        free, body=body, restraints=held, warnings=told, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
         uplift=float(uplift[list(sides)].min()),
     )  # fmt: skip
