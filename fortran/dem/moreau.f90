@@ -28,7 +28,7 @@ module dem_moreau
    private
    public :: advance_rigid, rigid_step
 
-   real(wp), parameter :: natural = 0.005_wp       !! of the time in which a block falls by its own size
+   real(wp), parameter :: natural = 0.002_wp       !! of the time in which a block falls by its own size
    real(wp), parameter :: unhurried = 0.1_wp       !! the same without inertia
    real(wp), parameter :: tolerance = 1.0e-5_wp    !! of the velocity that gravity gives in a step
    integer, parameter :: most_rounds = 200

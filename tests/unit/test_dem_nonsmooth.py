@@ -235,3 +235,12 @@ def test_maps_of_both_solvers_side_by_side(monkeypatch: pytest.MonkeyPatch, limi
     curves = run["dem-domain"]["curves"]
     assert [c.solver for c in curves] == ["compliant", "nonsmooth"] and curves[1].beta_s is None
     assert any("agree in" in text for text in run.results[0].warnings) == warned
+
+
+@pytest.mark.parametrize(("step", "most"), [(1e-3, 0.03), (2.5e-4, 0.01)])
+def test_a_stocky_block_loses_as_housner_says(step: float, most: float) -> None:
+    found = deck(
+        '[structure]\nkind = "block"\nwidth = 1.0\nheight = 1.6\n[joints]\nfriction = 5.0\n[initial]\nrotation_ratio = 0.3\n'
+        f'[[analysis]]\nkind = "dem"\nsolver = "nonsmooth"\nend_time = 1.5\ntime_step = {step}\n'
+    )["dem"]
+    assert found["restitution_measured"] == pytest.approx(found["restitution_housner"], rel=most)

@@ -159,9 +159,10 @@ class Joints(Table):
     stiffness_rule: Literal["consistent", "thesis"] = key(
         "consistent", "default stiffness: E/L, or E B/L as the thesis prints it", source="thesis Eqs 7.10-7.12"
     )
-    damping: Literal["edge", "corner", "rotation"] = key(
-        "edge", "impact frequency that is damped critically", source="thesis Eqs 7.13, 7.17-7.20"
-    )
+    damping: Literal["edge", "corner", "rotation", "restitution"] = key(
+        "edge", "impact frequency that is damped critically; or of a single block the damping that gives its restitution, "
+        "found by letting it rock", source="thesis Eqs 7.13, 7.17-7.20",
+    )  # fmt: skip
     damping_ratio: float = key(1.0, "fraction of critical damping at that frequency", ge=0, le=100)
     beta: Annotated[float, Field(ge=0, le=10)] | None = key(
         None, "stiffness-proportional damping in s, instead of the rule"

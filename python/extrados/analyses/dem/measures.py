@@ -1,5 +1,7 @@
 """What is read off a run: openings and slip of joints, hinges, the outcome, restitution, blocks, snapshots."""
 
+import itertools
+
 import numpy as np
 
 from extrados.analyses.context import Refused
@@ -16,6 +18,8 @@ from extrados.schema.constants import GRAVITY
 OPEN = 5e-4
 #: A joint slides where it slips by more than this fraction of the shortest one.
 SLIDES = 0.01
+#: Of the highest swing before an impact: lower ones say little of the restitution.
+STRONG = 0.04
 #: Blocks whose rotation is reported where none are named.
 MOST_TRACKED = 24
 
@@ -125,24 +129,23 @@ def moving(run: dem.Run, model: Model) -> bool:
 def restitution(run: dem.Run, state: np.ndarray, ground: np.ndarray) -> float | None:
     """Median ratio of the rates after and before the impacts of a single block that rocks freely.
 
-    state: of the joints (time, joint); ground: its acceleration (time) [m/s^2]. An impact counts where the block
-    stood on one end of a joint before and on the other after, so that noise about rest and a changing
-    lean do not, and where the ground is still meanwhile: it would change the rates as well. None without one.
+    By its energies: at the peaks of two swings it is at rest, so that the heights of its centroid over the one at rest are
+    as the squares of the rates. state: of the joints (time, joint); ground: its acceleration (time) [m/s^2]. An impact
+    counts where the block stood on one end of a joint before and on the other after, so that noise about rest and a
+    changing lean do not, and where the ground is still from peak to peak. None without one.
     """
-    angle, rate = run.place[:, 0, 2], run.rate[:, 0, 2]
+    angle, height = run.place[:, 0, 2], run.place[:, 0, 1] - run.settled[0, 1]
     cross = np.flatnonzero(angle[:-1] * angle[1:] < 0.0)
     limits = [0, *(cross + 1).tolist(), len(angle)]
+    peaks = [low + int(np.abs(angle[low:high]).argmax()) for low, high in itertools.pairwise(limits)]
     ratios = []
-    for k, c in enumerate(cross):
-        if not 3 < c < len(rate) - 6 or (ground[c - 2 : c + 5] != 0.0).any():
-            continue
-        before = limits[k] + np.abs(angle[limits[k] : limits[k + 1]]).argmax()
-        after = limits[k + 1] + np.abs(angle[limits[k + 1] : limits[k + 2]]).argmax()
-        if (state[before] * state[after] == HINGED_FIRST * HINGED_SECOND).any() and rate[c - 2] * rate[c + 4] > 0.0:
-            fast = np.abs(rate[c - 3 : c + 1]).max()  # gravity speeds it up until the impact
-            ratios.append((fast, abs(rate[c + 4]) / fast))
-    fastest = max((r for r, _ in ratios), default=0.0)
-    strong = [ratio for r, ratio in ratios if r > 0.2 * fastest]
+    for before, after in itertools.pairwise(peaks):
+        turned = after < len(angle) - 1 and abs(angle[after]) > abs(angle[-1])  # the run goes on beyond the second peak
+        hinged = (state[before] * state[after] == HINGED_FIRST * HINGED_SECOND).any()
+        if turned and hinged and not ground[before : after + 1].any() and height[before] > 0.0:
+            ratios.append((height[before], np.sqrt(max(height[after], 0.0) / height[before])))
+    highest = max((h for h, _ in ratios), default=0.0)
+    strong = [ratio for h, ratio in ratios if h > STRONG * highest]
     return float(np.median(strong)) if strong else None
 
 

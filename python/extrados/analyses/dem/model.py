@@ -52,9 +52,9 @@ def joint_values(building: Building) -> JointValues:
     """Properties of all joints by the rules and exceptions of [joints]; Refused where the deck names an unknown joint."""
     assembly, joints = building.blocks(), building.joints
     length = impact_rules.joint_lengths(assembly)
-    rule = impact_rules.joint_stiffness(building.material.young, length, assembly.length, joints.stiffness_rule)
+    elastic = impact_rules.joint_stiffness(building.material.young, length, assembly.length, joints.stiffness_rule)
     given = building.joint_property("normal_stiffness")
-    stiffness = np.where(np.isnan(given), rule, given)
+    stiffness = np.where(np.isnan(given), elastic, given)
     if building.supports.stiffness is not None:
         grounded = (assembly.a == GROUND) | (assembly.b == GROUND)
         series = 1.0 / (1.0 / stiffness + 1.0 / building.supports.stiffness)
@@ -62,12 +62,14 @@ def joint_values(building: Building) -> JointValues:
     impact = impact_rules.joint_impact(assembly, stiffness)
     # The highest frequency of its kind: the smallest block sets the least damping (thesis 7.4.4).
     beta = joints.beta
+    wanted = joints.beta is None and joints.damping == "restitution"
     if beta is None:
-        beta = impact_rules.damping_constant(float(impact.of(joints.damping).max()), joints.damping_ratio)
+        rule = "edge" if wanted else joints.damping
+        beta = impact_rules.damping_constant(float(impact.of(rule).max()), joints.damping_ratio)
     shear = (
         np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
     )
-    return JointValues(
+    values = JointValues(
         stiffness,
         shear,
         *(building.joint_property(name) for name in ("friction", "cohesion", "tension")),
@@ -75,6 +77,11 @@ def joint_values(building: Building) -> JointValues:
         impact,
         length,
     )
+    if wanted:
+        from extrados.analyses.dem.calibration import beta_for_restitution  # it runs models
+
+        return replace(values, beta=beta_for_restitution(building, values))
+    return values
 
 
 @dataclass(frozen=True)

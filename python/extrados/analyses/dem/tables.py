@@ -39,7 +39,7 @@ class DemTable(BuildingAnalysis):
     )
     fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
     time_step: Time | None = key(
-        None, "instead of the fraction of the critical step, or nonsmooth of a 200th of the time in which the smallest block "
+        None, "instead of the fraction of the critical step, or nonsmooth of a 500th of the time in which the smallest block "
         "falls by its own size", gt=0,
     )  # fmt: skip
     floor: Length | None = key(

@@ -72,7 +72,7 @@ def start(context: Context, model: Model) -> np.ndarray | None:
         return None
     side = 0 if ratio > 0.0 else 1
     if isinstance(block, BlockAssembly):
-        return _about_a_toe(block, side, ratio, len(model.rigid.mass))
+        return about_a_toe(block, side, ratio, len(model.rigid.mass))
     if model.rigid.count != len(block.mass):
         raise Refused('[initial] rotation_ratio: glued voussoirs do not start rotated; merge = "none" does')
     try:
@@ -86,7 +86,8 @@ def start(context: Context, model: Model) -> np.ndarray | None:
     return shift
 
 
-def _about_a_toe(block: BlockAssembly, side: int, ratio: float, bodies: int) -> np.ndarray:
+def about_a_toe(block: BlockAssembly, side: int, ratio: float, bodies: int) -> np.ndarray:
+    """Displacements (bodies, 3) [m, m, rad] of a block that has turned about a toe by a share of its critical angle."""
     turn = -ratio * block.alpha[side]  # positive to +x is clockwise
     toe = block.q[0] if side == 0 else block.p[0]
     arm = block.centroid[0] - toe
