@@ -15,6 +15,8 @@ def main() -> None:
     """Entry point of the `extrados` command."""
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, _leave)
+    # Looking for plugins of pydantic, which has none here, reads the metadata of every package that is installed
+    os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     from extrados.cli import main
 
     main()

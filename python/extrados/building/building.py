@@ -8,12 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from extrados.building.devices import AddedHinge, Damper
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.geometry.anchors import Anchored, stone_at
+from extrados.building.errors import BadGeometry, Key, NoView
+from extrados.building.geometry.anchors import Anchored, moved_joints, stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
-from extrados.building.mesh.mesh import Mesh
-from extrados.building.mesh.options import MeshOptions
 from extrados.building.properties import (
     NO_SLIDING,
     NO_SLIDING_COEFFICIENT,
@@ -27,7 +24,10 @@ from extrados.building.structure import Structure
 from extrados.building.ties import Tie
 from extrados.schema.table import Table
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # views are loaded when they are asked for
+    from extrados.building.geometry.rigid import RigidBodies
+    from extrados.building.mesh.mesh import Mesh
+    from extrados.building.mesh.options import MeshOptions
     from extrados.building.rockers.rocker import Rocker
 
 
@@ -62,12 +62,21 @@ class Building:
         return (*self.ties, *self.dampers, *self.hinges)
 
     @property
-    def special(self) -> dict[str, bool]:
-        """What only some strategies reckon with, as decks call it -> is there any?"""
-        return {
-            "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
-            "[supports] abutting_wall": self.supports.abutting_wall is not None,
-        }  # fmt: skip
+    def restraint_keys(self) -> tuple[Key, ...]:
+        """The table of the deck that says each of its restraints."""
+        sections = {"ties": self.ties, "dampers": self.dampers, "hinges": self.hinges}
+        return tuple((section, k) for section, tables in sections.items() for k in range(len(tables)))
+
+    @property
+    def special_keys(self) -> dict[str, Key]:
+        """What of it only some strategies reckon with, as decks call it, with the key that says so; what it has not is
+        left out."""
+        found: dict[str, Key] = {
+            f"[[{section}]]": (section, 0) for section in ("ties", "dampers", "hinges") if getattr(self, section)
+        }
+        if self.supports.abutting_wall is not None:
+            found["[supports] abutting_wall"] = ("supports", "abutting_wall")
+        return found
 
     def having(self, **tables: Any) -> "Building":
         """The same building with other tables: structure, material, joints, supports, initial, ties, dampers, hinges."""
@@ -104,9 +113,11 @@ class Building:
             lambda: self._structure().pier_assembly(self.material.density),
         )
 
-    def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
+    def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> "RigidBodies":
         """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches
         what falls."""
+        from extrados.building.geometry.rigid import rigid_bodies
+
         self.refuse_mixture()
         worn = self.joints.worn_corners
         return self._view(
@@ -137,7 +148,8 @@ class Building:
             if more:
                 raise BadGeometry(
                     f"[materials.{name}] gives stones another {more[0]}; discrete and finite elements know one elastic "
-                    "material for all stones, that of [material]: leave it out, or give the joints their stiffness"
+                    "material for all stones, that of [material]: leave it out, or give the joints their stiffness",
+                    ("materials", name, more[0]),
                 )
 
     def friction(self) -> float | np.ndarray | None:
@@ -168,9 +180,10 @@ class Building:
         index = {name: j for j, name in enumerate(assembly.joint_names)}
         named: dict[str, int] = {}
         for k, kind in enumerate(self.joints.types, start=1):
+            key = ("joints", "types", k - 1, "joints")
             for name in kind.joints:
                 if name in named:
-                    raise BadGeometry(f"joint '{name}' is named twice, in joints.types {named[name]} and {k}")
+                    raise BadGeometry(f"joint '{name}' is named twice, in joints.types {named[name]} and {k}", key)
                 named[name] = k
                 if name == "ground":
                     yield np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)), kind
@@ -181,7 +194,7 @@ class Building:
                 else:
                     known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
                     groups = ", ".join([*assembly.groups, "ground"])
-                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}")
+                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}", key)
 
     def anchored(self) -> Anchored:
         """The stones at the ends of its ties, in their order; BadGeometry where an end is in none, or in several."""
@@ -189,18 +202,24 @@ class Building:
         block, point = np.full((len(self.ties), 2), GROUND), np.zeros((len(self.ties), 2, 2))
         for k, tie in enumerate(self.ties):
             point[k] = tie.start, tie.far
-            block[k, 0] = stone_at(assembly, point[k, 0], tie.start_stone, f"{tie.name}, start")
+            block[k, 0] = stone_at(assembly, point[k, 0], tie.start_stone, f"{tie.name}, start", ("ties", k), "start")
             if tie.ground is None:
-                block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end")
+                block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end", ("ties", k), "end")
             if block[k, 0] == block[k, 1]:
                 raise BadGeometry(
-                    f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'"
+                    f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'", ("ties", k)
                 )
         return Anchored(block, point)
 
-    def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
+    def moved(self) -> list[int]:
+        """The joints that [[initial.movements]] name, in their order; BadGeometry where one is not on the ground."""
+        return moved_joints(self.blocks(), [one.joint for one in self.initial.movements])
+
+    def mesh(self, options: "MeshOptions | None" = None, seed: int | None = None) -> "Mesh":
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
         of a random pattern."""
+        from extrados.building.mesh.options import MeshOptions
+
         options = options or MeshOptions()
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
         return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))

@@ -6,13 +6,17 @@ import os
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from extrados.analyses.context import Context
+from extrados.analyses.needs import complaints
 from extrados.building.errors import BadGeometry
-from extrados.building.geometry.inspection import Inspection
 from extrados.decks.reader import Deck
-from extrados.results import written
+
+if TYPE_CHECKING:
+    from extrados.building.geometry.inspection import Inspection
 
 
 @dataclass(frozen=True)
@@ -36,30 +40,30 @@ class Checked:
     remarks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
-    inspection: Inspection | None = None
+    inspection: "Inspection | None" = None
 
 
 def check_building(deck: Deck) -> Checked:
-    """Make the building as the analyses will, without computing anything."""
-    inspection, complaints = None, []
+    """Make the building as the analyses will, and whatever else they need, without computing anything."""
+    inspection, found = None, []
+    context = Context(deck)
     try:
         if deck.structure is not None:
             inspection = deck.structure.inspection(deck.folder)
-            complaints = [] if inspection is None else inspection.complaints()
-        if not complaints:
-            for analysis, building in zip(deck.analyses, deck.buildings, strict=True):
-                if analysis.view == "blocks":
-                    building.blocks()
-                    building.friction()
+            if inspection is not None:
+                found = [deck.complaint(None, ("structure",), text) for text in inspection.complaints()]
     except BadGeometry as error:
-        complaints = [str(error)]
-    complaints = [f"{deck.path or 'deck'}: structure: {text}" for text in dict.fromkeys(complaints)]
+        found = [deck.complaint(None, error.at, str(error))]
+    if not found:
+        for options, building in zip(deck.analyses, deck.buildings, strict=True):
+            found += complaints(context, options, building)
+    found = list(dict.fromkeys(found))
     if inspection is None:
-        return Checked(complaints)
-    return Checked(complaints, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
+        return Checked(found)
+    return Checked(found, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
 
 
-def _places(inspection: Inspection) -> list[Place]:
+def _places(inspection: "Inspection") -> list[Place]:
     rows = []
     for status in ("overlap", "open", "closed"):
         for flaw in inspection.of(status):
@@ -83,6 +87,7 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
     A file there that extrados did not write, or that was changed since, stays, and the new one is put beside it.
     """
     from extrados.plots.geometry import Mark, draw_survey  # matplotlib takes a third of a second to load
+    from extrados.results import written
 
     assert checked.inspection is not None
     folder = Path(os.path.abspath(folder))

@@ -118,8 +118,7 @@ def make_model(context: Context, options: DemTable, floor: float | None = None) 
     assembly = building.blocks()
     groups: tuple[tuple[int, ...], ...] = ()
     if options.merge == "three-bars":
-        if not isinstance(assembly, ArchAssembly):
-            raise Refused('merge = "three-bars" needs an arch')
+        assert isinstance(assembly, ArchAssembly)
         joint = ArchModel(assembly).four_hinge.joint
         groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
     return Model(assembly, building.rigid(groups, floor), joint_values(building))

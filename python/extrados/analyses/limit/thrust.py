@@ -3,8 +3,8 @@
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.applied import chain_of
 from extrados.analyses.limit.common import (
-    chain_of,
     geometry_arrays,
     graphic_arrays,
     limit_of,

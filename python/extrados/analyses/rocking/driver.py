@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
@@ -30,8 +30,6 @@ def run(context: Context, options: Rocking) -> Result:
     context = with_moving_supports(context)
     structure = context.building.structure
     if structure is not None and structure.rocks_as == "stack":
-        if options.animation != "none":
-            raise Refused("rocking draws no film of a stack: dem does")
         return stack_rocking.run(context, options)
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}

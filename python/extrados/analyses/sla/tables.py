@@ -268,6 +268,8 @@ class Sla(BuildingAnalysis, Animated):
         if any(load.kind == "displacement" for load in self.constant or []):
             raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
         reference = self.reference or []
+        if "stages" in self.model_fields_set and not self.stages:
+            raise ValueError("stages: holds none; expected one at least, or leave it out")
         if self.stages:
             self._consistent_stages()
         elif self.main_stage is not None:
