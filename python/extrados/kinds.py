@@ -63,15 +63,15 @@ def _analysis(room: str, table: str, driver: str, figures: str, example: str) ->
 
 
 ANALYSES: dict[str, AnalysisKind] = {
-    "tilt": _analysis("limit", "Tilt", "tilt", "limit:draw_tilt", "limit/oppenheim"),
-    "thrust": _analysis("limit", "Thrust", "thrust", "limit:draw_thrust", "vault/dejong-a"),
-    "sweep": _analysis("limit", "Sweep", "sweep", "limit:draw_sweep", "vault/vezelay-sweep"),
-    "survey": _analysis("limit", "Survey", "survey", "limit:draw_survey", "limit/survey"),
+    "tilt": _analysis("limit", "Tilt", "tilt", "limit.tilt:draw", "limit/oppenheim"),
+    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "vault/dejong-a"),
+    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "vault/vezelay-sweep"),
+    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "limit/survey"),
     "imperfections": _analysis(
-        "limit", "Imperfections", "imperfections", "limit:draw_imperfections", "limit/church"
+        "limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "limit/church"
     ),
-    "supports": _analysis("limit", "Supports", "supports", "limit:draw_supports", "limit/oppenheim"),
-    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit:draw_moving_load", "limit/oppenheim"),
+    "supports": _analysis("limit", "Supports", "supports", "limit.supports:draw", "limit/oppenheim"),
+    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "limit/oppenheim"),
     "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),
     "failure-domain": _analysis(
         "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"
