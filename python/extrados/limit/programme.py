@@ -9,7 +9,7 @@ from scipy import sparse
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.coulomb import CoulombProblem, CoulombState
 from extrados.limit.equilibrium import hanging_stones, spanning_tree
-from extrados.limit.graphic import senses
+from extrados.limit.graphic import senses, thrust_joint
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.solver import (
@@ -355,9 +355,9 @@ class LimitAnalysis:
         return True
 
     def thrust(self, joints: list[int], gamma: float = 0.0) -> tuple[State, State]:
-        """States of least and greatest horizontal thrust of a chain, across the first of its joints, at a fixed gamma."""
-        a, joint = self.assembly, joints[0]
-        sense = senses(a, joints)[0]
+        """States of least and greatest horizontal thrust of a chain, across its `thrust_joint`, at a fixed gamma."""
+        a, at = self.assembly, thrust_joint(self.assembly, self.loads, joints)
+        joint, sense = joints[at], senses(a, joints)[at]
         corner_cost = np.zeros((len(a.a), 3))
         corner_cost[joint] = a.normal[joint, 0], a.normal[joint, 0], a.tangent[joint, 0]
         cost = self.system.cost(corner_cost * sense)

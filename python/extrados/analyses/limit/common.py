@@ -12,7 +12,7 @@ from extrados.analyses.limit.needs import refuse_fracture
 from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
@@ -49,7 +49,9 @@ def loads_of(assembly: Assembly, options: Any, building: Building) -> Loads:
     """Weight, fill, the loads of an analysis and the ties of a building, on its stones, which `assembly` may vary; what
     sways is the weight, the fill and the loads that say so."""
     loads = tilt_loads(assembly)
-    loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)))
+    if building.ties:
+        held = frozenset(building.anchored().block.ravel().tolist()) - {GROUND}
+        loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)), tied=held)
     dead, live = np.zeros_like(loads.dead), np.zeros_like(loads.live)
     for k, load in enumerate(getattr(options, "load", [])):
         spreads = assembly.earth is not None and load.y is None and load.force != 0.0

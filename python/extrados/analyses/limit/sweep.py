@@ -301,7 +301,7 @@ def _words(options: Sweep, r: out.Sweep) -> str:
     if r.locked_limits:
         where = "greatest where it is nearly locked, at"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}: {where} {best} with "
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{f' {r.unit}' if r.unit else ''}: {where} {best} with "
         f"{r.optimum_collapse_acceleration_g:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
         f"{len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )

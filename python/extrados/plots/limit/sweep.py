@@ -56,7 +56,7 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         for gap in r.gaps:
             ax.plot(gap.value, 0.0, "x", color=style.THRUST, markersize=4)
         ax.set_ylim(bottom=0.0)
-        ax.set_xlabel(f"{r.vary} [{r.unit}]" if r.unit else r.vary)
+        ax.set_xlabel(f"{spoken(r.vary)} [{r.unit}]" if r.unit else spoken(r.vary))
         ax.set_ylabel("tilt at collapse [deg]")
         ax.legend(loc="best")
         found = [
@@ -82,6 +82,20 @@ def draw_sweep(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
                 )
             )
     return found
+
+
+def spoken(key: str) -> str:
+    """A key of a deck as an axis calls it: "ties.0.yield_force" is the yield force of tie 1."""
+    *way, last = key.replace("_", " ").split(".")
+    of = ""
+    for part in way:
+        if part.isdigit():
+            of = f"{of.removesuffix('s')} {int(part) + 1}"
+        elif part in ("left", "right"):
+            last = f"{part} {last}"
+        elif part != "structure":
+            of += f" {'of' if not of else 'in'} {'the ' if part in ('joints', 'material') else ''}{part}"
+    return last + of
 
 
 def draw_survey(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

@@ -23,7 +23,7 @@ def draw(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         section.stone(ax, blocks)
         section.ground(ax, run, name, [reaction.joint for reaction in (r.central or r.least).reactions])
         for which, colour in colours.items():
-            label = f"{which}: {r[which]['horizontal_kN_per_m']:.4g} kN/m" if arched else f"{which} state"
+            label = f"{which}: {lines_of[which].told_kN_per_m(r.depth_m):.4g} kN/m" if arched else f"{which} state"
             section.thrust_lines(ax, run, name, which, colour, label)
         section.resting(ax, run, name, blocks)
         section.ties(ax, run, name, "central" if r.central is not None else "least")
