@@ -53,6 +53,16 @@ HAIR = 1e-9
 LEAST_PART = 1e-3
 
 
+# Bounds and mechanism agree this closely, relative to gamma, or an answer is none; in walls of so many joints, whose forces
+# round at that, so closely
+GAP, VERY_MANY, GAP_OF_MANY = 1e-8, 5000, 1e-7
+
+
+def closed(joints: int, gamma: float) -> float:
+    """How far the bounds of an answer may lie apart [g]."""
+    return (GAP if joints < VERY_MANY else GAP_OF_MANY) * max(1.0, abs(gamma))
+
+
 def _mixed(one: State, two: State, gamma: float, part: float) -> State | None:
     """The state at gamma between two of joints cut down to a part; None where gamma does not lie between theirs."""
     if not two.gamma <= gamma <= one.gamma:
@@ -230,7 +240,11 @@ class LimitAnalysis:
         motion = problem.motion(point.u)
         # No forces the joints bear take more work than these and what is left of the gap (weak duality).
         taken = point.gap_of_joints - float((point.corners * motion).sum())
-        return self._read(direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken)
+        state, mechanism = self._read(
+            direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken
+        )
+        apart = abs(state.gamma - mechanism.upper_bound)
+        return None if apart > closed(len(self.assembly.a), state.gamma) else (state, mechanism)
 
     def _coulomb(self, direction: int) -> tuple[State, Mechanism]:
         """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""

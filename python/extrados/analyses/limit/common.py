@@ -22,16 +22,12 @@ from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.places import place_of
-from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State, closed
 from extrados.limit.resistance import Resistance, together
 from extrados.limit.ties import pulls, tensions
 from extrados.results.limit import Hinge, Reaction, TieForce
 from extrados.results.model import Array
 
-#: Bounds and mechanism must agree this closely, relative to gamma, or the answer is not given.
-GAP = 1e-8
-#: The same for walls of so many joints, whose forces round at that
-VERY_MANY, GAP_OF_MANY = 5000, 1e-7
 #: Length over which a point load on earth presses [m]
 CONTACT = 0.3
 #: Of its yield force, or of the weight: less in a tie is none
@@ -96,8 +92,7 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
         raise Refused(f"the structure cannot stand under its own weight: {error}") from None
     except NoEquilibrium as error:
         raise Refused(str(error)) from None
-    allowed = GAP if len(assembly.a) < VERY_MANY else GAP_OF_MANY
-    if limit.associated and answer.gap > allowed * max(1.0, abs(answer.gamma)):
+    if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):
         raise NoAnswer(f"the bounds from equilibrium and from the mechanism differ by {answer.gap:.2e} g")
     return answer
 
