@@ -10,7 +10,8 @@ run: setup
 	@.venv/bin/extrados run $(DECK)
 
 test: setup
-	@$(PYTHON) -m pytest -q
+	@$(PYTHON) -c "import extrados._core"  # builds what changed, once, before many look
+	@$(PYTHON) -m pytest -q -n auto --maxprocesses 8 --dist worksteal
 	@$(PYTHON) tools/native_tests.py
 
 browser: setup  ## chromium and Playwright, where they can be had, for the tests of the interactive page

@@ -89,7 +89,12 @@ def main() -> int:
     if wrong := others(python, pins):
         print(f"not the oldest after all: {', '.join(wrong)}", file=sys.stderr)
         return 1
-    return subprocess.run([python, "-m", "pytest", "-q", *TESTS], cwd=ROOM, env=env, check=False).returncode
+    return subprocess.run(
+        [python, "-m", "pytest", "-q", "-n", "auto", "--maxprocesses", "8", "--dist", "worksteal", *TESTS],
+        cwd=ROOM,
+        env=env,
+        check=False,
+    ).returncode
 
 
 if __name__ == "__main__":

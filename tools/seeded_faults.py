@@ -51,6 +51,11 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "fortran/dem": (
         ("test_dem",), ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_analysis.py"), "dem/",
     ),
+    "fortran/limit": (
+        (),
+        ("unit/test_vertex.py", "unit/test_limit_arches.py", "unit/test_limit_vaults.py", "unit/test_limit_loads.py"),
+        "limit/ or bridge/",
+    ),
     "fortran/sla": (
         ("test_sla",),
         ("unit/test_sla_elements.py", "unit/test_sla_teeth.py", "unit/test_sla_joints.py", "unit/test_sla_events.py",
@@ -166,7 +171,7 @@ def commands(place: Path, room: str) -> list[tuple[list[str], str]]:
         "20",
     ]
     return [
-        ([*meson, *native], "native tests"),
+        *([([*meson, *native], "native tests")] if native else []),
         ([*pytest, *(f"tests/{test}" for test in python)], ""),
         ([*pytest, "tests/cases", "-k", cases], ""),
     ]

@@ -101,6 +101,11 @@
   ENTRY(6, fraction, "load fell below the fraction of its peak") \
   ENTRY(7, lost, "no equilibrium is found any more")
 
+/* Where the layers of a shell lie: Gauss's points, or Lobatto's with one on each face */
+#define EXTRADOS_SHELL_THROUGH_LIST(ENTRY) \
+  ENTRY(1, gauss, "gauss") \
+  ENTRY(2, lobatto, "lobatto")
+
 /* Envelopes of generated motions (c/quake/envelope.c) */
 #define EXTRADOS_ENVELOPE_LIST(ENTRY) \
   ENTRY(1, arctangent, "arctangent") \
@@ -133,6 +138,7 @@
   LIST(sla_cracking, EXTRADOS_SLA_CRACKING_LIST) \
   LIST(sla_event, EXTRADOS_SLA_EVENT_LIST) \
   LIST(sla_stop, EXTRADOS_SLA_STOP_LIST) \
+  LIST(shell_through, EXTRADOS_SHELL_THROUGH_LIST) \
   LIST(envelope, EXTRADOS_ENVELOPE_LIST) \
   LIST(spacing, EXTRADOS_SPACING_LIST) \
   LIST(scaling, EXTRADOS_SCALING_LIST)

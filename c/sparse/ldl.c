@@ -15,7 +15,7 @@
 
 #include "extrados.h"
 
-enum { most_vectors = 4, most_changes = 4, most_ahead = 16384 /* bytes */, most_threads = 4 };
+enum { most_vectors = 4, most_changes = 5, most_ahead = 16384 /* bytes */, most_threads = 4 };
 
 struct extrados_sparse {
   cholmod_common common;
@@ -394,7 +394,8 @@ int extrados_sparse_change(void *handle, int changes, const int *sign, int count
   for (int k = 0; k < changes; k++)
     if (sign[k] != 1 && sign[k] != -1) return EXTRADOS_invalid_argument;
   const int64_t *super = self->factor->super, *pi = self->factor->pi;
-  double a[most_changes] = {1.0, 1.0, 1.0, 1.0};
+  double a[most_changes];
+  for (int k = 0; k < most_changes; k++) a[k] = 1.0;
   int code = EXTRADOS_ok;
   int64_t n = self->n, first = first_block(self, count, index);
   for (int64_t s = first; s >= 0; s = parent(self, s))

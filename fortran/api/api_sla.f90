@@ -10,15 +10,16 @@ module api_sla
 contains
 
    !> Start a stage; the ledger goes on from `ledger`
-   subroutine loads(handle, nodes, load_a, load_b, carried, events, ledger, status)
+   subroutine loads(handle, freedoms, nodes, load_a, load_b, carried, events, ledger, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_invalid_argument
       use sla_handle, only : model_take, stage_factored, stage_loaded
       use sla_model, only : element_model, model_loads
       integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: freedoms            !! of a node
       integer(c_int), intent(in) :: nodes
-      real(c_double), intent(in) :: load_a(2, nodes)    !! [N]
-      real(c_double), intent(in) :: load_b(2, nodes)    !! [N]
+      real(c_double), intent(in) :: load_a(freedoms, nodes)    !! [N], [N m]
+      real(c_double), intent(in) :: load_b(freedoms, nodes)    !! [N], [N m]
       integer(c_int), intent(in) :: carried             !! 1: the work of A is in the ledger
       integer(c_int), intent(in) :: events              !! so far
       real(c_double), intent(in) :: ledger(3)           !! external, dissipated, crack energy so far [J]
@@ -27,7 +28,7 @@ contains
       !f2py threadsafe
       call model_take(handle, stage_factored, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (nodes /= model%nodes .or. events < 0) then
+      if (nodes /= model%nodes .or. freedoms /= size(model%equation, 1) .or. events < 0) then
          status = status_invalid_argument
       else
          model%events = int(events)
@@ -102,11 +103,11 @@ contains
       integer(c_int), intent(in) :: monitors
       integer(c_int), intent(in) :: entries
       integer(c_int), intent(in) :: first(monitors + 1)  !! entry at which each monitor begins
-      integer(c_int), intent(in) :: freedom(2, entries)  !! node and direction (1 x, 2 y)
+      integer(c_int), intent(in) :: freedom(2, entries)  !! node and which of its freedoms
       real(c_double), intent(in) :: share(entries)
       !> Events, residual checks, re-solutions, new factors, reason (list sla_stop)
       integer(c_int), intent(out) :: counts(5)
-      real(c_double), intent(out) :: reals(11, room)      !! see sla_events
+      real(c_double), intent(out) :: reals(11, room)      !! see event_log of sla_ledger
       integer(c_int), intent(out) :: integers(4, room)
       real(c_double), intent(out) :: monitored(monitors, room)
       real(c_double), intent(out) :: cracked             !! crack energy, the last event's included [J]
@@ -128,7 +129,8 @@ contains
       subroutine events(fate)
          use common_status, only : status_bad_index, status_out_of_memory
          use common_threads, only : threads_available
-         use sla_events, only : run_events, stop_rules, event_log
+         use sla_events, only : run_events, stop_rules
+         use sla_ledger, only : event_log
          use sla_handle, only : check_nodes
          integer(c_int), intent(out) :: fate
          type(stop_rules) :: rules
@@ -140,7 +142,7 @@ contains
          call check_nodes(model, freedom(1:1, :), 1_c_int, fate)
          if (fate /= status_ok) return
          fate = status_bad_index
-         if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > 2)) return
+         if (any(freedom(2, :) < 1) .or. any(freedom(2, :) > size(model%equation, 1))) return
          if (first(1) /= 1 .or. first(monitors + 1) /= entries + 1 .or. any(first(2:) < first(:monitors))) return
          rules = stop_rules(limits(1), limits(2), limits(3), limits(4), refuse_overload /= 0, &
             variant == 1, variant == 2, limits(5), limits(6), limits(7))
@@ -167,7 +169,7 @@ contains
    subroutine relax(handle, lambda, damaged, cracked, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
-      use sla_events, only : damage_overloaded
+      use sla_incremental, only : damage_overloaded
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
@@ -189,15 +191,16 @@ contains
    end subroutine relax
 
    !> Displacements of the nodes under A and under B
-   subroutine displacement(handle, nodes, ua, ub, status)
+   subroutine displacement(handle, freedoms, nodes, ua, ub, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_invalid_argument
       use sla_handle, only : model_take, stage_prepared, stage_loaded
       use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: freedoms          !! of a node
       integer(c_int), intent(in) :: nodes
-      real(c_double), intent(out) :: ua(2, nodes)     !! [m]
-      real(c_double), intent(out) :: ub(2, nodes)     !! [m]
+      real(c_double), intent(out) :: ua(freedoms, nodes)     !! [m], [rad]
+      real(c_double), intent(out) :: ub(freedoms, nodes)     !! [m], [rad]
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       real(c_double), allocatable :: all_a(:), all_b(:)
@@ -206,13 +209,13 @@ contains
       ub = 0.0_c_double
       call model_take(handle, stage_prepared, stage_loaded, model, status)
       if (status /= status_ok) return
-      if (nodes /= model%nodes) then
+      if (nodes /= model%nodes .or. freedoms /= size(model%equation, 1)) then
          status = status_invalid_argument
       else
          call model_displacements(model, all_a, all_b, status)
       end if
       do i = 1, merge(nodes, 0_c_int, status == status_ok)
-         do k = 1, 2
+         do k = 1, freedoms
             ua(k, i) = model%factor(k, i) * all_a(model%equation(k, i))
             ub(k, i) = model%factor(k, i) * all_b(model%equation(k, i))
          end do
@@ -224,7 +227,7 @@ contains
    subroutine measure(handle, ratio, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok
-      use sla_events, only : residual
+      use sla_guard, only : residual
       use sla_handle, only : model_take, stage_loaded
       use sla_model, only : element_model, model_displacements
       integer(c_int64_t), intent(in) :: handle

@@ -35,17 +35,19 @@ contains
    end subroutine body_force
 
    !> A model on nodes; equation 0 is held, the last `moved` are those of supports that move
-   subroutine create(nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, floor, handle, &
-                     status)
+   subroutine create(axes, freedoms, nodes, xy, equation, moved, factor, cracking, retention, closure, most_changes, &
+                     floor, handle, status)
       use common_status, only : status_ok, status_out_of_memory
       use sla_group, only : material_options
       use sla_handle, only : model_register
       use sla_model, only : element_model, model_new
+      integer(c_int), intent(in) :: axes                  !! 2 in the plane, 3 in space
+      integer(c_int), intent(in) :: freedoms              !! of a node: 2, of shells 6
       integer(c_int), intent(in) :: nodes
-      real(c_double), intent(in) :: xy(2, nodes)          !! [m]
-      integer(c_int), intent(in) :: equation(2, nodes)
+      real(c_double), intent(in) :: xy(axes, nodes)       !! [m]
+      integer(c_int), intent(in) :: equation(freedoms, nodes)
       integer(c_int), intent(in) :: moved
-      real(c_double), intent(in) :: factor(2, nodes)
+      real(c_double), intent(in) :: factor(freedoms, nodes)
       integer(c_int), intent(in) :: cracking              !! of the list sla_cracking
       real(c_double), intent(in) :: retention             !! negative: thesis Eq. 4.11
       integer(c_int), intent(in) :: closure               !! 1: closed cracks regain their stiffness
@@ -96,10 +98,11 @@ contains
 
    !> Plane-stress elements of one kind
    subroutine plane(handle, kind, rule, per, elements, connect, property, choice, bad, status)
-      use common_handles, only : handle_leave
-      use common_status, only : status_ok
-      use sla_handle, only : model_take, stage_new
+      use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_out_of_memory
+      use sla_group, only : element_group
+      use sla_handle, only : group_added, group_begun
       use sla_model, only : element_model
+      use sla_plane, only : plane_group, plane_group_new
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: kind                      !! list sla_element
       integer(c_int), intent(in) :: rule(3)                   !! Gauss points each way, 1: selective integration
@@ -109,7 +112,7 @@ contains
       !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
       !> angle of the only crack normal allowed [rad], growth of the compressive strength per lateral pressure;
       !> angle of the bed joints [rad], tensile strength (0: none is bedded) and fracture energy along over across them,
-      !> shear factor, crack band or 0, see `bedding` of sla_plane
+      !> shear factor, crack band or 0, see sla_bedding
       real(c_double), intent(in) :: property(11, elements)
       !> Table of tension teeth (0 none), first and last of them where the crack band follows the direction of the crack
       !> (0 where not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
@@ -117,55 +120,37 @@ contains
       integer(c_int), intent(out) :: bad                      !! inverted element
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      type(plane_group), allocatable :: new_plane
+      class(element_group), allocatable :: group
+      integer :: info
       !f2py threadsafe
       bad = 0
-      call model_take(handle, stage_new, stage_new, model, status)
+      call group_begun(handle, connect, choice(1:4, :), model, status)
       if (status /= status_ok) return
-      call add(status)
-      call handle_leave(handle)
-
-   contains
-
-      subroutine add(fate)
-         use common_status, only : status_bad_index, status_invalid_argument, status_out_of_memory
-         use sla_group, only : element_group
-         use sla_handle, only : both_directions, check_nodes
-         use sla_model, only : model_add
-         use sla_plane, only : plane_group, plane_group_new
-         integer(c_int), intent(out) :: fate
-         type(plane_group), allocatable :: new_plane
-         class(element_group), allocatable :: group
-         integer(c_int), allocatable :: node(:, :), direction(:, :)
-         integer :: info
-         call check_nodes(model, connect, 1_c_int, fate)
-         if (fate /= status_ok) return
-         fate = status_bad_index
-         if (any(choice < 0) .or. any(choice(1:4, :) > model%teeth%tables())) return
-         fate = status_invalid_argument
-         if (any(choice(2, :) > choice(3, :))) return
-         if (any(property(8, :) > 0.0_c_double .and. choice(1, :) > 0 .and. choice(2, :) == 0)) return
-         if (per /= kind) return   ! the number of a kind is that of its nodes
-         fate = status_out_of_memory
-         allocate (new_plane, stat=info)
-         if (info /= 0) return
-         call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property(1, :), property(2, :), &
-            property(3, :), choice(1:3, :), choice(4, :), property(4, :), property(6, :), &
-            choice(5, :), property(5, :), property(7:11, :), &
-            model%teeth, model%options, new_plane, bad, fate)
-         if (fate /= status_ok) return
-         call move_alloc(new_plane, group)
-         call both_directions(connect, node, direction, fate)
-         if (fate /= status_ok) return
-         call model_add(model, group, node, direction, fate)
-      end subroutine add
-
+      allocate (new_plane, stat=info)
+      if (any(choice(5, :) < 0)) then
+         status = status_bad_index
+      else if (any(choice(2, :) > choice(3, :)) .or. per /= kind .or. &
+               any(property(8, :) > 0.0_c_double .and. choice(1, :) > 0 .and. choice(2, :) == 0)) then
+         status = status_invalid_argument   ! the number of a kind is that of its nodes
+      else if (size(model%xy, 1) /= 2) then
+         status = status_invalid_argument   ! shells are for the space
+      else if (info /= 0) then
+         status = status_out_of_memory
+      else
+         call plane_group_new(kind, rule(1), rule(2), rule(3) /= 0, model%xy, connect, property, choice, model%teeth, &
+            model%options, new_plane, bad, status)
+      end if
+      call move_alloc(new_plane, group)
+      call group_added(handle, model, connect, 2, group, status)
    end subroutine plane
 
    !> Bars
    subroutine bars(handle, elements, connect, property, choice, bad, status)
-      use common_handles, only : handle_leave
-      use common_status, only : status_ok
-      use sla_handle, only : model_take, stage_new
+      use common_status, only : status_ok, status_out_of_memory
+      use sla_bar, only : bar_group, bar_group_new
+      use sla_group, only : element_group
+      use sla_handle, only : group_added, group_begun
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: elements
@@ -175,42 +160,19 @@ contains
       integer(c_int), intent(out) :: bad                      !! bar without length
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
+      type(bar_group), allocatable :: new_bars
+      class(element_group), allocatable :: group
+      integer :: info
       !f2py threadsafe
       bad = 0
-      call model_take(handle, stage_new, stage_new, model, status)
+      call group_begun(handle, connect, choice, model, status)
       if (status /= status_ok) return
-      call add(status)
-      call handle_leave(handle)
-
-   contains
-
-      subroutine add(fate)
-         use common_status, only : status_bad_index, status_out_of_memory
-         use sla_bar, only : bar_group, bar_group_new
-         use sla_group, only : element_group
-         use sla_handle, only : both_directions, check_nodes
-         use sla_model, only : model_add
-         integer(c_int), intent(out) :: fate
-         type(bar_group), allocatable :: new_bars
-         class(element_group), allocatable :: group
-         integer(c_int), allocatable :: node(:, :), direction(:, :)
-         integer :: info
-         call check_nodes(model, connect, 1_c_int, fate)
-         if (fate /= status_ok) return
-         fate = status_bad_index
-         if (any(choice < 0) .or. any(choice > model%teeth%tables())) return
-         fate = status_out_of_memory
-         allocate (new_bars, stat=info)
-         if (info /= 0) return
-         call bar_group_new(model%xy, connect, property(1, :), property(2, :), choice(1, :), choice(2, :), &
-            model%teeth, model%options, new_bars, bad, fate)
-         if (fate /= status_ok) return
-         call move_alloc(new_bars, group)
-         call both_directions(connect, node, direction, fate)
-         if (fate /= status_ok) return
-         call model_add(model, group, node, direction, fate)
-      end subroutine add
-
+      allocate (new_bars, stat=info)
+      status = status_out_of_memory
+      if (info == 0) call bar_group_new(model%xy, connect, property(1, :), property(2, :), choice(1, :), choice(2, :), &
+         model%teeth, model%options, new_bars, bad, status)
+      call move_alloc(new_bars, group)
+      call group_added(handle, model, connect, size(model%xy, 1), group, status)
    end subroutine bars
 
    !> Linear springs between freedoms of two nodes, or of one and the ground (node 0)
@@ -224,7 +186,7 @@ contains
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: node(2, elements)
-      integer(c_int), intent(in) :: direction(2, elements)    !! 1 x, 2 y
+      integer(c_int), intent(in) :: direction(2, elements)    !! which freedoms of the nodes
       real(c_double), intent(in) :: stiffness(elements)       !! [N/m]
       integer(c_int), intent(out) :: status
       type(spring_group), allocatable :: new_springs
@@ -278,7 +240,7 @@ contains
       use sla_model, only : element_model, model_factor
       integer(c_int64_t), intent(in) :: handle
       integer(c_int), intent(out) :: node          !! free to move, 0 none
-      integer(c_int), intent(out) :: direction     !! 1 x, 2 y
+      integer(c_int), intent(out) :: direction     !! which of its freedoms
       real(c_double), intent(out) :: ratio         !! smallest over largest pivot
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model

@@ -9,7 +9,7 @@ contains
 
    !> Rows of a history
    subroutine rows(count)
-      use rocking_stack, only : stack_rows
+      use rocking_stack_response, only : stack_rows
       integer(c_int), intent(out) :: count
       count = int(stack_rows, c_int)
    end subroutine rows
@@ -21,7 +21,9 @@ contains
       use common_motion_set, only : motion_set, motion_set_take, motion_signal
       use common_signal, only : signal
       use common_status, only : status_ok, status_invalid_argument
-      use rocking_stack, only : stack, stack_history, stack_new, stack_rock, stack_rows
+      use rocking_modes, only : mode_history
+      use rocking_stack, only : stack, stack_new
+      use rocking_stack_response, only : stack_rock, stack_rows
       integer(c_int), intent(in) :: np
       real(c_double), intent(in) :: parameters(np)          !! see rocking_stack
       integer(c_int64_t), intent(in) :: motions
@@ -52,7 +54,8 @@ contains
          type(motion_set), pointer :: set
          type(signal) :: ground
          type(stack) :: body
-         type(stack_history) :: record
+         type(mode_history) :: record
+         real(c_double) :: work
 
          counts = 0
          measures = 0.0_c_double
@@ -71,10 +74,10 @@ contains
             record%state => states
             record%event_kind => kinds
             record%event => happened
-            call stack_rock(body, ground, start, options(2), options(3), record, status)
+            call stack_rock(body, ground, start, options(2), options(3), record, work, status)
             counts = [record%outcome, record%impacts, record%steps, merge(1_c_int, 0_c_int, record%settled), &
                int(record%points, c_int), int(record%events, c_int)]
-            measures = [record%peak, record%stop_time, record%work, record%loss]
+            measures = [record%peak, record%stop_time, work, record%loss]
          end if
          call handle_leave(motions)
       end subroutine with_targets

@@ -33,6 +33,7 @@ module mechanism_linkage
    contains
       procedure :: solve
       procedure :: advance
+      procedure :: carry
    end type linkage
 
    !> Where the parts are at q, and how they move
@@ -139,6 +140,23 @@ contains
       to%first(:, :) = from%first
       to%second(:, :) = from%second
    end subroutine copy_state
+
+   !> Carry a state on to another coordinate; status_bad_geometry where the hinges do not close there
+   subroutine carry(chain, state, q, status)
+      class(linkage), intent(in) :: chain
+      type(linkage_state), intent(inout) :: state
+      real(wp), intent(in) :: q              !! [rad]
+      integer(c_int), intent(out) :: status
+      type(linkage_state) :: there
+
+      call chain%advance(state, q, there, status)
+      if (status /= status_ok) return
+      if (.not. there%closed) then
+         status = status_bad_geometry
+         return
+      end if
+      call copy_state(there, state, status)
+   end subroutine carry
 
    !> Close the hinges at state%q, starting from the places given, and find the derivatives
    subroutine solve(chain, by, state, status)

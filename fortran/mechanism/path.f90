@@ -3,10 +3,10 @@
 !> Polynomials of w = 1 - sqrt(1 - q/L) on equal panels as in mechanism_table, and for the same reason. The rate of a
 !> path is the derivative of its polynomial, so that a force that derives from an energy of the path keeps that energy.
 module mechanism_path
-   use common_kinds, only : wp, pi
-   use common_status, only : status_ok, status_bad_geometry, status_invalid_argument, status_out_of_memory
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
    use mechanism_linkage, only : copy_state, linkage, linkage_state, part_place
-   use mechanism_table, only : degree, fit, lowest, panels
+   use mechanism_table, only : degree, fit, fit_angles, lowest, panels
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -47,7 +47,7 @@ contains
       integer(c_int), intent(out) :: status    !! status_bad_geometry where the hinges part before `last`
       real(wp) :: angle(degree + 1), w, width
       real(wp), allocatable :: value(:, :)
-      type(linkage_state) :: here, next
+      type(linkage_state) :: here
       integer :: i, j, k, stat
 
       status = status_invalid_argument
@@ -60,19 +60,13 @@ contains
       if (stat /= 0) return
       width = (1.0_wp - sqrt(1.0_wp - last / scale)) / real(panels, wp)
       table%per_panel = 1.0_wp / width
-      angle = [(pi * (real(k, wp) - 0.5_wp) / real(degree + 1, wp), k = degree + 1, 1, -1)]
+      angle = fit_angles()
       call copy_state(rest, here, status)
       if (status /= status_ok) return
       do i = 1, panels
          do k = 1, degree + 1
             w = width * (real(i, wp) - 0.5_wp + 0.5_wp * cos(angle(k)))
-            call mechanism%advance(here, scale * w * (2.0_wp - w), next, status)
-            if (status /= status_ok) return
-            if (.not. next%closed) then
-               status = status_bad_geometry
-               return
-            end if
-            call copy_state(next, here, status)
+            call mechanism%carry(here, scale * w * (2.0_wp - w), status)
             if (status /= status_ok) return
             do j = 1, table%count
                value(j, k) = measured(mechanism, here, sort(j), ends(:, j), point(:, :, j))

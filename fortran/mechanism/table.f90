@@ -17,7 +17,7 @@ module mechanism_table
    implicit none
    private
    public :: side_table, table_new, table_numbers, table_pack, table_unpack, table_facts
-   public :: degree, lowest, panels, fit
+   public :: degree, lowest, panels, fit, fit_angles
 
    integer, parameter :: panels = 32, degree = 11
    integer, parameter :: mass = 1, gravity_moment = 2, drive = 3
@@ -72,7 +72,7 @@ contains
       !> kinematics disagree
       integer(c_int), intent(out) :: status
       real(wp) :: half_dm, v, barrier, angle(degree + 1), value(3, degree + 1), exact(degree + 1), per_w, w, panel_width
-      type(linkage_state) :: here, next
+      type(linkage_state) :: here
       integer :: i, k, stat
 
       call linkage_coefficients(mechanism, rest, facts%m, half_dm, facts%dv, facts%dh, v)
@@ -95,20 +95,14 @@ contains
          return
       end if
 
-      angle = [(pi * (real(k, wp) - 0.5_wp) / real(degree + 1, wp), k = degree + 1, 1, -1)]
+      angle = fit_angles()
       call copy_state(rest, here, status)
       if (status /= status_ok) return
       table%start(1) = 0.0_wp
       do i = 1, panels
          do k = 1, degree + 1
             w = panel_width * (real(i, wp) - 0.5_wp + 0.5_wp * cos(angle(k)))
-            call mechanism%advance(here, table%scale * w * (2.0_wp - w), next, status)
-            if (status /= status_ok) return
-            if (.not. next%closed) then
-               status = status_bad_geometry
-               return
-            end if
-            call copy_state(next, here, status)
+            call mechanism%carry(here, table%scale * w * (2.0_wp - w), status)
             if (status /= status_ok) return
             call linkage_coefficients(mechanism, here, value(mass, k), exact(k), value(gravity_moment, k), &
                value(drive, k), v)
@@ -121,13 +115,7 @@ contains
             call compare_mass(table, i, w, exact(k), facts%energy)
          end do
          w = panel_width * real(i, wp)
-         call mechanism%advance(here, table%scale * w * (2.0_wp - w), next, status)
-         if (status /= status_ok) return
-         if (.not. next%closed) then
-            status = status_bad_geometry
-            return
-         end if
-         call copy_state(next, here, status)
+         call mechanism%carry(here, table%scale * w * (2.0_wp - w), status)
          if (status /= status_ok) return
          if (i < panels) table%start(i + 1) = table%start(i) + climb(table, i, 1.0_wp)
          call compare(mechanism, here, side, table, i, barrier, facts)
@@ -259,6 +247,13 @@ contains
       real(wp) :: m, half_dm, dv, dh
       call linkage_coefficients(mechanism, state, m, half_dm, dv, dh, v)
    end function energy
+
+   !> Angles whose cosines are the points of a fit in [-1, 1], ascending: the zeros of a Chebyshev polynomial
+   pure function fit_angles() result(angle)
+      real(wp) :: angle(degree + 1)
+      integer :: k
+      angle = [(pi * (real(k, wp) - 0.5_wp) / real(degree + 1, wp), k = degree + 1, 1, -1)]
+   end function fit_angles
 
    !> Polynomials in t = cos(angle) through values at Chebyshev points
    pure subroutine fit(angle, value, polynomial)

@@ -4,7 +4,7 @@ module sla_bar
    use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : element_group, point_group, scan_result, event_vectors, material_options, unbounded, &
-      linear_bound
+      admitted, linear_bound
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -13,7 +13,7 @@ module sla_bar
 
    !> Bars; the damage of a bar is its tension and its compression tooth
    type, extends(point_group) :: bar_group
-      real(wp), allocatable :: gradient(:, :)         !! (4, elements) strain per displacement [1/m]
+      real(wp), allocatable :: gradient(:, :)         !! (freedoms, elements) strain per displacement [1/m]
       real(wp), allocatable :: volume(:)              !! [m^3]
       real(wp), allocatable :: young(:)               !! [Pa]
       integer(c_int), allocatable :: table(:)
@@ -43,7 +43,7 @@ contains
 
    !> Bars without damage
    subroutine bar_group_new(xy, connect, area, young, table, crush_table, teeth, options, group, bad, status)
-      real(wp), intent(in) :: xy(:, :)             !! (2, nodes) [m]
+      real(wp), intent(in) :: xy(:, :)             !! (2 or 3, nodes) [m]
       integer(c_int), intent(in) :: connect(:, :)  !! (2, elements), 1-based
       real(wp), intent(in) :: area(:)              !! [m^2]
       real(wp), intent(in) :: young(:)             !! [Pa]
@@ -54,7 +54,7 @@ contains
       type(bar_group), intent(out) :: group
       integer(c_int), intent(out) :: bad
       integer(c_int), intent(out) :: status
-      real(wp) :: d(2), length
+      real(wp) :: d(size(xy, 1)), length
       integer :: e, n, info
 
       n = size(connect, 2)
@@ -62,14 +62,14 @@ contains
       status = status_out_of_memory
       group%elements = n
       group%points = n
-      group%freedoms = 4
+      group%freedoms = 2 * size(xy, 1)
       group%directions = 1
       group%options = options
       call tooth_tables_copy(teeth, group%teeth, status)
       if (status /= status_ok) return
       status = status_out_of_memory
-      allocate (group%gradient(4, n), group%volume(n), group%young(n), group%table(n), group%crush_table(n), &
-         group%tooth(2, n), group%modulus(n), stat=info)
+      allocate (group%gradient(group%freedoms, n), group%volume(n), group%young(n), group%table(n), &
+         group%crush_table(n), group%tooth(2, n), group%modulus(n), stat=info)
       if (info /= 0) return
       group%young(:) = young
       group%modulus(:) = young
@@ -78,7 +78,7 @@ contains
       group%tooth = 1
       do e = 1, n
          d = xy(:, connect(2, e)) - xy(:, connect(1, e))
-         length = hypot(d(1), d(2))
+         length = norm2(d)
          if (.not. length > 0.0_wp) then
             bad = int(e, c_int)
             status = status_bad_geometry
@@ -94,10 +94,11 @@ contains
       class(bar_group), intent(in) :: group
       integer, intent(in) :: element
       real(wp), intent(out) :: k(:, :)
-      integer :: i
+      integer :: i, n
+      n = group%freedoms
       k = 0.0_wp
-      do i = 1, 4
-         k(1:4, i) = group%volume(element) * group%modulus(element) * group%gradient(:, element) &
+      do i = 1, n
+         k(1:n, i) = group%volume(element) * group%modulus(element) * group%gradient(:, element) &
             * group%gradient(i, element)
       end do
    end subroutine bar_matrix
@@ -106,16 +107,25 @@ contains
       class(bar_group), intent(in) :: group
       real(wp), intent(in) :: u(0:)
       real(wp), intent(inout) :: f(0:)
-      real(wp) :: part(4), local(4)
+      real(wp) :: part(6), local(6)
       integer :: e, i
       do e = 1, group%elements
          call group%gather(e, u, local)
-         part = group%volume(e) * group%modulus(e) * dot_product(group%gradient(:, e), local) * group%gradient(:, e)
-         do i = 1, 4
+         part(1:group%freedoms) = group%volume(e) * bar_stress(group, e, local) * group%gradient(:, e)
+         do i = 1, group%freedoms
             f(group%equation(i, e)) = f(group%equation(i, e)) + part(i) * group%factor(i, e)
          end do
       end do
    end subroutine bar_force
+
+   !> Stress under the displacements of its ends [Pa]
+   pure function bar_stress(group, e, local) result(stress)
+      class(bar_group), intent(in) :: group
+      integer, intent(in) :: e
+      real(wp), intent(in) :: local(:)
+      real(wp) :: stress
+      stress = group%modulus(e) * dot_product(group%gradient(:, e), local(1:group%freedoms))
+   end function bar_stress
 
    !> Strengths in tension and compression [Pa]
    pure function bar_limits(group, e) result(limit)
@@ -137,14 +147,14 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
-      real(wp) :: la(4), lb(4), sa, sb, limit(2)
+      real(wp) :: la(6), lb(6), sa, sb, limit(2)
       integer :: e
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
          call group%gather(e, ua, la)
          call group%gather(e, ub, lb)
-         sa = group%modulus(e) * dot_product(group%gradient(:, e), la)
-         sb = group%modulus(e) * dot_product(group%gradient(:, e), lb)
+         sa = bar_stress(group, e, la)
+         sb = bar_stress(group, e, lb)
          limit = bar_limits(group, e)
          if (limit(1) < unbounded) then
            call linear_bound(sa, sb, limit(1), limit(1), lambda, noise, e, code_tension, found)
@@ -164,7 +174,7 @@ contains
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)
-      real(wp) :: la(4), lb(4), stress, limit(2), share
+      real(wp) :: la(6), lb(6), stress, limit(2), share
       integer :: e, j
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
@@ -173,8 +183,7 @@ contains
          share = sqrt(group%volume(e) / group%modulus(e))
          limit = bar_limits(group, e)
          do j = 1, size(lambda)
-            stress = group%modulus(e) * (dot_product(group%gradient(:, e), la) + &
-               lambda(j) * dot_product(group%gradient(:, e), lb))
+            stress = bar_stress(group, e, la) + lambda(j) * bar_stress(group, e, lb)
             if (limit(1) < unbounded) least(j) = min(least(j), share * (limit(1) - stress))
             if (limit(2) < unbounded) least(j) = min(least(j), share * (limit(2) + stress))
          end do
@@ -240,24 +249,25 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       real(wp), intent(out) :: values(:, :)
-      real(wp) :: la(4), lb(4), length
+      real(wp) :: la(6), lb(6), length
       type(scan_result) :: found
-      integer :: e
+      integer :: e, k
       values = 0.0_wp
       do e = 1, group%elements
          call group%gather(e, ua, la)
          call group%gather(e, ub, lb)
-         values(1, e) = dot_product(group%gradient(:, e), la + lambda * lb)
-         values(4, e) = group%modulus(e) * values(1, e)
-         length = 1.0_wp / hypot(group%gradient(3, e), group%gradient(4, e))
-         values(7:8, e) = group%gradient(3:4, e) * length
+         values(4, e) = bar_stress(group, e, la + lambda * lb)
+         values(1, e) = values(4, e) / group%modulus(e)
+         k = 1 + group%freedoms / 2
+         length = 1.0_wp / norm2(group%gradient(k:, e))
+         values(7:8, e) = group%gradient(k:k + 1, e) * length
          values(9, e) = group%modulus(e) / group%young(e)
          values(10, e) = 1.0_wp
          values(11, e) = real(group%tooth(1, e), wp)
          values(12, e) = 1.0_wp
          found = scan_result()
          call bar_scan(group, e, e, ua, ub, lambda, noise, found)
-         values(13:14, e) = [found%lo%value, found%hi%value]
+         values(13:14, e) = admitted(found)
          values(15, e) = group%volume(e)
          values(16, e) = real(group%tooth(2, e), wp)
          values(17, e) = 1.0_wp

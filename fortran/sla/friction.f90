@@ -18,6 +18,7 @@ module sla_friction
    implicit none
    private
    public :: friction_store, friction_balance
+   public :: add_force, eliminate, find_sliders, product_of, solve
 
    !> Pivot of the unsymmetric system, whose diagonal is near one, below which the joints slide on without more load
    real(wp), parameter :: least_pivot = 1.0e-9_wp

@@ -2,7 +2,30 @@
 !>
 !> A group holds elements of one formulation with their integration points and their damage. The loop asks
 !> it for the range of the load multiplier its points admit, tells it which point to damage and how, and
-!> gets back the vectors by which the stiffness changes. New elements and materials are new groups.
+!> gets back the vectors by which the stiffness changes. New elements and materials are new groups, and nothing else has
+!> to know them. What a new one provides:
+!>
+!>   its numbers   elements, freedoms of an element, points (the same number in each element, those of an element one
+!>                 after the other), directions; options and tooth tables copied when it is made. Equations, their
+!>                 factors and `offset` are set by model_add and model_prepare. No more than `most_entries` freedoms.
+!>   matrix        the stiffness of an element as it is damaged now: at first the elastic one
+!>   force         internal forces of all elements, by the same stiffness: the residual checks one with the other
+!>   scan          for each point of a range of elements the stresses of both displacements, sa of ua and sb of ub, by
+!>                 its own rows B' D; each criterion on sa + lambda sb by `linear_bound`, or one of closed form by
+!>                 `offer_hi`, `offer_lo`, `offer_empty`, with the code of what happens there (list sla_event in
+!>                 extrados_lists.h: one code per kind of event and direction, told apart by `damage` alone)
+!>   damage        one tooth (sla_tables: modulus and strength by tooth) of one point at one code, and the change of the
+!>                 stiffness as K_new = K - sum sign w w': rank-one vectors over the element's freedoms by `spread`, at
+!>                 most `most_rank`. Stiffening vectors may come in any order. They must give the new `matrix` exactly.
+!>   state         all that damage is, as `state_rows` numbers per point, there and back: resume and stages rest on it
+!>   report        rows of numbers per point for figures, those of a plane point where they mean something
+!>   margin        optional: a lower bound of what a range of elements bears, by which regions may wait. Without it they
+!>                 are looked at in each event: right, and slow.
+!>   origins ...   optional: forces beside the stiffness, for what slides
+!>
+!> A constructor returns the offending element and a status of extrados_status.h (bad geometry, out of memory, invalid
+!> argument); none of the procedures above may fail. The facade is that of `bars` in api_sla_model. Equations are by
+!> node and direction (model_add): x and y in the plane, and of shells z and three rotations.
 module sla_group
    use common_kinds, only : wp
    use common_lists, only : orthotropic => sla_cracking_orthotropic
@@ -11,10 +34,10 @@ module sla_group
    private
    public :: element_group, point_group, group_holder, slider, bound, scan_result, event_vectors, material_options
    public :: below, unbounded, most_entries, most_rank, offer_hi, offer_lo, offer_empty, linear_bound, &
-      report_rows, state_rows
+      component, along, admitted, report_rows, state_rows
 
    real(wp), parameter :: unbounded = huge(1.0_wp)
-   integer, parameter :: most_entries = 24, most_rank = 4
+   integer, parameter :: most_entries = 24, most_rank = 5
    integer, parameter :: most_slider = 8
    !> Rows of a point's report, see plane and bar
    integer, parameter :: report_rows = 19
@@ -57,6 +80,12 @@ module sla_group
       real(wp) :: law(most_slider) = 0.0_wp          !! h = law.u [Pa/m]
       real(wp) :: force(most_slider) = 0.0_wp        !! nodal forces of a unit of h [m^2]
       real(wp) :: held(2) = 0.0_wp                   !! h as it is, constant and per unit multiplier [Pa]
+      ! The whole of its friction is spring slip + h, its strength that of sense strength.u
+      real(wp) :: slip(most_slider) = 0.0_wp         !! slip = slip.u
+      real(wp) :: strength(most_slider) = 0.0_wp     !! [Pa/m]
+      real(wp) :: spring = 0.0_wp                    !! in the stiffness [Pa/m]
+      real(wp) :: elastic = 0.0_wp                   !! that of a point that sticks [Pa/m]
+      real(wp) :: sense = 0.0_wp                     !! of the slip, +1 or -1; 0: it sticks
    end type slider
 
    !> How cracked material behaves, the same for the whole model
@@ -98,6 +127,8 @@ module sla_group
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
+      procedure :: turned_back
+      procedure :: undecided
       procedure :: hold
       procedure :: advance
       procedure :: excess
@@ -107,8 +138,8 @@ module sla_group
       class(element_group), allocatable :: group
    end type group_holder
 
-   !> Rows of a point's stored damage: cosine, sine, cracked (and which crack band, see sla_plane), tension teeth (2),
-   !> compression teeth (2), shut (2), changes (2)
+   !> Rows of a point's stored damage: cosine, sine, cracked (and which crack band, see sla_plane_points), tension teeth
+   !> (2), compression teeth (2), shut (2), changes (2)
    integer, parameter :: state_rows = 11
 
    abstract interface
@@ -228,6 +259,28 @@ contains
       end associate
    end subroutine sliders
 
+   !> Append the points that have stuck at this very load; `held` is the force of their friction, whose spring is whole
+   pure subroutine turned_back(group, lambda, list, count)
+      class(point_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      type(slider), intent(inout) :: list(:)    !! ignored where it is too short
+      integer, intent(inout) :: count
+      associate (none => group, load => lambda, same => list, unchanged => count)
+      end associate
+   end subroutine turned_back
+
+   !> Has a point that is about to change done the opposite at this very load?
+   pure function undecided(group, point, code, lambda) result(yes)
+      class(point_group), intent(in) :: group
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      logical :: yes
+      associate (none => group, p => point, c => code, load => lambda)
+      end associate
+      yes = .false.
+   end function undecided
+
    !> Take over the force of a point that slides
    pure subroutine hold(group, point, held)
       class(point_group), intent(inout) :: group
@@ -293,6 +346,35 @@ contains
       end do
    end subroutine spread
 
+   !> w_i . x over the entries of an event
+   pure function component(event, i, x) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * x(event%index(k))
+      end do
+   end function component
+
+   !> w_i . (x + lambda y) over the entries of an event: dot_product would gather them in memory that it does not ask
+   !> for
+   pure function along(event, i, x, y, lambda) result(total)
+      type(event_vectors), intent(in) :: event
+      integer, intent(in) :: i
+      real(wp), intent(in) :: x(0:)
+      real(wp), intent(in) :: y(0:)
+      real(wp), intent(in) :: lambda
+      real(wp) :: total
+      integer :: k
+      total = 0.0_wp
+      do k = 1, event%entries
+         total = total + event%w(k, i) * (x(event%index(k)) + lambda * y(event%index(k)))
+      end do
+   end function along
+
    !> True where a lies below b by more than rounding: limits that should be equal must not race
    elemental function below(a, b) result(less)
       real(wp), intent(in) :: a, b
@@ -333,6 +415,14 @@ contains
         found%empty = bound(value, 0, point, code)
       end if
    end subroutine offer_empty
+
+   !> Least and greatest multiplier that was found; the wrong way round where none relieves a point
+   pure function admitted(found) result(range)
+      type(scan_result), intent(in) :: found
+      real(wp) :: range(2)
+      range = [found%lo%value, found%hi%value]
+      if (found%empty%point /= 0) range = [unbounded, -unbounded]
+   end function admitted
 
    !> Limits of lambda from sa + lambda sb <= f
    pure subroutine linear_bound(sa, sb, f, scale, lambda, noise, point, code, found)

@@ -3,11 +3,12 @@ module sla_handle
    use common_handles, only : handle_new, handle_take, handle_leave
    use common_lists, only : handle_sla
    use common_status, only : status_ok, status_bad_index, status_not_ready, status_out_of_memory
-   use sla_model, only : element_model, model_free
+   use sla_group, only : element_group
+   use sla_model, only : element_model, model_add, model_free
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
-   public :: model_register, model_destroy, model_take, both_directions, check_nodes
+   public :: model_register, model_destroy, model_take, group_begun, group_added, all_directions, check_nodes
    public :: stage_new, stage_prepared, stage_factored, stage_loaded
 
    !> How far a model is built: groups are added to a new one, loads need a factor, events need loads
@@ -52,6 +53,35 @@ contains
       call handle_leave(handle)
    end subroutine model_take
 
+   !> Take a model to add a group to it, whose nodes and tooth tables are checked; group_added must follow where the
+   !> status is ok
+   subroutine group_begun(handle, connect, table, model, status)
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: connect(:, :)    !! (nodes, elements), 1-based
+      integer(c_int), intent(in) :: table(:, :)      !! tooth tables, 0 none
+      type(element_model), pointer, intent(out) :: model
+      integer(c_int), intent(out) :: status
+      call model_take(handle, stage_new, stage_new, model, status)
+      if (status /= status_ok) return
+      call check_nodes(model, connect, 1_c_int, status)
+      if (any(table < 0) .or. any(table > model%teeth%tables())) status = status_bad_index
+      if (status /= status_ok) call handle_leave(handle)
+   end subroutine group_begun
+
+   !> Add a group that uses the first freedoms of its nodes, unless making it failed, and leave the model
+   subroutine group_added(handle, model, connect, directions, group, status)
+      integer(c_int64_t), intent(in) :: handle
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(in) :: connect(:, :)                    !! (nodes, elements), 1-based
+      integer, intent(in) :: directions                              !! of a node
+      class(element_group), allocatable, intent(inout) :: group      !! taken over
+      integer(c_int), intent(inout) :: status                        !! of the group that was made
+      integer(c_int), allocatable :: node(:, :), direction(:, :)
+      if (status == status_ok) call all_directions(connect, directions, node, direction, status)
+      if (status == status_ok) call model_add(model, group, node, direction, status)
+      call handle_leave(handle)
+   end subroutine group_added
+
    !> Do all entries name a node of the model?
    pure subroutine check_nodes(model, node, lowest, status)
       type(element_model), intent(in) :: model
@@ -61,23 +91,24 @@ contains
       status = merge(status_bad_index, status_ok, any(node < lowest) .or. any(node > model%nodes))
    end subroutine check_nodes
 
-   !> Node and direction of each freedom of elements whose nodes move in x and y
-   subroutine both_directions(connect, node, direction, status)
+   !> Node and direction of each freedom of elements that use the first freedoms of their nodes
+   subroutine all_directions(connect, directions, node, direction, status)
       integer(c_int), intent(in) :: connect(:, :)                    !! (nodes, elements)
-      integer(c_int), allocatable, intent(out) :: node(:, :)         !! (2 nodes, elements)
+      integer, intent(in) :: directions                              !! of a node
+      integer(c_int), allocatable, intent(out) :: node(:, :)         !! (directions nodes, elements)
       integer(c_int), allocatable, intent(out) :: direction(:, :)
       integer(c_int), intent(out) :: status
-      integer :: i, info
-      allocate (node(2 * size(connect, 1), size(connect, 2)), direction(2 * size(connect, 1), size(connect, 2)), &
-         stat=info)
+      integer :: i, k, info
+      allocate (node(directions * size(connect, 1), size(connect, 2)), &
+         direction(directions * size(connect, 1), size(connect, 2)), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       do i = 1, size(connect, 1)
-         node(2 * i - 1, :) = connect(i, :)
-         node(2 * i, :) = connect(i, :)
-         direction(2 * i - 1, :) = 1
-         direction(2 * i, :) = 2
+         do k = 1, directions
+            node(directions * (i - 1) + k, :) = connect(i, :)
+            direction(directions * (i - 1) + k, :) = int(k, c_int)
+         end do
       end do
-   end subroutine both_directions
+   end subroutine all_directions
 
 end module sla_handle

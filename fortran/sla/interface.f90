@@ -1,115 +1,44 @@
 !> Interfaces of no thickness: joints that open, slide and crush.
 !>
 !> An element is a stretch of a joint, nodes 1 to 2 along its lower and 3 to 4 back along its upper side, with one
-!> integration point at each pair of nodes; that of a pair between two elements stands in one of them. Across the joint
-!> acts sigma (tension positive), along it tau, by the jumps dn and ds of the displacements. Every limit is linear in
-!> the load multiplier:
-!>   tension      sigma <= f                  teeth of a softening law whose strain is the opening (band 1)
-!>   compression  -sigma <= fc                teeth of one whose strain is the shortening
-!>   sliding      |tau| <= c1 - mu sigma      before the first slip, c1 the first tooth of the cohesion
-!>                |tau_c| <= c_i              after it: teeth of a law whose strain is the slip, energy of mode II
-!>                |tau_f| <= -mu sigma        its friction, beside the cohesion: tau = tau_c + tau_f
-!> Where friction sticks it is elastic, with what stiffness the cohesion has lost. Where it slides, tau_f = -/+ mu sigma
-!> is a force that follows the displacements, see sla_friction. Slip that turns back sticks.
-!>
-!> Cohesion and tension are one bond: the same part of both is left (Lourenco and Rots 1997). The split of a bond and a
-!> slider is that of Alfano and Sacco (2006), but that here friction helps from the start, as in Coulomb's law.
-!>
-!> Cracked joints close again with their initial normal stiffness. What opens without strength, and what closes, does so
-!> at zero stress; a joint that closes slides on as it moved.
+!> integration point at each pair of nodes; that of a pair between two elements stands in one of them. The law of a
+!> point is that of sla_joint_points.
 module sla_interface
    use common_kinds, only : wp
    use common_lists, only : code_tension => sla_event_tension, code_compression => sla_event_compression, &
       code_close => sla_event_close, code_open => sla_event_open, code_wear => sla_event_wear, &
-      code_slide => sla_event_slide, code_stick => sla_event_stick
+      code_slide => sla_event_slide
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
-   use sla_group, only : point_group, scan_result, slider, event_vectors, material_options, unbounded, linear_bound, &
-      offer_hi
+   use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded
+   use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
+      jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: interface_group, interface_group_new, joint_law, joint_law_new
 
-   !> How the friction of a closed point is
-   integer(c_int), parameter :: sticks = 0, slides_up = 1, slides_down = 2
-   !> Slip back that counts as sticking, over the ripple and the elastic slip of the friction
-   real(wp), parameter :: turned = 4.0_wp
-   !> A point that can neither stick nor slide on at a load (Painleve's paradox) may slip either way from then on: it
-   !> would else stick and slide again by steps of no size. Mark of such a point [m]; loads that are the same
-   real(wp), parameter :: never = 1.0e7_wp, same = 1.0e-9_wp
-   !> Stiffness that a point which slides keeps in the factor, over that of one that sticks; its force takes that back.
-   !> With less of it the factor loses digits, with more the energies, see `excess`
-   real(wp), parameter :: soft = 1.0e-4_wp
-   !> What the law along a joint holds back is changed beside its stiffness, which then changes by so much: of an open
-   !> joint over what is left of it, of a closed one over the whole
-   real(wp), parameter :: hundredth = 0.01_wp, least_change = 1.0e-11_wp
+   !> Loads that are the same
+   real(wp), parameter :: same = 1.0e-9_wp
 
-   !> What the joints of a group are made of, each (elements)
-   type :: joint_law
-      real(wp), allocatable :: kn(:)            !! normal stiffness [Pa/m]
-      real(wp), allocatable :: ks(:)            !! shear stiffness [Pa/m]
-      real(wp), allocatable :: friction(:)      !! coefficient; negative: no sliding
-      real(wp), allocatable :: small(:)         !! stress that counts as small [Pa]
-      integer(c_int), allocatable :: table(:)   !! tension teeth; 0 none: no limit, or none left where dry
-      integer(c_int), allocatable :: crush_table(:)
-      integer(c_int), allocatable :: slip_table(:)   !! teeth of the cohesion, 0 none
-      integer(c_int), allocatable :: dry(:)     !! 1: no tensile strength
-      real(wp) :: ripple = 0.02_wp              !! see `turned`
-   end type joint_law
-
-   type, extends(point_group) :: interface_group
-      type(joint_law) :: law
-      type(tooth_tables) :: teeth
-      real(wp), allocatable :: normal(:, :)      !! (2, elements) from the lower to the upper side
-      real(wp), allocatable :: area(:)           !! (points) [m^2]
-      ! The damage: everything else follows from it.
-      integer(c_int), allocatable :: tooth(:)    !! of tension, 1 virgin
-      integer(c_int), allocatable :: crush(:)    !! of compression, 1 virgin
-      integer(c_int), allocatable :: slip(:)     !! of the cohesion, 1 virgin
-      integer(c_int), allocatable :: shut(:)     !! 1 closed; of cracked points
-      integer(c_int), allocatable :: changes(:)  !! openings and closings
-      integer(c_int), allocatable :: mode(:)     !! sticks, slides_up, slides_down
-      integer(c_int), allocatable :: even(:)     !! 0 or 1, changes with the held force
-      real(wp), allocatable :: start(:)          !! slip from which the cohesion counts its own [m]
-      real(wp), allocatable :: mark(:)           !! where friction sticks: slip without it; where it slides: so far [m]
-      real(wp), allocatable :: held(:, :)        !! (2, points) see `slider`, constant and per multiplier [Pa]
-      real(wp), allocatable :: stuck(:)          !! multiplier at which a sliding point has stuck last
+   type, extends(joint_points) :: interface_group
    contains
       procedure :: matrix
       procedure :: force
-      procedure :: scan
       procedure :: damage
       procedure :: report
       procedure :: state
       procedure :: origins
       procedure :: sliding
       procedure :: sliders
+      procedure :: turned_back
+      procedure :: undecided
       procedure :: hold
       procedure :: advance
       procedure :: excess
    end type interface_group
 
-   !> The law along the joint, tau = k ds - k0 + h; its elastic energy is k ds^2 / 2 - k0 ds + e0
-   type :: line
-      real(wp) :: k = 0.0_wp      !! [Pa/m]
-      real(wp) :: k0 = 0.0_wp     !! [Pa]
-      real(wp) :: e0 = 0.0_wp     !! [J/m^2]
-      real(wp) :: h(2) = 0.0_wp   !! constant and per unit multiplier [Pa]
-   end type line
-
 contains
-
-   !> Room for the law of some elements
-   subroutine joint_law_new(elements, law, status)
-      integer, intent(in) :: elements
-      type(joint_law), intent(out) :: law
-      integer(c_int), intent(out) :: status
-      integer :: info
-      allocate (law%kn(elements), law%ks(elements), law%friction(elements), law%small(elements), law%table(elements), &
-         law%crush_table(elements), law%slip_table(elements), law%dry(elements), stat=info)
-      status = merge(status_ok, status_out_of_memory, info == 0)
-   end subroutine joint_law_new
 
    !> A group of joints without damage
    subroutine interface_group_new(area, normal, law, teeth, options, group, bad, status)
@@ -176,123 +105,6 @@ contains
       end do
       status = status_ok
    end subroutine interface_group_new
-
-   !> The freedoms of a point: of its node below, then of the one above
-   pure function freedoms_of(p) result(at)
-      integer, intent(in) :: p
-      integer :: at(4)
-      at = merge([1, 2, 7, 8], [3, 4, 5, 6], mod(p, 2) == 1)
-   end function freedoms_of
-
-   !> Jumps of the displacements across and along the joint [m]
-   pure function jump(group, e, p, local) result(d)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      real(wp), intent(in) :: local(:)
-      real(wp) :: d(2), u(2)
-      integer :: at(4)
-      at = freedoms_of(p)
-      u = local(at(3:4)) - local(at(1:2))
-      associate (n => group%normal(:, e))
-         d = [n(1) * u(1) + n(2) * u(2), n(2) * u(1) - n(1) * u(2)]
-      end associate
-   end function jump
-
-   !> Nodal vector of the element whose product with the displacements is v(1) dn + v(2) ds
-   pure function nodal(group, e, p, v) result(local)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      real(wp), intent(in) :: v(2)
-      real(wp) :: local(8), u(2)
-      integer :: at(4)
-      at = freedoms_of(p)
-      associate (n => group%normal(:, e))
-         u = [n(1) * v(1) + n(2) * v(2), n(2) * v(1) - n(1) * v(2)]
-      end associate
-      local = 0.0_wp
-      local(at(1:2)) = -u
-      local(at(3:4)) = u
-   end function nodal
-
-   !> True where the joint presses or has never cracked
-   pure function is_closed(group, p) result(closed)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: p
-      logical :: closed
-      closed = group%tooth(p) == 1 .or. group%shut(p) /= 0
-   end function is_closed
-
-   !> Stiffness of the bond along the joint [Pa/m]
-   pure function bond(group, e, p) result(k)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      real(wp) :: k
-      k = 0.0_wp
-      if (group%law%slip_table(e) /= 0) then
-         k = group%teeth%modulus_of(group%law%slip_table(e), group%slip(p), group%law%ks(e), 0.0_wp)
-      end if
-   end function bond
-
-   !> Secant stiffness across the joint [Pa/m]
-   pure function across(group, e, p) result(k)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      real(wp) :: k, open
-      associate (law => group%law, floor => group%options%floor)
-         k = group%teeth%modulus_of(law%crush_table(e), group%crush(p), law%kn(e), floor)
-         if (is_closed(group, p)) return
-         open = floor * law%kn(e)
-         if (law%table(e) /= 0) open = group%teeth%modulus_of(law%table(e), group%tooth(p), law%kn(e), floor)
-         k = min(k, open)
-      end associate
-   end function across
-
-   !> Stiffness along a closed joint that sticks [Pa/m]
-   pure function shear(group, e, p) result(k)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      real(wp) :: k
-      k = group%law%ks(e) * (1.0_wp + least_change * real(group%even(p), wp))
-   end function shear
-
-   !> The law along the joint as it stands
-   pure function along(group, e, p) result(law)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      type(line) :: law
-      real(wp) :: k
-      if (group%law%friction(e) < 0.0_wp) then
-         law = line(k=group%law%ks(e))
-         return
-      end if
-      k = bond(group, e, p)
-      law = line(k, k * group%start(p), 0.5_wp * k * group%start(p)**2)
-      if (.not. is_closed(group, p)) then
-         law%k = k + group%options%floor * group%law%ks(e) * (1.0_wp + hundredth * real(group%even(p), wp))
-         return
-      end if
-      law%k = shear(group, e, p)
-      if (group%mode(p) == sticks) then
-         law%k0 = law%k0 + (law%k - k) * group%mark(p)
-         law%e0 = law%e0 + 0.5_wp * (law%k - k) * group%mark(p)**2
-      else   ! a spring, and h, which takes it away and puts friction there
-         law%k = k + soft * law%k
-         law%h = group%held(:, p)
-      end if
-   end function along
-
-   !> Part of a strength that is left, 1 before the first tooth has passed
-   pure function left(teeth, table, tooth) result(part)
-      type(tooth_tables), intent(in) :: teeth
-      integer(c_int), intent(in) :: table, tooth
-      real(wp) :: part, strength
-      part = 1.0_wp
-      if (tooth == 1) return
-      part = 0.0_wp
-      if (table == 0) return
-      strength = teeth%strength_of(table, tooth, 1.0_wp)
-      if (strength < unbounded) part = strength / teeth%strength_of(table, 1_c_int, 1.0_wp)
-   end function left
 
    pure subroutine matrix(group, element, k)
       class(interface_group), intent(in) :: group
@@ -364,23 +176,6 @@ contains
       end do
    end subroutine origins
 
-   !> Can a closed point slide? Mortar of which no cohesion is given holds until it is torn
-   pure function slips(group, e, p) result(yes)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      logical :: yes
-      yes = group%law%friction(e) >= 0.0_wp .and. group%slip(p) > 1
-      if (yes) yes = group%law%slip_table(e) /= 0 .or. group%tooth(p) > 1
-   end function slips
-
-   !> Does the friction of a point slide?
-   pure function is_sliding(group, p) result(yes)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: p
-      logical :: yes
-      yes = group%mode(p) /= sticks .and. is_closed(group, p) .and. group%area(p) > 0.0_wp
-   end function is_sliding
-
    pure function sliding(group) result(count)
       class(interface_group), intent(in) :: group
       integer :: count, p
@@ -394,19 +189,62 @@ contains
       class(interface_group), intent(in) :: group
       type(slider), intent(inout) :: list(:)
       integer, intent(inout) :: count
-      integer :: e, p
+      integer :: p
       do p = 1, group%points
          if (.not. is_sliding(group, p)) cycle
-         e = (p + 1) / 2
          count = count + 1
-         list(count)%point = p
-         list(count)%index = group%equation(:, e)
-         list(count)%law = nodal(group, e, p, [merge(-1.0_wp, 1.0_wp, group%mode(p) == slides_up) * &
-            group%law%friction(e) * across(group, e, p), -soft * shear(group, e, p)]) * group%factor(:, e)
-         list(count)%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
-         list(count)%held = group%held(:, p)
+         call describe(group, p, list(count))
       end do
    end subroutine sliders
+
+   pure subroutine turned_back(group, lambda, list, count)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      type(slider), intent(inout) :: list(:)
+      integer, intent(inout) :: count
+      integer :: p
+      do p = 1, group%points
+         if (group%mode(p) /= sticks .or. .not. abs(lambda - group%stuck(p)) <= same * abs(lambda)) cycle
+         if (.not. is_closed(group, p)) cycle
+         count = count + 1
+         if (count <= size(list)) call describe(group, p, list(count))
+      end do
+   end subroutine turned_back
+
+   !> What the friction of a point at its limit is made of
+   pure subroutine describe(group, point, as)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: point
+      type(slider), intent(inout) :: as
+      integer :: e, p
+      p = point
+      e = (p + 1) / 2
+      as%point = p
+      as%index = group%equation(:, e)
+      as%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%slip = nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%strength = nodal(group, e, p, [-group%law%friction(e) * across(group, e, p), 0.0_wp]) * group%factor(:, e)
+      as%elastic = shear(group, e, p) - bond(group, e, p)
+      if (group%mode(p) == sticks) then
+         as%spring = as%elastic
+         as%held = [-as%spring * group%mark(p), 0.0_wp]
+         return
+      end if
+      as%sense = merge(1.0_wp, -1.0_wp, group%mode(p) == slides_up)
+      as%law = nodal(group, e, p, [-as%sense * group%law%friction(e) * across(group, e, p), &
+         -soft * shear(group, e, p)]) * group%factor(:, e)
+      as%spring = soft * shear(group, e, p)
+      as%held = group%held(:, p)
+   end subroutine describe
+
+   pure function undecided(group, point, code, lambda) result(yes)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: point
+      integer, intent(in) :: code
+      real(wp), intent(in) :: lambda
+      logical :: yes
+      yes = code == code_slide .and. abs(lambda - group%stuck(point)) <= same * abs(lambda)
+   end function undecided
 
    pure subroutine hold(group, point, held)
       class(interface_group), intent(inout) :: group
@@ -443,110 +281,10 @@ contains
          call group%gather(e, ua, local)
          call group%gather(e, ub, other)
          d = jump(group, e, p, local + lambda * other)
-         if (abs(group%mark(p)) >= never) cycle
          if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), d(2))
          if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), d(2))
       end do
    end subroutine advance
-
-   pure subroutine scan(group, first, last, ua, ub, lambda, noise, found)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: first
-      integer, intent(in) :: last
-      real(wp), intent(in) :: ua(0:)
-      real(wp), intent(in) :: ub(0:)
-      real(wp), intent(in) :: lambda
-      real(wp), intent(in) :: noise
-      type(scan_result), intent(inout) :: found
-      real(wp) :: la(8), lb(8)
-      integer :: e, p
-      do e = first, last
-         call group%gather(e, ua, la)
-         call group%gather(e, ub, lb)
-         do p = 2 * e - 1, 2 * e
-            if (group%area(p) > 0.0_wp) call scan_point(group, e, p, jump(group, e, p, la), jump(group, e, p, lb), &
-               lambda, noise, found)
-         end do
-      end do
-   end subroutine scan
-
-   !> Limits of one point from its jumps
-   pure subroutine scan_point(group, e, p, da, db, lambda, noise, found)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e, p
-      real(wp), intent(in) :: da(2)       !! constant loads [m]
-      real(wp), intent(in) :: db(2)       !! per unit multiplier [m]
-      real(wp), intent(in) :: lambda
-      real(wp), intent(in) :: noise
-      type(scan_result), intent(inout) :: found
-      real(wp) :: f, mu, sa, sb, scale, k, spring, ta, tb
-      integer :: side
-
-      associate (law => group%law, kn => group%law%kn(e), ks => group%law%ks(e))
-         k = across(group, e, p)
-         sa = k * da(1)
-         sb = k * db(1)
-         f = group%teeth%strength_of(law%crush_table(e), group%crush(p), 1.0_wp)
-         if (f < unbounded) call linear_bound(-sa, -sb, f, f, lambda, noise, p, code_compression, found)
-         scale = law%small(e)
-         if (is_closed(group, p) .and. group%tooth(p) > 1) then
-            call linear_bound(sa, sb, 0.0_wp, scale, lambda, noise, p, code_open, found)
-         else
-            f = group%teeth%strength_of(law%table(e), group%tooth(p), 1.0_wp)
-            if (f < unbounded) call linear_bound(sa, sb, f, f, lambda, noise, p, code_tension, found)
-            ! Measured by the jump: the stress that an open joint has left drowns in rounding.
-            if (group%tooth(p) > 1 .and. group%changes(p) < group%options%most_changes) then
-               call linear_bound(-kn * da(1), -kn * db(1), 0.0_wp, scale, lambda, noise, p, code_close, found)
-            end if
-         end if
-         mu = law%friction(e)
-         if (mu < 0.0_wp) return
-         k = bond(group, e, p)
-         f = group%teeth%strength_of(law%slip_table(e), group%slip(p), 1.0_wp)
-         do side = 1, -1, -2
-            if (group%slip(p) == 1) then
-               call linear_bound(side * ks * da(2) + mu * sa, side * ks * db(2) + mu * sb, f, f, lambda, noise, p, &
-                  code_wear, found)
-            else if (f < unbounded) then
-               call linear_bound(side * k * (da(2) - group%start(p)), side * k * db(2), f, f, lambda, noise, p, &
-                  code_wear, found)
-            end if
-         end do
-         if (.not. (is_closed(group, p) .and. slips(group, e, p))) return
-         spring = shear(group, e, p) - k
-         ta = spring * (da(2) - group%mark(p))
-         tb = spring * db(2)
-         if (group%mode(p) == sticks) then
-            do side = 1, -1, -2
-               call reach(side * tb + mu * sb, -side * ta - mu * sa, scale, lambda, noise, p, code_slide, found)
-            end do
-            return
-         end if
-         ! Friction that slides, less its strength, both linear in the multiplier
-         side = merge(1, -1, group%mode(p) == slides_up)
-         k = side * (group%held(1, p) + lambda * group%held(2, p) + &
-            soft * shear(group, e, p) * (da(2) + lambda * db(2)))
-         call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, 0.0_wp, lambda, noise, p, &
-            code_stick, found)
-      end associate
-   end subroutine scan_point
-
-   !> What grows by `rate` per unit multiplier reaches `room` as the load grows, or at once where it is beyond: it never
-   !> asks for less load than there is. A load that falls for the next tooth is the method's, no reversal.
-   pure subroutine reach(rate, room, least, lambda, noise, point, code, found)
-      real(wp), intent(in) :: rate     !! [Pa]
-      real(wp), intent(in) :: room     !! [Pa]
-      real(wp), intent(in) :: least    !! [Pa]
-      real(wp), intent(in) :: lambda
-      real(wp), intent(in) :: noise
-      integer, intent(in) :: point, code
-      type(scan_result), intent(inout) :: found
-      if (rate > noise) then
-         call offer_hi(found, max(room / rate, lambda), point, code)
-      else if (room < rate * lambda - least) then
-         call offer_hi(found, lambda, point, code)
-      end if
-   end subroutine reach
 
    pure subroutine damage(group, point, code, lambda, ua, ub, event, tooth)
       class(interface_group), intent(inout) :: group
@@ -621,8 +359,6 @@ contains
             group%mode(p) = merge(slides_up, slides_down, change > 0.0_wp)
             call begin(group, e, p, change, d, moved, lambda)
             group%mark(p) = d(2)
-            if (abs(lambda - group%stuck(p)) <= same * abs(lambda)) group%mark(p) = &
-               merge(-never, never, group%mode(p) == slides_up)
          case default
             group%mark(p) = d(2) - friction / (shear(group, e, p) - bond(group, e, p))
             group%mode(p) = sticks
@@ -677,15 +413,6 @@ contains
       call group%spread(e, sqrt(group%area(p) * abs(change)) * nodal(group, e, p, v), event, event%rank)
    end subroutine add_vector
 
-   !> Stiffness of the bond at a tooth [Pa/m]
-   pure function bond_of(group, e, tooth) result(k)
-      class(interface_group), intent(in) :: group
-      integer, intent(in) :: e
-      integer(c_int), intent(in) :: tooth
-      real(wp) :: k
-      k = group%teeth%modulus_of(group%law%slip_table(e), tooth, group%law%ks(e), 0.0_wp)
-   end function bond_of
-
    !> Bring a strength to the tooth at which no more of it is left than of the other
    pure subroutine wear_with(teeth, table, tooth, its_table, its_tooth)
       type(tooth_tables), intent(in) :: teeth
@@ -697,9 +424,22 @@ contains
       end do
    end subroutine wear_with
 
-   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the shear
-   !> stiffness [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion, 6 compression tooth,
-   !> 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
+   !> Part of a strength that is left, 1 before the first tooth has passed
+   pure function left(teeth, table, tooth) result(part)
+      type(tooth_tables), intent(in) :: teeth
+      integer(c_int), intent(in) :: table, tooth
+      real(wp) :: part, strength
+      part = 1.0_wp
+      if (tooth == 1) return
+      part = 0.0_wp
+      if (table == 0) return
+      strength = teeth%strength_of(table, tooth, 1.0_wp)
+      if (strength < unbounded) part = strength / teeth%strength_of(table, 1_c_int, 1.0_wp)
+   end function left
+
+   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the power of two
+   !> above the shear stiffness (no digit is lost) [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion,
+   !> 6 compression tooth, 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
    pure subroutine state(group, store, values)
       class(interface_group), intent(inout) :: group
       logical, intent(in) :: store
@@ -708,7 +448,7 @@ contains
       if (store) then
          values(1, :) = group%start
          do p = 1, group%points
-            values([2, 7], p) = group%held(:, p) / group%law%ks((p + 1) / 2)
+            values([2, 7], p) = scale(group%held(:, p), -exponent(group%law%ks((p + 1) / 2)))
          end do
          values(3, :) = merge(1.0_wp, 0.0_wp, group%tooth > 1)
          values(4, :) = real(group%tooth, wp)
@@ -721,7 +461,7 @@ contains
       else
          group%start(:) = values(1, :)
          do p = 1, group%points
-            group%held(:, p) = values([2, 7], p) * group%law%ks((p + 1) / 2)
+            group%held(:, p) = scale(values([2, 7], p), exponent(group%law%ks((p + 1) / 2)))
          end do
          group%tooth(:) = nint(values(4, :), c_int)
          group%slip(:) = nint(values(5, :), c_int)
@@ -769,8 +509,7 @@ contains
             values(12, p) = real(group%slip(p), wp)
             found = scan_result()
             call scan_point(group, e, p, da, db, lambda, noise, found)
-            values(13:14, p) = [found%lo%value, found%hi%value]
-            if (found%empty%point /= 0) values(13:14, p) = [unbounded, -unbounded]
+            values(13:14, p) = admitted(found)
             values(15, p) = group%area(p)
             values(16, p) = real(group%crush(p), wp)
             values(17, p) = 1.0_wp

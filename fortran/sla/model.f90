@@ -12,6 +12,7 @@ module sla_model
    use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
       most_entries, most_rank, report_rows
    use sla_friction, only : friction_store, friction_balance
+   use sla_turns, only : friction_turns
    use sla_regions, only : region_tree, regions_new, regions_measure, regions_settled, regions_made_up
    use sla_tables, only : tooth_tables
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t, c_ptr, c_null_ptr
@@ -19,7 +20,7 @@ module sla_model
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
    public :: model_displacements, model_settled, model_balance, model_reactions, model_recorded
-   public :: held_work, model_damage, model_standing, model_resume, standing_values
+   public :: model_turns, held_work, model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
@@ -32,9 +33,10 @@ module sla_model
       integer :: nodes = 0
       integer :: equations = 0                           !! unknown; those of moved supports come after them
       integer :: points = 0
-      real(wp), allocatable :: xy(:, :)                  !! (2, nodes) [m]
-      integer(c_int), allocatable :: equation(:, :)      !! (2, nodes), 0 held, beyond `equations` moved
-      real(wp), allocatable :: factor(:, :)              !! (2, nodes) share of the equation
+      real(wp), allocatable :: xy(:, :)                  !! (2, nodes) in the plane, (3, nodes) in space [m]
+      !> (freedoms of a node, nodes), 0 held, beyond `equations` moved: x, y; of shells x, y, z and the rotations
+      integer(c_int), allocatable :: equation(:, :)
+      real(wp), allocatable :: factor(:, :)              !! (freedoms of a node, nodes) share of the equation
       type(group_holder), allocatable :: holders(:)
       type(tooth_tables) :: teeth                        !! of the groups that are added next
       type(material_options) :: options
@@ -105,10 +107,10 @@ contains
 
    !> An empty model on nodes whose freedoms belong to equations
    subroutine model_new(xy, equation, moved, factor, options, model, status)
-      real(wp), intent(in) :: xy(:, :)               !! (2, nodes) [m]
-      integer(c_int), intent(in) :: equation(:, :)   !! (2, nodes), 0 held
+      real(wp), intent(in) :: xy(:, :)               !! (2 or 3, nodes) [m]
+      integer(c_int), intent(in) :: equation(:, :)   !! (freedoms of a node, nodes), 0 held
       integer(c_int), intent(in) :: moved            !! the last equations, whose displacements are prescribed
-      real(wp), intent(in) :: factor(:, :)           !! (2, nodes)
+      real(wp), intent(in) :: factor(:, :)           !! (freedoms of a node, nodes)
       type(material_options), intent(in) :: options
       type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
@@ -119,8 +121,9 @@ contains
       model%options = options
       status = status_invalid_argument
       if (model%equations < 1 .or. minval(equation) < 0 .or. moved < 0) return
-      allocate (model%xy(2, model%nodes), model%equation(2, model%nodes), model%factor(2, model%nodes), &
-         model%holders(0), model%moved(moved, 2), model%reaction(moved, 2), stat=info)
+      allocate (model%xy(size(xy, 1), model%nodes), model%equation(size(equation, 1), model%nodes), &
+         model%factor(size(equation, 1), model%nodes), model%holders(0), model%moved(moved, 2), &
+         model%reaction(moved, 2), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       model%moved(:, :) = 0.0_wp
@@ -135,14 +138,14 @@ contains
       type(element_model), intent(inout) :: model
       class(element_group), allocatable, intent(inout) :: group
       integer(c_int), intent(in) :: node(:, :)       !! (freedoms, elements), 1-based, 0 ground
-      integer(c_int), intent(in) :: direction(:, :)  !! (freedoms, elements), 1 or 2
+      integer(c_int), intent(in) :: direction(:, :)  !! (freedoms, elements), which of its node
       integer(c_int), intent(out) :: status
       type(group_holder), allocatable :: longer(:)
       integer :: i, e, info
 
       status = status_bad_index
       if (any(node < 0) .or. any(node > model%nodes)) return
-      if (any((direction < 1 .or. direction > 2) .and. node > 0)) return
+      if (any((direction < 1 .or. direction > size(model%equation, 1)) .and. node > 0)) return
       allocate (group%equation(group%freedoms, group%elements), group%factor(group%freedoms, group%elements), &
          longer(size(model%holders) + 1), stat=info)
       if (info /= 0) then
@@ -201,8 +204,7 @@ contains
          new(i) = int(i, c_int)
       end do
       do i = 1, model%nodes
-         model%equation(1, i) = new(model%equation(1, i))
-         model%equation(2, i) = new(model%equation(2, i))
+         model%equation(:, i) = new(model%equation(:, i))
       end do
       do g = 1, size(model%holders)
          associate (group => model%holders(g)%group)
@@ -229,8 +231,9 @@ contains
          end select
       end do
       ! Regions that were not measured are looked at in each event
-      if (status == status_ok .and. .not. (model%refactor .or. model%slides)) call regions_measure(model%tree, &
-         model%holders, model%xy, model%equation, model%factor, status)
+      if (status == status_ok .and. .not. (model%refactor .or. model%slides)) then
+         call regions_measure(model%tree, model%holders, model%xy, model%equation, model%factor, status)
+      end if
       if (status /= status_ok) return
       call find_beside(model, status)
       if (status /= status_ok) return
@@ -305,7 +308,7 @@ contains
    subroutine model_factor(model, node, direction, ratio, status)
       type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: node        !! 1-based, 0 none
-      integer(c_int), intent(out) :: direction   !! 1 x, 2 y
+      integer(c_int), intent(out) :: direction   !! which of its freedoms
       real(wp), intent(out) :: ratio             !! smallest over largest pivot
       integer(c_int), intent(out) :: status
       integer(c_int64_t) :: weakest
@@ -318,7 +321,7 @@ contains
       if (status == status_ok .and. ratio < least_ratio) status = status_not_positive_definite
       if (status /= status_not_positive_definite) return
       do i = 1, model%nodes
-         do k = 1, 2
+         do k = 1, size(model%equation, 1)
             if (model%equation(k, i) /= weakest + 1 .or. node /= 0) cycle
             node = int(i, c_int)
             direction = int(k, c_int)
@@ -370,6 +373,17 @@ contains
       call model_settled(model)
    end subroutine model_balance
 
+   !> Which points slide and stick so that the structure goes on, where one change after the other leads in a circle
+   subroutine model_turns(model, change, found, status)
+      type(element_model), intent(inout) :: model
+      integer, allocatable, intent(out) :: change(:, :)    !! (3, changes) group, point, code
+      logical, intent(out) :: found
+      integer(c_int), intent(out) :: status
+      call friction_turns(model%holders, model%handle, model%refactor, model%value, model%equations, model%lambda, &
+         model%ua, model%ub, change, found, status)
+      model%friction%known = .false.
+   end subroutine model_turns
+
    !> The forces by which moved supports act on the unknowns, into z; the supports move
    subroutine push_supports(model)
       type(element_model), intent(inout) :: model
@@ -419,8 +433,8 @@ contains
    !> Start a stage: constant load A and reference load B as nodal forces
    subroutine model_loads(model, load_a, load_b, carried, status)
       type(element_model), intent(inout) :: model
-      real(wp), intent(in) :: load_a(:, :)     !! (2, nodes) [N]
-      real(wp), intent(in) :: load_b(:, :)     !! (2, nodes) [N]
+      real(wp), intent(in) :: load_a(:, :)     !! (freedoms of a node, nodes) [N], [N m]
+      real(wp), intent(in) :: load_b(:, :)     !! (freedoms of a node, nodes) [N], [N m]
       logical, intent(in) :: carried           !! the stage before ended under these constant loads
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: values(:, :), zero(:)
@@ -429,7 +443,7 @@ contains
       model%fa = 0.0_wp
       model%fb = 0.0_wp
       do i = 1, model%nodes
-         do k = 1, 2
+         do k = 1, size(model%equation, 1)
             q = model%equation(k, i)
             if (q > model%equations) q = 0      ! a moved support takes it
             model%fa(q) = model%fa(q) + model%factor(k, i) * load_a(k, i)

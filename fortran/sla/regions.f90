@@ -26,8 +26,8 @@ module sla_regions
    integer, parameter :: tip_size = 160
    !> Events that a region is looked at without asking, at most
    integer, parameter :: most_patience = 15
-   !> Monomials of a quadratic polynomial of x and y
-   integer, parameter :: terms = 6
+   !> Monomials of a quadratic polynomial of x and y, and z; freedoms of a node
+   integer, parameter :: most_terms = 10, most_directions = 6
 
    type :: region
       integer(c_int64_t) :: first_block = 0, last_block = 0   !! supernodes, 0-based
@@ -36,10 +36,13 @@ module sla_regions
       integer :: parent = 0                         !! 0 none
       integer :: edge = 0, edges = 0                !! entries edge + 1 to edge + edges
       integer :: run = 0, runs = 0                  !! elements
-      real(wp) :: centre(2) = 0.0_wp                !! of the polynomial
+      real(wp) :: centre(3) = 0.0_wp                !! of the polynomial
       real(wp) :: size = 1.0_wp
-      real(wp) :: fit(terms, terms, 2) = 0.0_wp     !! inverse Cholesky factor of the weighted monomials, x and y
-      real(wp) :: energy(2 * terms, 2 * terms) = 0.0_wp   !! of the orthonormal polynomials [N/m]
+      !> (terms, polynomials) of the monomials, orthonormal over the weighted equations of one direction each
+      real(wp), allocatable :: fit(:, :)
+      integer, allocatable :: of(:)                 !! (polynomials) their directions
+      real(wp), allocatable :: energy(:, :)         !! of the polynomials [N/m], [N m]
+      real(wp) :: stiffest = 0.0_wp                 !! greatest entry of it
       real(wp) :: margin(levels) = -1.0_wp          !! of all points below, see point_group [J^1/2]
       real(wp) :: moved(6) = 0.0_wp                 !! energies of the edge's motion, see `reach`
       integer :: patience = 0                       !! events to go without asking
@@ -53,10 +56,12 @@ module sla_regions
       integer, allocatable :: edge(:)               !! equations
       real(wp), allocatable :: kept(:, :)           !! (2, edge) displacements when the region was last brought
       integer, allocatable :: run(:, :)             !! (3, runs) group, first and last element
-      real(wp), allocatable :: place(:, :)          !! (2, n) where an equation acts, over the size of the whole
+      integer :: terms = 6                          !! monomials: 6 in the plane, 10 in space
+      integer :: directions = 2                     !! freedoms of a node
+      real(wp), allocatable :: place(:, :)          !! (axes, n) where an equation acts, over the size of the whole
       real(wp), allocatable :: share(:)             !! (n) its displacement per unit one of the node there, 0 unknown
-      integer, allocatable :: direction(:)          !! (n) 1 x, 2 y
-      real(wp), allocatable :: weight(:)            !! (n) bound of the stiffness [N/m]
+      integer, allocatable :: direction(:)          !! (n) which freedom of its node
+      real(wp), allocatable :: weight(:)            !! (n) bound of the stiffness [N/m], [N m]
       real(wp) :: lambda(levels) = 0.0_wp           !! ascending
       logical :: measured = .false.                 !! the polynomials are there
       logical :: settled = .false.                  !! margins and edges are kept; else all is looked at
@@ -218,18 +223,22 @@ contains
    subroutine regions_measure(tree, holders, xy, equation, factor, status)
       type(region_tree), intent(inout) :: tree
       type(group_holder), intent(in) :: holders(:)
-      real(wp), intent(in) :: xy(:, :)               !! (2, nodes) [m]
-      integer(c_int), intent(in) :: equation(:, :)   !! (2, nodes), 0 held
-      real(wp), intent(in) :: factor(:, :)           !! (2, nodes)
+      real(wp), intent(in) :: xy(:, :)               !! (2 or 3, nodes) [m]
+      integer(c_int), intent(in) :: equation(:, :)   !! (freedoms of a node, nodes), 0 held
+      real(wp), intent(in) :: factor(:, :)           !! (freedoms of a node, nodes)
       integer(c_int), intent(out) :: status
       real(wp), allocatable :: energy(:, :, :)
-      real(wp) :: k(most_entries, most_entries), phi(terms, most_entries), half(2 * terms, most_entries)
-      real(wp) :: middle(2), extent
-      integer :: g, e, i, j, d, q, n, own, info, side(most_entries)
+      real(wp) :: k(most_entries, most_entries), phi(most_terms, most_entries)
+      real(wp) :: half(most_terms * most_directions, most_entries), middle(size(xy, 1)), extent
+      integer :: g, e, i, j, d, q, n, own, info, m, all, side(most_entries)
 
       n = size(tree%of)
-      allocate (tree%place(2, n), tree%share(n), tree%direction(n), tree%weight(n), &
-         energy(2 * terms, 2 * terms, size(tree%part)), stat=info)
+      tree%directions = size(equation, 1)
+      tree%terms = merge(6, most_terms, size(xy, 1) == 2)
+      m = tree%terms
+      all = m * tree%directions
+      allocate (tree%place(size(xy, 1), n), tree%share(n), tree%direction(n), tree%weight(n), &
+         energy(all, all, size(tree%part)), stat=info)
       status = merge(status_ok, status_out_of_memory, info == 0)
       if (info /= 0) return
       middle = 0.5_wp * (minval(xy, dim=2) + maxval(xy, dim=2))
@@ -239,7 +248,7 @@ contains
       tree%place = 0.0_wp
       tree%weight = 0.0_wp
       do i = 1, size(xy, 2)
-         do d = 1, 2
+         do d = 1, tree%directions
             q = int(equation(d, i))
             if (q == 0 .or. q > n .or. abs(factor(d, i)) < 1.0e-6_wp) cycle
             if (abs(tree%share(q)) > 0.0_wp) cycle    ! tied freedoms go by the first of them
@@ -259,8 +268,8 @@ contains
                do i = 1, group%freedoms
                   q = int(group%equation(i, e))
                   if (q == 0 .or. q > n) cycle
-                  side(i) = terms * (tree%direction(q) - 1)
-                  phi(:, i) = group%factor(i, e) * tree%share(q) * monomials(tree%place(:, q))
+                  side(i) = m * (tree%direction(q) - 1)
+                  phi(1:m, i) = group%factor(i, e) * tree%share(q) * monomials(tree%place(:, q), m)
                   do j = 1, group%freedoms
                      if (group%equation(j, e) > 0 .and. group%equation(j, e) <= n) tree%weight(q) = tree%weight(q) + &
                         abs(k(i, j) * group%factor(i, e) * group%factor(j, e))
@@ -269,12 +278,12 @@ contains
                half = 0.0_wp
                do i = 1, group%freedoms
                   do j = 1, group%freedoms
-                     half(side(j) + 1:side(j) + terms, i) = half(side(j) + 1:side(j) + terms, i) + k(i, j) * phi(:, j)
+                     half(side(j) + 1:side(j) + m, i) = half(side(j) + 1:side(j) + m, i) + k(i, j) * phi(1:m, j)
                   end do
                end do
                do i = 1, group%freedoms
-                  do j = 1, terms
-                     energy(:, side(i) + j, own) = energy(:, side(i) + j, own) + phi(j, i) * half(:, i)
+                  do j = 1, m
+                     energy(:, side(i) + j, own) = energy(:, side(i) + j, own) + phi(j, i) * half(1:all, i)
                   end do
                end do
             end do
@@ -283,73 +292,125 @@ contains
       do own = 1, size(tree%part)
          j = tree%part(own)%parent
          if (j > 0) energy(:, :, j) = energy(:, :, j) + energy(:, :, own)
-         call fit_edge(tree, tree%part(own), energy(:, :, own))
+         call fit_edge(tree, tree%part(own), energy(:, :, own), status)
+         if (status /= status_ok) return
       end do
       tree%measured = .true.
    end subroutine regions_measure
 
    !> Up to the second degree
-   pure function monomials(at) result(values)
-      real(wp), intent(in) :: at(2)
-      real(wp) :: values(terms)
-      values = [1.0_wp, at(1), at(2), at(1)**2, at(1) * at(2), at(2)**2]
+   pure function monomials(at, count) result(values)
+      real(wp), intent(in) :: at(:)
+      integer, intent(in) :: count          !! 6 of x and y, 10 of x, y and z
+      real(wp) :: values(count)
+      if (count == 6) then
+         values = [1.0_wp, at(1), at(2), at(1)**2, at(1) * at(2), at(2)**2]
+      else
+         values = [1.0_wp, at(1), at(2), at(3), at(1)**2, at(1) * at(2), at(1) * at(3), at(2)**2, at(2) * at(3), &
+            at(3)**2]
+      end if
    end function monomials
 
+   !> The monomials about a centre c from those of the whole, not scaled yet
+   pure function shifted(c, count) result(shift)
+      real(wp), intent(in) :: c(:)
+      integer, intent(in) :: count
+      real(wp) :: shift(count, count)
+      shift = 0.0_wp
+      shift(1, 1) = 1.0_wp
+      if (count == 6) then
+         shift(2, 1:2) = [-c(1), 1.0_wp]
+         shift(3, [1, 3]) = [-c(2), 1.0_wp]
+         shift(4, [1, 2, 4]) = [c(1)**2, -2.0_wp * c(1), 1.0_wp]
+         shift(5, [1, 2, 3, 5]) = [c(1) * c(2), -c(2), -c(1), 1.0_wp]
+         shift(6, [1, 3, 6]) = [c(2)**2, -2.0_wp * c(2), 1.0_wp]
+      else
+         shift(2, 1:2) = [-c(1), 1.0_wp]
+         shift(3, [1, 3]) = [-c(2), 1.0_wp]
+         shift(4, [1, 4]) = [-c(3), 1.0_wp]
+         shift(5, [1, 2, 5]) = [c(1)**2, -2.0_wp * c(1), 1.0_wp]
+         shift(6, [1, 2, 3, 6]) = [c(1) * c(2), -c(2), -c(1), 1.0_wp]
+         shift(7, [1, 2, 4, 7]) = [c(1) * c(3), -c(3), -c(1), 1.0_wp]
+         shift(8, [1, 3, 8]) = [c(2)**2, -2.0_wp * c(2), 1.0_wp]
+         shift(9, [1, 3, 4, 9]) = [c(2) * c(3), -c(3), -c(2), 1.0_wp]
+         shift(10, [1, 4, 10]) = [c(3)**2, -2.0_wp * c(3), 1.0_wp]
+      end if
+   end function shifted
+
    !> Polynomials that are orthonormal over the weighted equations of an edge, and their energies in the region
-   pure subroutine fit_edge(tree, part, energy)
+   pure subroutine fit_edge(tree, part, energy, status)
       type(region_tree), intent(in) :: tree
       type(region), intent(inout) :: part
-      real(wp), intent(in) :: energy(2 * terms, 2 * terms)   !! of the monomials of the whole [N/m]
-      real(wp) :: gram(terms, terms), shift(terms, terms), full(2 * terms, 2 * terms), values(terms), c(2)
-      integer :: i, d, q, count
+      real(wp), intent(in) :: energy(:, :)           !! of the monomials of the whole [N/m]
+      integer(c_int), intent(out) :: status
+      real(wp) :: gram(tree%terms, tree%terms), shift(tree%terms, tree%terms), values(tree%terms)
+      real(wp) :: rows(tree%terms, tree%terms, tree%directions), full(tree%terms, tree%terms * tree%directions)
+      real(wp) :: whole(tree%terms * tree%directions, tree%terms * tree%directions)
+      integer :: of(tree%terms * tree%directions), i, d, q, count, linear, terms, axes, info
 
+      terms = tree%terms
+      axes = size(tree%place, 1)
+      status = status_ok
       if (part%edges == 0) return
       part%centre = 0.0_wp
       do i = part%edge + 1, part%edge + part%edges
-         part%centre = part%centre + tree%place(:, tree%edge(i)) / part%edges
+         part%centre(1:axes) = part%centre(1:axes) + tree%place(:, tree%edge(i)) / part%edges
       end do
       part%size = 1.0e-6_wp
       do i = part%edge + 1, part%edge + part%edges
-         part%size = max(part%size, maxval(abs(tree%place(:, tree%edge(i)) - part%centre)))
+         part%size = max(part%size, maxval(abs(tree%place(:, tree%edge(i)) - part%centre(1:axes))))
       end do
-      ! The monomials about the centre from those of the whole
-      c = part%centre
-      shift = 0.0_wp
-      shift(1, 1) = 1.0_wp
-      shift(2, 1:2) = [-c(1), 1.0_wp]
-      shift(3, [1, 3]) = [-c(2), 1.0_wp]
-      shift(4, [1, 2, 4]) = [c(1)**2, -2.0_wp * c(1), 1.0_wp]
-      shift(5, [1, 2, 3, 5]) = [c(1) * c(2), -c(2), -c(1), 1.0_wp]
-      shift(6, [1, 3, 6]) = [c(2)**2, -2.0_wp * c(2), 1.0_wp]
-      shift(2:3, :) = shift(2:3, :) / part%size
-      shift(4:6, :) = shift(4:6, :) / part%size**2
-      full = 0.0_wp
-      do d = 1, 2
+      shift = shifted(part%centre(1:axes), terms)
+      linear = 1 + axes
+      shift(2:linear, :) = shift(2:linear, :) / part%size
+      shift(linear + 1:, :) = shift(linear + 1:, :) / part%size**2
+      count = 0
+      do d = 1, tree%directions
          gram = 0.0_wp
-         count = 0
          do i = part%edge + 1, part%edge + part%edges
             q = tree%edge(i)
             if (tree%direction(q) /= d) cycle
-            values = tree%share(q) * monomials((tree%place(:, q) - part%centre) / part%size)
-            do count = 1, terms
-               gram(:, count) = gram(:, count) + tree%weight(q) * values(count) * values
+            values = tree%share(q) * monomials((tree%place(:, q) - part%centre(1:axes)) / part%size, terms)
+            do q = 1, terms
+               gram(:, q) = gram(:, q) + tree%weight(tree%edge(i)) * values(q) * values
             end do
          end do
-         call inverse_cholesky(gram, part%fit(:, :, d))
-         full(terms * (d - 1) + 1:terms * d, terms * (d - 1) + 1:terms * d) = matmul(part%fit(:, :, d), shift)
+         call inverse_cholesky(gram, rows(:, :, d))
+         do i = 1, terms      ! in a plane and along a line monomials depend on others: rows of zeros
+            if (.not. any(abs(rows(i, :, d)) > 0.0_wp)) cycle
+            count = count + 1
+            of(count) = d
+            whole(1:terms, count) = rows(i, :, d)
+            full(:, count) = matmul(rows(i, :, d), shift)
+         end do
       end do
-      part%energy = matmul(full, matmul(energy, transpose(full)))
+      allocate (part%fit(terms, count), part%of(count), part%energy(count, count), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      part%fit(:, :) = whole(1:terms, 1:count)
+      part%of(:) = of(1:count)
+      do i = 1, count
+         d = terms * (of(i) - 1)
+         whole(:, i) = matmul(energy(:, d + 1:d + terms), full(:, i))
+      end do
+      do i = 1, count
+         do q = 1, count
+            d = terms * (of(q) - 1)
+            part%energy(q, i) = dot_product(full(:, q), whole(d + 1:d + terms, i))
+         end do
+      end do
+      part%stiffest = maxval(abs(part%energy))
    end subroutine fit_edge
 
    !> Inverse of the lower Cholesky factor; a monomial that depends on those before it is left out (a row of zeros)
    pure subroutine inverse_cholesky(gram, inverse)
-      real(wp), intent(in) :: gram(terms, terms)
-      real(wp), intent(out) :: inverse(terms, terms)
+      real(wp), intent(in) :: gram(:, :)
+      real(wp), intent(out) :: inverse(:, :)
       real(wp), parameter :: dependent = 1.0e-6_wp
-      real(wp) :: row(terms), along
+      real(wp) :: row(size(gram, 1)), along
       integer :: i, j
       inverse = 0.0_wp
-      do i = 1, terms    ! Gram-Schmidt on the monomials, twice over
+      do i = 1, size(gram, 1)    ! Gram-Schmidt on the monomials, twice over
          row = 0.0_wp
          row(i) = 1.0_wp
          do j = 1, 2 * (i - 1)
@@ -358,7 +419,7 @@ contains
             end associate
          end do
          along = dot_product(row, matmul(gram, row))
-         if (along > dependent * gram(i, i)) inverse(i, :) = row / sqrt(along)
+         if (along > dependent * gram(i, i) .and. along > 0.0_wp) inverse(i, :) = row / sqrt(along)
       end do
    end subroutine inverse_cholesky
 
@@ -527,9 +588,13 @@ contains
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
       real(wp), parameter :: rounding = 1.0e-12_wp
-      real(wp) :: moment(terms, 2, 2), a(2 * terms, 2), norm(3), phi(terms), x, y, da, db, w
-      real(wp) :: ha(2 * terms), hb(2 * terms), stiff
-      integer :: i, q, d
+      real(wp) :: moment(most_terms, most_directions, 2), norm(3), x(3), phi(most_terms), da, db, w, stiff, products(6)
+      real(wp) :: a(most_terms * most_directions), b(most_terms * most_directions), ha, hb
+      integer :: i, j, q, d, terms, axes
+      part%moved = 0.0_wp
+      if (part%edges == 0) return
+      terms = tree%terms
+      axes = size(tree%place, 1)
       moment = 0.0_wp
       norm = 0.0_wp
       do i = part%edge + 1, part%edge + part%edges
@@ -539,27 +604,39 @@ contains
          w = tree%weight(q)
          norm = norm + w * [da * da, da * db, db * db]
          w = w * tree%share(q)
-         x = (tree%place(1, q) - part%centre(1)) / part%size
-         y = (tree%place(2, q) - part%centre(2)) / part%size
-         phi = [1.0_wp, x, y, x * x, x * y, y * y]
+         x(1:axes) = (tree%place(:, q) - part%centre(1:axes)) / part%size
+         if (axes == 2) then
+            phi(1:6) = [1.0_wp, x(1), x(2), x(1) * x(1), x(1) * x(2), x(2) * x(2)]
+         else
+            phi = [1.0_wp, x(1), x(2), x(3), x(1) * x(1), x(1) * x(2), x(1) * x(3), x(2) * x(2), x(2) * x(3), x(3) * x(3)]
+         end if
          d = tree%direction(q)
-         moment(:, d, 1) = moment(:, d, 1) + (w * da) * phi
-         moment(:, d, 2) = moment(:, d, 2) + (w * db) * phi
-      end do
-      do i = 1, 2
-         do d = 1, 2
-            a(terms * (d - 1) + 1:terms * d, i) = matmul(part%fit(:, :, d), moment(:, d, i))
+         do j = 1, terms
+            moment(j, d, 1) = moment(j, d, 1) + (w * da) * phi(j)
+            moment(j, d, 2) = moment(j, d, 2) + (w * db) * phi(j)
          end do
       end do
-      ha = matmul(part%energy, a(:, 1))
-      hb = matmul(part%energy, a(:, 2))
-      stiff = rounding * maxval(abs(part%energy))
-      part%moved(1) = dot_product(a(:, 1), ha) + stiff * dot_product(a(:, 1), a(:, 1))
-      part%moved(2) = dot_product(a(:, 1), hb) + stiff * dot_product(a(:, 1), a(:, 2))
-      part%moved(3) = dot_product(a(:, 2), hb) + stiff * dot_product(a(:, 2), a(:, 2))
-      part%moved(4) = (1.0_wp + rounding) * norm(1) - dot_product(a(:, 1), a(:, 1))
-      part%moved(5) = (1.0_wp + rounding) * norm(2) - dot_product(a(:, 1), a(:, 2))
-      part%moved(6) = (1.0_wp + rounding) * norm(3) - dot_product(a(:, 2), a(:, 2))
+      do i = 1, size(part%of)
+         a(i) = 0.0_wp
+         b(i) = 0.0_wp
+         do j = 1, terms
+            a(i) = a(i) + part%fit(j, i) * moment(j, part%of(i), 1)
+            b(i) = b(i) + part%fit(j, i) * moment(j, part%of(i), 2)
+         end do
+      end do
+      products = 0.0_wp
+      do i = 1, size(part%of)
+         ha = 0.0_wp
+         hb = 0.0_wp
+         do j = 1, size(part%of)
+            ha = ha + part%energy(j, i) * a(j)
+            hb = hb + part%energy(j, i) * b(j)
+         end do
+         products = products + [a(i) * ha, a(i) * hb, b(i) * hb, a(i) * a(i), a(i) * b(i), b(i) * b(i)]
+      end do
+      stiff = rounding * part%stiffest
+      part%moved(1:3) = products(1:3) + stiff * products(4:6)
+      part%moved(4:6) = (1.0_wp + rounding) * norm - products(4:6)
    end subroutine edge_motion
 
    !> Margins of the regions that were brought, from their points and from what is left to the regions below

@@ -8,10 +8,12 @@ api_dem: Any
 api_limit: Any
 api_motion: Any
 api_rocking: Any
+api_soft_base: Any
 api_stack: Any
 api_signal: Any
 api_sla: Any
 api_sla_laws: Any
+api_shell: Any
 api_sla_joints: Any
 api_sla_model: Any
 api_support: Any

@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import time
+from collections import namedtuple
 from collections.abc import Callable
 from contextlib import contextmanager
 from functools import cached_property
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from extrados import interrupts
 from extrados._build_info import VERSION
 from extrados.schema.text import printable
 
@@ -37,7 +39,7 @@ class _Commands(typer.Typer):
                     return function(*args, **keywords)
                 except KeyboardInterrupt:
                     err_console.say("interrupted")
-                    raise typer.Exit(interrupted()) from None
+                    raise typer.Exit(interrupts.exit_code()) from None
 
             add(call)
             return function
@@ -71,19 +73,6 @@ class _Console:
 out_console, err_console = _Console(stderr=False), _Console(stderr=True)
 
 WRONG_DECK, NOT_DONE = 2, 3
-_signals: list[int] = []
-
-
-def _stop(number: int, _: object) -> None:
-    _signals.append(number)
-    raise KeyboardInterrupt
-
-
-def interrupted() -> int:
-    """The exit code after a signal: 130 after Ctrl-C, 143 after SIGTERM."""
-    calls = sys.modules.get("extrados.core.calls")  # where a signal goes while the core computes
-    number = _signals[-1] if _signals else (calls.stopped_by() if calls else 0)
-    return 128 + (number or signal.SIGINT)
 
 
 class _Progress:
@@ -138,7 +127,7 @@ def _errors(json_out: bool = False):
     except StoreError as error:
         tell([str(error)], NOT_DONE)
     except KeyboardInterrupt:
-        tell(["interrupted"], interrupted())
+        tell(["interrupted"], interrupts.exit_code())
 
 
 @app.command()
@@ -169,7 +158,8 @@ def run(
             raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
         for deck in checked:
             progress = _Progress(quiet or as_json)
-            context = Context(deck, _threads(threads), progress, resume=resume, scheduler=scheduler)
+            tell = (lambda text: None) if quiet or as_json else out_console.say
+            context = Context(deck, _threads(threads), progress, tell, resume=resume, scheduler=scheduler)
             try:
                 found = run_to(context, out or deck.default_out, figures=False)
             finally:
@@ -177,8 +167,8 @@ def run(
             if as_json:
                 print(json.dumps(json.loads((found.folder / "summary.json").read_bytes()), indent=2))
             elif not quiet:
-                _tell(found, deck.title)
-            codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": interrupted()}
+                _tell(found, deck.title, len(deck.analyses))
+            codes = {"ok": 0, "refused": NOT_DONE, "failed": NOT_DONE, "interrupted": interrupts.exit_code()}
             for result in found.results:
                 if quiet and result.status != "ok":
                     err_console.say(f"{result.kind}: {result.status}: {result.reason}")
@@ -200,11 +190,11 @@ def _threads(asked: int | None) -> int:
     return min(asked or cores, cores)
 
 
-def _tell(run, title: str) -> None:
-    """The answers of a run."""
+def _tell(run, title: str, count: int | None = None) -> None:
+    """The answers of a run, of its first `count` analyses: those of the deck, without what these have asked for."""
     if title:
         out_console.say(title, "bold")
-    for row in run.analyses:
+    for row in run.analyses[:count]:
         if row["status"] != "ok":
             out_console.say(f"{row['name']}: {row['status']}: {row['reason']}")
         if row["answer"]:
@@ -224,7 +214,7 @@ def _draw(folder: Path, figures: bool, quiet: bool) -> None:
             report = write_report(folder)[0]
         except KeyboardInterrupt:
             err_console.say(f"interrupted while drawing; the results are in {folder}: extrados report draws them")
-            raise typer.Exit(interrupted()) from None
+            raise typer.Exit(interrupts.exit_code()) from None
     if quiet:
         return
     if report is None:
@@ -272,7 +262,7 @@ def motion(
             _tell(found, deck.title)
         status = found.results[0].status
         _draw(found.folder, figures and status != "interrupted", as_json)
-    raise typer.Exit({"ok": 0, "interrupted": interrupted()}.get(status, NOT_DONE))
+    raise typer.Exit({"ok": 0, "interrupted": interrupts.exit_code()}.get(status, NOT_DONE))
 
 
 def _motion_page(result) -> None:
@@ -319,9 +309,13 @@ def check(
             continue
         checked = check_building(deck)
         complaints += checked.complaints
+        folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
         if checked.inspection is not None:
-            folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
             _tell_survey(checked, folder, asked=out is not None)
+        if checked.solids is not None:
+            _tell_solids(checked, folder, asked=out is not None or getattr(deck.structure, "file", None) is not None)
+        if checked.plan is not None:
+            _tell_plan(checked, folder)
     for line in complaints:
         err_console.say(line)
     if complaints:
@@ -366,6 +360,42 @@ def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
         return
     out_console.say(f"Picture: {picture}")
     out_console.say(f"List:    {table}")
+
+
+def _tell_plan(checked: "Checked", folder: Path) -> None:
+    """The size of a building's mesh, and its plan and elevations in a folder."""
+    from extrados.running.check import write_plan
+    from extrados.schema.constants import GRAVITY
+
+    mesh = checked.plan
+    for remark in checked.remarks:
+        out_console.say(f"warning: {remark}")
+    out_console.say(
+        f"{len(mesh.walls)} walls, {mesh.elements()} elements, {len(mesh.xyz)} nodes; walls and floors weigh "
+        f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
+    )
+    try:
+        out_console.say(f"Picture: {write_plan(mesh, folder)}")
+    except OSError as error:
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
+
+
+def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
+    """How many solids touch along how many contacts; their picture where they come from a file, or the folder is asked for."""
+    from extrados.running.check import write_solids
+
+    solids = checked.solids
+    for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
+        out_console.say(line)
+    out_console.say(
+        f"{len(solids.mass)} solids, {len(solids.a)} contacts, {int((solids.b < 0).sum())} of them on the ground"
+    )
+    if not asked:
+        return
+    try:
+        out_console.say(f"Picture: {write_solids(solids, folder)}")
+    except OSError as error:
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
 
 
 @app.command()
@@ -431,13 +461,20 @@ def new(
 
 
 @app.command()
-def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("cases")) -> None:
+def cases(
+    folder: Annotated[
+        Path | None, typer.Argument(help="where to look; default ./cases, else the cases that are shipped")
+    ] = None,
+) -> None:
     """List the decks below a folder with their titles."""
     import tomllib
 
     from extrados.decks.reader import LARGEST
     from extrados.schema import files
+    from extrados.schema.places import CASES
 
+    if folder is None:
+        folder = here if (here := Path("cases")).is_dir() else CASES
     found = False
     for path in sorted(folder.rglob("*.toml")):
         if path.name.endswith(".expect.toml"):
@@ -454,12 +491,106 @@ def cases(folder: Annotated[Path, typer.Argument(help="where to look")] = Path("
 
 
 @app.command()
-def report(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
-    """Draw the figures and the report of stored results anew."""
+def report(
+    folder: Annotated[Path, typer.Argument(help="a results folder")],
+    pdf: Annotated[bool | None, typer.Option(help="also report.pdf; default where the run holds an assessment")] = None,
+) -> None:
+    """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF."""
     from extrados.plots.report import write_report
 
     with _errors():
-        out_console.say(f"Report:  {write_report(folder)[0]}")
+        out_console.say(f"Report:  {write_report(folder, pdf)[0]}")
+
+
+@app.command()
+def compare(
+    old: Annotated[Path, typer.Argument(help="a results folder")],
+    new: Annotated[Path, typer.Argument(help="another one")],
+    tolerance: Annotated[
+        float, typer.Option(min=0.0, help="relative difference up to which numbers are the same")
+    ] = 1e-9,
+    page: Annotated[Path | None, typer.Option(help="also write the comparison as an HTML page")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="print it as JSON")] = False,
+) -> None:
+    """What changed between two results: deck, verdicts, numbers, warnings, program."""
+    from dataclasses import asdict
+
+    from rich.table import Table
+
+    from extrados.plots.comparing import MOST, document, row
+    from extrados.results.compare import compare as compared
+    from extrados.results.store import StoreError, read
+
+    with _errors(as_json):
+        found = compared(read(old), read(new), tolerance)
+        if as_json:
+            print(json.dumps(asdict(found), indent=2))
+        elif found.same:
+            out_console.say("Nothing but the time it took differs.")
+        tables = {"verdicts": found.verdicts, "deck": found.deck, "program": found.program, **found.numbers}
+        for title, there in tables.items() if not as_json else ():
+            if not there:
+                continue
+            table = Table(box=None, pad_edge=False, title=printable(title), title_justify="left")
+            for head in ("key", "before", "after", "after / before"):
+                table.add_column(head, overflow="fold")
+            for change in there[:MOST]:
+                table.add_row(*(printable(text) for text in row(change)))
+            out_console.print(table)
+            if len(there) > MOST:
+                out_console.say(f"and {len(there) - MOST} smaller ones")
+        for words, lines in (("gone", found.warnings_gone), ("new", found.warnings_new)):
+            for line in lines if not as_json else ():
+                out_console.say(f"warning {words}: {line}")
+        if page is not None:
+            from extrados.plots import html
+
+            try:
+                page.write_text(
+                    html.page(document((str(old), str(new)), found), page.parent),
+                    encoding="utf-8",
+                    errors="backslashreplace",
+                )
+            except OSError as error:
+                raise StoreError(f"{page}: cannot be written: {error.strerror or error}") from None
+
+
+@app.command()
+def assess(
+    folder: Annotated[Path, typer.Argument(help="a folder of decks; common.toml gives them what they lack")],
+    out: Annotated[Path | None, typer.Option(help="results folder; default results/<folder name>")] = None,
+    threads: Annotated[int | None, typer.Option(min=1, help="threads of the core; default all")] = None,
+    resume: Annotated[bool, typer.Option(help="go on from the checkpoint of an interrupted run")] = False,
+    scheduler: Annotated[str, typer.Option(help="address of a dask scheduler that runs the buildings")] = "",
+    figures: Annotated[bool, typer.Option(help="draw figures and reports")] = True,
+    quiet: Annotated[bool, typer.Option("--quiet", help="no progress, no ranking")] = False,
+) -> None:
+    """Assess every building of a folder: a ranking, worst first, and a page for each."""
+    from rich.table import Table
+
+    from extrados.running.survey import assess_folder, decks_of
+
+    with _errors():
+        total = len(decks_of(folder))
+        place = out or Path("results") / (folder.resolve().name or "survey")
+        progress = _Progress(quiet)
+        try:
+            rows = assess_folder(folder, place, _threads(threads), progress, resume, scheduler, figures)
+        finally:
+            progress.stop()
+        table = Table(box=None, pad_edge=False)
+        for head in ("rank", "building", "overall", "least margin", "of"):
+            table.add_column(head)
+        for k, one in enumerate(rows, 1):
+            known = f"{one.least_margin:.3g}" if one.least_margin == one.least_margin else ""
+            table.add_row(str(k), printable(one.building), one.overall or one.status, known, one.strategy)
+        if not quiet:
+            out_console.print(table)
+            out_console.say(f"Ranking: {place / 'ranking.html'}")
+    if len(rows) < total:
+        err_console.say(f"{total - len(rows)} of {total} buildings are missing; --resume goes on from here")
+        raise typer.Exit(interrupts.exit_code())
+    raise typer.Exit(0 if all(one.status == "ok" for one in rows) else NOT_DONE)
 
 
 @app.command()
@@ -510,18 +641,24 @@ def main() -> None:
     logging.basicConfig(level=logging.WARNING, format="%(message)s")
     for stream in (sys.stdout, sys.stderr):
         stream.reconfigure(errors="backslashreplace")  # a terminal may know ASCII alone
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, _stop)
     code: int | str | None = 0
     try:
         try:
+            interrupts.answer(interrupts.stop)
             app()
         except SystemExit as left:
             code = left.code
         except KeyboardInterrupt:
-            code = interrupted()
-        for number in (signal.SIGINT, signal.SIGTERM):  # what is to be done is done
-            signal.signal(number, signal.SIG_IGN)
+            code = interrupts.exit_code()
+        except Exception:
+            if not interrupts.asked:  # a library that was interrupted may call it an error of its own
+                raise
+            code = interrupts.exit_code()
+        interrupts.answer(signal.SIG_IGN)  # what is to be done is done
+        if code and interrupts.asked:
+            code = interrupts.exit_code()  # typer has one of its own
+            # CPython kills itself at its end where a text that it evaluated was interrupted, unless another follows
+            namedtuple("Text", "")
         sys.stdout.flush()
     except OSError as error:
         # the reader of our output went away, as in `extrados cases | head`, or what it goes to is full

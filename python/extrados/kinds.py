@@ -39,6 +39,10 @@ STRUCTURES: dict[str, str] = {
     "brickwork": "building.templates.brickwork:Brickwork",
     "frame": "building.templates.frame:Frame",
     "stack": "building.templates.stack:Stack",
+    "building": "building.templates.plan:Plan",
+    "wall": "building.templates.wall:Wall",
+    "dome": "building.templates.dome:Dome",
+    "cross-vault": "building.templates.cross_vault:CrossVault",
 }
 MOTIONS: dict[str, str] = {
     "constant": "motions.tables:Constant",
@@ -63,7 +67,9 @@ def _analysis(room: str, table: str, driver: str, figures: str, example: str) ->
 
 
 ANALYSES: dict[str, AnalysisKind] = {
-    "tilt": _analysis("limit", "Tilt", "tilt", "limit.tilt:draw", "limit/oppenheim"),
+    "tilt": AnalysisKind(
+        "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "plots.solids:draw_tilt", "limit/oppenheim.toml"
+    ),
     "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "vault/dejong-a"),
     "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "vault/vezelay-sweep"),
     "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "limit/survey"),
@@ -91,11 +97,16 @@ ANALYSES: dict[str, AnalysisKind] = {
         "statistics", "HarmonicMap", "harmonic_map", "statistics:draw_harmonic_map", "rocking/el-centro-block"
     ),
     "code-checks": _analysis("codes", "CodeChecks", "code_checks", "statistics:draw_code_checks", "rocking/el-centro-block"),
+    "local-mechanism": _analysis(
+        "codes", "LocalMechanism", "local_mechanism", "codes:draw_local_mechanism", "codes/facade"
+    ),
     "motion": _analysis("motion", "MotionStudy", "motion_study", "motion:draw_motion", "motion/el-centro"),
     "shake-table": _analysis("motion", "ShakeTable", "shake_table", "motion:draw_shake_table", "motion/appendix-c"),
     "sla": _analysis("sla", "Sla", "driver", "sla:draw_sla", "sla/beam"),
+    "pushover": _analysis("shell", "Pushover", "pushover", "shell:draw_pushover", "building/two-rooms"),
     "dem": _analysis("dem", "Dem", "driver", "dem:draw_dem", "dem/oppenheim"),
     "dem-domain": _analysis("dem", "DemDomain", "dem_domain", "dem:draw_domain", "dem/domain"),
+    "assess": _analysis("assess", "Assess", "driver", "assess:draw_assess", "assess/readme-arch"),
     "dem-parameters": _analysis("dem", "DemParameters", "dem_parameters", "dem:draw_parameters", "dem/rocking-block"),
 }  # fmt: skip
 

@@ -3,9 +3,10 @@ program test_sla
    use common_kinds, only : wp
    use common_status, only : status_ok
    use common_lists, only : element_q4 => sla_element_q4, law_linear => sla_law_linear
-   use sla_events, only : run_events, stop_rules, event_log, log_reals, log_integers
+   use sla_events, only : run_events, stop_rules
    use sla_group, only : element_group, material_options
-   use sla_handle, only : both_directions
+   use sla_handle, only : all_directions
+   use sla_ledger, only : event_log, log_reals, log_integers
    use sla_model, only : element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free
    use sla_plane, only : plane_group, plane_group_new
    use sla_sawtooth, only : make_teeth
@@ -36,8 +37,8 @@ contains
       real(wp) :: xy(2, (nx + 1) * (ny + 1)), factor(2, (nx + 1) * (ny + 1)), load(2, (nx + 1) * (ny + 1))
       integer(c_int) :: equation(2, (nx + 1) * (ny + 1)), connect(4, nx * ny), bad, row, node, direction, reason
       integer(c_int), allocatable :: nodes(:, :), directions(:, :)
-      integer(c_int), parameter :: one_table(3) = [1_c_int, 0_c_int, 0_c_int]
-      real(wp) :: each(nx * ny), ratio, gap
+      integer(c_int) :: choice(5, nx * ny)
+      real(wp) :: property(11, nx * ny), ratio, gap
       integer :: i, j, k, e
 
       do i = 0, nx
@@ -64,15 +65,16 @@ contains
       call tooth_tables_new(reshape([1.0_wp, 7.0e9_wp, 0.3e6_wp, 47.0_wp, 0.17_wp, 0.2_wp, 1.0_wp, 1.0_wp], [8, 1]), &
          teeth, row, status)
       if (status /= status_ok) error stop 'no teeth'
-      each = 1.0_wp
       allocate (plane)
-      call plane_group_new(element_q4, 2_c_int, 2_c_int, .false., xy, connect, 0.21_wp * each, 7.0e9_wp * each, &
-         0.19_wp * each, spread(one_table, 2, size(each)), 0 * nint(each, c_int), 0.0_wp * each, &
-         0.0_wp * each, 0 * nint(each, c_int), 0.0_wp * each, spread(0.0_wp * each, 1, 5), &
-         teeth, options, plane, bad, status)
+      property = 0.0_wp
+      property(1:3, :) = spread([0.21_wp, 7.0e9_wp, 0.19_wp], 2, nx * ny)
+      choice = 0
+      choice(1, :) = 1
+      call plane_group_new(element_q4, 2_c_int, 2_c_int, .false., xy, connect, property, choice, teeth, options, &
+         plane, bad, status)
       if (status /= status_ok) error stop 'no elements'
       call move_alloc(plane, group)
-      call both_directions(connect, nodes, directions, status)
+      call all_directions(connect, 2, nodes, directions, status)
       if (status == status_ok) call model_add(model, group, nodes, directions, status)
       if (status == status_ok) call model_prepare(model, 0_c_int, huge(1_c_int64_t), status)
       if (status == status_ok) call model_factor(model, node, direction, ratio, status)

@@ -16,7 +16,8 @@ PACKAGE = ROOT / "python" / "extrados"
 MAY_IMPORT = {
     "schema": set(),
     "kinds": set(),
-    "core": {"_core", "schema"},
+    "interrupts": set(),
+    "core": {"_core", "interrupts", "schema"},
     "geometry": {"errors", "schema"},
     "errors": set(),
     "limit": {"geometry", "errors", "core", "schema"},
@@ -28,7 +29,7 @@ MAY_IMPORT = {
     "results": {"kinds", "schema", "_build_info"},
     "analyses": {
         "kinds", "tables", "decks", "building", "geometry", "errors", "rockers", "motions", "limit", "core", "results",
-        "schema",
+        "schema", "interrupts",
     },
     "plots": {"kinds", "results", "schema"},
     "running": {"kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
@@ -36,8 +37,8 @@ MAY_IMPORT = {
         "kinds", "analyses", "tables", "building", "geometry", "errors", "limit", "decks", "motions", "core", "results", "plots",
         "running", "schema", "_build_info",
     },
-    "cli": {"kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info"},
-    "__main__": {"cli"},
+    "cli": {"interrupts", "kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info"},
+    "__main__": {"cli", "interrupts"},
     "": {"analyses", "decks", "running", "explore"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit
@@ -55,6 +56,7 @@ MAY_USE = {
     "arch": {"common", "mechanism"},
     "rocking": {"common", "arch", "mechanism"},
     "sla": {"common"},
+    "shell": {"common", "sla"},
     "dem": {"common"},
     "motion": {"common"},
     "limit": {"common"},

@@ -118,7 +118,7 @@ WRONG = {
         "there is no stage 'two'", PANEL + SLA + 'main_stage = "two" # here\n[[analysis.stages]]\nname = "one"\n'
         '[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n',
     ),
-    "no stages": ("holds none", PANEL + SLA + "stages = [] # here\n"),
+    "no stages": ("expected at least 1", PANEL + SLA + "stages = [] # here\n"),
     "speed of no film": ("needs animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
     "wall without a load": (
         "give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',

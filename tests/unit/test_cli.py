@@ -221,6 +221,28 @@ main()
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(
+    "becomes", ["SystemExit(130)", "SystemExit(1)", "ImportError('initialization failed')", "KeyboardInterrupt"]
+)
+def test_signals_that_a_library_makes_something_else_of(tmp_path, number, becomes) -> None:
+    """The code is the signal's, though it came while the library evaluated a text, which CPython remembers to its end."""
+    code = f"""
+from extrados import cli
+def app():
+    try:
+        exec("import os, time; os.kill(os.getpid(), {int(number)}); time.sleep(5)")
+    except KeyboardInterrupt:
+        raise {becomes}
+cli.app = app
+cli.main()
+"""
+    (tmp_path / "library.py").write_text(code)
+    run = subprocess.run([sys.executable, "-m", "library"], capture_output=True, text=True, cwd=tmp_path)
+    assert run.returncode == 128 + number and "Traceback" not in run.stderr, run.stderr
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 def test_ctrl_c_ends_a_computation_in_another_thread() -> None:
     """Python answers it in the main thread; the computation does not go on unseen, and the handlers come back."""
     code = """
@@ -256,3 +278,12 @@ def test_more_threads_than_cores_are_not_started(tmp_path) -> None:
         *words,
     )
     assert run.returncode == 0 and "--threads 100000: this process may use" in run.stderr
+
+
+def test_cases_away_from_the_sources(tmp_path) -> None:
+    """Where there is no folder of that name the shipped ones are listed; an own one comes first."""
+    shipped = extrados("cases", cwd=tmp_path)
+    assert shipped.returncode == 0 and "readme.toml: " in shipped.stdout
+    (tmp_path / "cases").mkdir()
+    (tmp_path / "cases" / "mine.toml").write_text('title = "Mine"\n')
+    assert extrados("cases", cwd=tmp_path).stdout.split() == ["cases/mine.toml:", "Mine"]

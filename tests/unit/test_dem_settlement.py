@@ -1,5 +1,6 @@
 """Discrete elements settle, they do not fall: what cannot stand is not reported standing."""
 
+import itertools
 import json
 
 import numpy as np
@@ -9,6 +10,7 @@ import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.dem.model import make_model
 from extrados.analyses.dem.settlement import TIMES, closed_settlement, farthest_settlement
+from extrados.building.geometry.convex import overlap_depth
 from extrados.core import dem
 from extrados.core.ground import as_motion_set
 from extrados.decks.reader import read_text
@@ -96,3 +98,92 @@ def test_gaps_of_a_survey_may_close(tmp_path) -> None:
     )
     (tmp_path / "deck.toml").write_text(text)
     assert extrados.run(tmp_path / "deck.toml").results[0].status == "ok"
+
+
+def surveyed(stones: dict, noise: float, seed: int = 0) -> dict:
+    """Stones whose corners, and a point midway along each side, are measured each for itself with an error up to `noise`."""
+    random = np.random.default_rng(seed)
+    found = {}
+    for name, points in stones.items():
+        corners = np.array(points, dtype=float)
+        both = np.stack([corners, 0.5 * (corners + np.roll(corners, -1, axis=0))], axis=1).reshape(-1, 2)
+        on_ground = both[:, 1] == 0.0
+        both += random.uniform(-noise, noise, both.shape)
+        both[on_ground, 1] = 0.0
+        found[name] = both.tolist()
+    return found
+
+
+PIERS = {
+    f"{side} {k}": [[x, y], [x + 0.5, y], [x + 0.5, y + 0.4], [x, y + 0.4]]
+    for side, x in (("left", 0.0), ("right", 1.5))
+    for k, y in enumerate(np.linspace(0.0, 1.6, 5))
+}
+FRAME = PIERS | {"lintel": [[0, 2], [2, 2], [2, 2.4], [0, 2.4]]}
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_a_survey_with_faces_that_overlap_and_bend_stands(tmp_path, seed) -> None:
+    blocks = [{"name": name, "points": points} for name, points in surveyed(FRAME, 1.5e-3, seed).items()]
+    (tmp_path / "stones.json").write_text(json.dumps({"unit": "m", "blocks": blocks}))
+    deck = tmp_path / "deck.toml"
+    deck.write_text(
+        '[structure]\nkind = "blocks"\nfile = "stones.json"\ncontact_tolerance = "4 mm"\n[joints]\nfriction = 0.7\n'
+        '[[analysis]]\nkind = "dem"\n'
+    )
+    found = extrados.run(deck).results[0]
+    assert found.status == "ok", found.reason
+    assert found["outcome"] == "no-hinging"
+    rigid = extrados.decks.reader.read_deck(deck).building.rigid()
+    assert [len(part) for part in rigid.parts] == [4] * len(rigid.parts)  # one edge a face
+    deepest = max(
+        overlap_depth(one, other)
+        for (one, a), (other, b) in itertools.combinations(zip(rigid.parts, rigid.owner, strict=True), 2)
+        if a != b
+    )
+    assert deepest < 1e-9
+
+
+TOPPLING = (
+    '[structure]\nkind = "block"\nwidth = 0.5\nheight = 2.0\n[motion]\nkind = "step-pulse"\namplitude = "1 g"\nduration = 0.4\n'
+    '[[analysis]]\nkind = "dem"\nstop_at_collapse = false\nend_time = 2.5\n'
+)
+
+
+def test_no_floor_that_the_deck_does_not_name(tmp_path) -> None:
+    deck = tmp_path / "deck.toml"
+    deck.write_text(TOPPLING)
+    falling = extrados.run(deck).array("dem", "place")[:, 0, 1]
+    deck.write_text(TOPPLING + "floor = 0.0\n")
+    caught = extrados.run(deck).array("dem", "place")[:, 0, 1]
+    assert falling.min() < -1.0  # off its footing and on
+    assert 0.2 < caught.min() < 0.3  # on its side
+
+
+def test_two_piers_on_one_level_have_footings_of_their_own(tmp_path) -> None:
+    blocks = [{"name": name, "points": points} for name, points in FRAME.items()]
+    (tmp_path / "stones.json").write_text(json.dumps({"unit": "m", "blocks": blocks}))
+    deck = read_text(
+        b'[structure]\nkind = "blocks"\nfile = "stones.json"\n[[analysis]]\nkind = "dem"\n', folder=tmp_path
+    )
+    bare, floored = deck.building.rigid(), deck.building.rigid(floor=0.0)
+    left, right = bare.parts[-2:]
+    assert [left[:, 0].min(), left[:, 0].max()] == pytest.approx([-0.125, 0.625])
+    assert [right[:, 0].min(), right[:, 0].max()] == pytest.approx([1.375, 2.125])
+    floor = [part for part, owner in zip(floored.parts, floored.owner, strict=True) if floored.names[owner] == "floor"]
+    # before, between and behind the footings, and over none of them
+    assert [part[:, 0].min() for part in floor[1:]] == pytest.approx([0.625, 2.125])
+    assert [part[:, 0].max() for part in floor[:2]] == pytest.approx([-0.125, 1.375])
+
+
+def test_what_slides_off_its_footing_is_told_of_the_floor(tmp_path) -> None:
+    deck = tmp_path / "deck.toml"
+    sliding = TOPPLING.replace("height = 2.0", "height = 0.2").replace("[motion]", "[joints]\nfriction = 0.3\n[motion]")
+    deck.write_text(sliding)
+    off = extrados.run(deck).results[0]
+    deck.write_text(sliding + "floor = 0.0\n")
+    on = extrados.run(deck).results[0]
+    assert any("slides off its footing: floor = " in text for text in off.warnings)
+    assert not any("footing" in text for text in on.warnings)
+    assert on.arrays["place"].data[:, 0, 1].min() == pytest.approx(0.1, abs=1e-3)
+    assert np.abs(on.arrays["place"].data[:, 0, 0] - 0.25).max() > 0.125

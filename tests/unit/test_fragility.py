@@ -8,9 +8,11 @@ from scipy.optimize import minimize
 from scipy.stats import norm
 
 import extrados
+from extrados.analyses import batches
 from extrados.analyses.codes.code_rules import asce43, ishiyama, piers
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
+from extrados.analyses.statistics import summaries
 from extrados.analyses.statistics.resonance import (
     cap_for_collapse_within,
     half_cycles_to_collapse,
@@ -391,3 +393,41 @@ def test_one_verdict_of_all_code_checks() -> None:
         {"kind": "code-checks", "axial_load": "10 MN", "material": {"compressive_strength": "2 MPa"}}, motion=None
     )
     assert crushed.status == "refused" and "crushes" in crushed.reason
+
+
+def test_rows_that_stay_on_disk_give_the_same(tmp_path, monkeypatch) -> None:
+    """A large ensemble keeps its rows beside the folder and reads them piece by piece: table, arrays and results are those
+    of one in memory; sums of pieces differ by rounding."""
+    deck = {
+        "structure": {"kind": "block", "width": 0.1, "height": 0.4},
+        "motion": {"kind": "generated", "mmi": 6.0, "duration": 0.6, "seed": 3},
+        "analysis": [{"kind": "fragility", "count": 900}],
+    }
+    whole = extrados.run(deck, out=tmp_path / "memory")
+    monkeypatch.setattr(batches, "IN_MEMORY", 100)
+    monkeypatch.setattr(batches, "PIECE", 70)
+    monkeypatch.setattr(summaries, "FEW", 40)
+    streamed = extrados.run(deck, out=tmp_path / "disk")
+    table = [(tmp_path / place / "ensemble.csv").read_bytes() for place in ("memory", "disk")]
+    assert table[0] == table[1] and table[0].count(b"\n") == 901
+    assert not (tmp_path / "disk.checkpoint").exists()
+    for name in ("outcome", "peak_ratio", "pga", "pgv"):
+        expected = whole.array("fragility", name)
+        assert (streamed.array("fragility", name) == expected).all()  # after the batches beside the folder are gone
+        assert (extrados.load(tmp_path / "disk").array("fragility", name) == expected).all()
+    before, after = whole["fragility"].as_json(), streamed["fragility"].as_json()
+    assert before.keys() == after.keys()
+    for key, value in before.items():
+        assert after[key] == (pytest.approx(value, rel=1e-12) if isinstance(value, float) else value), key
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_median_of_pieces_is_the_median(seed: int, monkeypatch) -> None:
+    monkeypatch.setattr(summaries, "FEW", 20)
+    monkeypatch.setattr(summaries, "BINS", 16)
+    generator = np.random.default_rng(seed)
+    values = np.minimum(generator.lognormal(-0.5, 1.0, 301 + seed), 1.0)  # many are equal
+    values[generator.random(len(values)) < 0.1] = np.nan
+    found = summaries.median(lambda: iter(np.array_split(values, 7)))
+    assert found == np.nanmedian(values)
+    assert summaries.median(lambda: iter([np.full(3, np.nan)])) is None

@@ -79,10 +79,35 @@ def test_rules_that_differ_are_told_with_their_outcomes() -> None:
     assert told["thesis"].restitution == 1.0 > told["inelastic"].restitution > told["energy-safe"].restitution
     assert told["inelastic"].outcome == run["rocking"].outcome
     assert any("impact rules differ" in text for text in run.results[0].warnings)
-    near = extrados.run(deck(0.2, 157.5, 0.05))
+    near = extrados.run(deck(0.15, 150.0, 0.05))
     assert "outcomes_by_rule" not in near["rocking"]
     given = extrados.run(deck(0.1, 157.5, 0.05, 0.5))
     assert "outcomes_by_rule" not in given["rocking"]
+
+
+def test_where_the_blow_loses_too_much_the_answer_says_so() -> None:
+    """Stocky arches keep more in discrete elements, and motion that repeats itself fast fells them far earlier: both are told
+    with what the run does where it keeps more; a motion that is slow, or has no beat, is not warned of."""
+
+    def told(structure: dict, motion: dict, **keys) -> tuple[list[str], dict[str, str]]:
+        run = extrados.run({"structure": structure, "motion": motion, "analysis": [{"kind": "rocking", **keys}]})
+        outcomes = {one.rule: one.outcome for one in getattr(run["rocking"], "outcomes_by_rule", None) or ()}
+        return [w for w in run.results[0].warnings if "discrete elements" in w], outcomes
+
+    arch1 = {"kind": "arch", "radius": 0.2, "thickness": 0.024, "embrace": 162.0, "voussoirs": 16}
+    shake = {"kind": "harmonic", "amplitude": "0.5 g", "frequency": 6.0, "carrier": 0.1, "duration": 5.0}
+    (warning,), outcomes = told(arch1, shake)
+    assert "above 5 Hz" in warning and outcomes["inelastic"] == "recovery" and outcomes["1.000"] == "collapse"
+    quiet, _ = told(arch1, {**shake, "frequency": 3.0, "amplitude": "0.23 g"})
+    assert not quiet
+    wide = {"kind": "arch", "radius": 1.0, "thickness": 0.144, "embrace": 170.0, "voussoirs": 34}
+    quiet, outcomes = told(wide, {"kind": "record", "file": "extrados:el-centro-1940"}, output_step=0.02)
+    assert not quiet and outcomes["inelastic"] == "recovery"
+    stocky = {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 140.0, "voussoirs": 13}
+    (warning,), outcomes = told(stocky, {"kind": "step-pulse", "amplitude": "1.0 g", "duration": 0.1})
+    assert "stocky" in warning and outcomes["0.587"] == "recovery"
+    quiet, _ = told(stocky, {"kind": "step-pulse", "amplitude": "0.3 g", "duration": 0.1})  # it does not rock
+    assert not quiet
 
 
 def test_a_run_on_the_edge_says_so() -> None:

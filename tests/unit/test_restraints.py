@@ -11,9 +11,12 @@ import extrados
 from extrados.building.building import Building
 from extrados.building.devices import AddedHinge, Damper
 from extrados.building.properties import Initial, Joints, Supports
+from extrados.building.rockers.block import block_model
+from extrados.building.rockers.restraints import three_impacts
 from extrados.building.templates.arch import Arch
 from extrados.building.templates.block import Block
 from extrados.building.ties import Tie
+from extrados.core import mechanism as core_mechanism
 from extrados.core.ground import Ground
 from extrados.core.rocking import ensemble, history
 from extrados.decks.reader import DeckError, read_text
@@ -257,8 +260,44 @@ def test_wrong_dampers_and_hinges_are_told_with_their_line() -> None:
     assert "hinges.joints: hinge 1: there is no joint 'sole'" in reason
 
 
+def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
+    """A blow without rebound at each corner that approaches, in turn: the far toe, the top at the wall, the near toe, again and
+    again, until nothing moves. The impacts of the default rebound leave more: an upper bound."""
+    structure = Block(kind="block", mass=5000.0, inertia=9000.0, centre_height=2.0, toe_right=0.4, toe_left=0.25)
+    model = block_model(Building(structure))
+    b = model.block
+    for side in (0, 1):
+        way = 1.0 if side == 0 else -1.0  # it falls back from +x to a wall at -x, or the other way round
+        near, far = (b.toe_right, b.toe_left) if side == 0 else (b.toe_left, b.toe_right)
+        away, up = np.array([way, 0.0]), np.array([0.0, 1.0])
+        corners = [(-far * away, up), (-far * away + 2.0 * b.centre_height * up, away), (near * away, up)]
+        centre = b.centre_height * up
+
+        def at(place: np.ndarray, velocity: np.ndarray, centre: np.ndarray = centre) -> np.ndarray:
+            arm = place - centre
+            return velocity[:2] + velocity[2] * np.array([-arm[1], arm[0]])
+
+        velocity = np.array([-way * centre[1], way * (centre[0] - near * way), way])  # about the near toe
+        assert at(corners[2][0], velocity) == pytest.approx(0.0, abs=1e-12)
+        before, struck = abs(velocity[2]), []
+        for _ in range(60):
+            approach = [k for k, (place, normal) in enumerate(corners) if normal @ at(place, velocity) < -1e-9]
+            if not approach:
+                break
+            struck.append(approach[0])
+            place, normal = corners[approach[0]]
+            velocity = core_mechanism.inelastic_blow(
+                b.mass, b.inertia, centre[None], [[0, -1]], np.array([[place, place]]),
+                np.array([[normal, [normal[1], -normal[0]]]]), velocity[None],
+            )[0]  # fmt: skip
+            assert at(place, velocity) == pytest.approx(0.0, abs=1e-8)
+        assert struck[:3] == [0, 1, 2]
+        assert abs(velocity[2]) < 1e-3 * before
+        assert three_impacts(model, side) > 0.3
+
+
 def test_a_block_before_a_wall_rocks_away_from_it_only() -> None:
-    """Free rocking: at each return the rate is turned and multiplied by the three impacts of Sorrentino and others (2011)."""
+    """Free rocking: at each return the rate is turned and multiplied by the default rebound."""
     building = Building(
         Block(kind="block", width=0.6, height=6.0),
         supports=Supports(abutting_wall="left"),

@@ -363,6 +363,43 @@ def test_constant_loads_are_not_brought_on_again(kept: int, tmp_path: Path, monk
         assert np.asarray(array.data).tobytes() == np.asarray(resumed.arrays[name].data).tobytes(), name
 
 
+@pytest.mark.parametrize(
+    "structure, friction",
+    [
+        ("kind = 'brickwork'\nunit_length = 0.5\nunit_height = 0.25\nunits = 3\ncourses = 4", 0.4),
+        ("kind = 'vault'\npreset = 'dejong-a'", 0.35),
+    ],
+)
+def test_joints_that_slide_go_on_with_the_same_bits(
+    structure: str, friction: float, tmp_path: Path, monkeypatch
+) -> None:
+    """Interrupted each time their state is kept: what sticks, what slides and the forces of friction are kept with it."""
+    monkeypatch.setattr("extrados.analyses.sla.events.KEPT", 40)
+    monkeypatch.setattr("extrados.analyses.sla.events.GRID", 40)
+    deck = make_deck(
+        tomllib.loads(f"[structure]\n{structure}\n[joints]\nfriction = {friction}\n[analysis]\nkind = 'sla'\n")
+    )
+    real = Checkpoint.keep
+
+    def keep(self, *args):
+        calls._ask()
+        return real(self, *args)
+
+    (whole,) = run_analyses(Context(deck))
+    assert (whole["event_code"] >= core.EVENT["slide"]).sum() > 50 and len(whole["event_code"]) > 150
+    stops = 0
+    with monkeypatch.context() as patch:
+        patch.setattr(Checkpoint, "keep", keep)
+        for _ in range(20):
+            (found,) = run_analyses(Context(deck, out=tmp_path / "run", resume=stops > 0))
+            if found.status != "interrupted":
+                break
+            stops += 1
+    assert stops >= 2 and found.answer == whole.answer
+    for name, array in whole.arrays.items():
+        assert np.asarray(array.data).tobytes() == np.asarray(found.arrays[name].data).tobytes(), name
+
+
 def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
     """Its state is kept when it is stopped; the resumed one takes only the steps that were missing."""
     deck, out = make_deck(tomllib.loads(DECKS["dem, one run"])), tmp_path / "run"

@@ -108,10 +108,13 @@ def capacity(structure: dict, friction: float | str, kind: str, **options):
     [
         ("arch", 0.7, 1e-4, 1e-4),  # Oppenheim: hinges, as without sliding
         ("vault", 0.7, 1e-4, 1e-4),
+        ("vault", 0.35, 1e-4, 1e-4),  # a point that slides lets its neighbour stick: only both at once go on
+        ("vault", 0.3, 1e-4, 1e-4),
         ("block", 0.7, 1e-4, 1e-4),  # rocks at width over height
         ("block", 0.2, 1e-6, 1e-6),  # slides
         ("column", 0.2, 1e-6, 1e-6),
         ("brickwork", 0.5, 1e-5, 1e-5),
+        ("brickwork", 0.2, 1e-5, 1e-5),
         ("arch", 0.4, 1e-5, 1e-5),  # hinges and joints that slide
         ("arch", 0.25, 5e-5, 5e-5),
     ],

@@ -24,5 +24,5 @@ def test_a_starter_runs_as_it_is(section: str, kind: str, tmp_path: Path) -> Non
     asked = {"structure": deck.structure, "motion": deck.motion, "analysis": deck.analyses[0]}[section]
     assert asked is not None and asked.kind == kind
     run = compute(Context(deck, threads=2))
-    assert [(a["status"], a["reason"]) for a in run.analyses] == [("ok", "")]
+    assert {(a["status"], a["reason"]) for a in run.analyses} == {("ok", "")}
     assert run.analyses[0]["answer"] and not list(tmp_path.iterdir())

@@ -10,9 +10,10 @@ A search, whose next question depends on the answers so far, is one sweep for ea
 
 import contextlib
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -22,10 +23,13 @@ from extrados.analyses.context import Context, Refused
 from extrados.core.calls import cancel_requested, interruptible, thread_count
 from extrados.core.errors import Cancelled, status_code
 from extrados.results.checkpoint import fingerprint
+from extrados.results.model import Streamed
 
 #: A batch should take about this long [s]; the first one has few members, to learn their speed.
 BATCH_SECONDS, FIRST_BATCH, LARGEST_BATCH = 1.0, 32, 1_000_000
 CONNECT_SECONDS = 10.0
+#: Rows that are kept in memory; of more, where a sweep may have them, so many are looked at at a time
+IN_MEMORY, PIECE = 200_000, 100_000
 
 
 class Job(Protocol):
@@ -42,20 +46,71 @@ class Unfinished(Exception):
 
 @dataclass(frozen=True)
 class Swept:
-    """Rows of all finished members in their order; `members` names them. `stopped` says why some are missing."""
+    """Rows of all finished members in their order; `members` names them. `stopped` says why some are missing.
 
-    members: np.ndarray
-    arrays: dict[str, np.ndarray]
+    parts: first member and number of rows of each batch; pick(first, names): rows of a batch, from memory or from disk.
+    """
+
+    parts: list[tuple[int, int]]
+    names: tuple[str, ...]
+    pick: Callable[[int, Sequence[str]], dict[str, np.ndarray]]
     count: int
+    on_disk: bool = False
     stopped: str = ""
     interrupted: bool = False
 
     @property
+    def finished(self) -> int:
+        """Number of members with rows."""
+        return sum(rows for _, rows in self.parts)
+
+    @property
     def complete(self) -> bool:
-        return len(self.members) == self.count
+        return self.finished == self.count
+
+    @cached_property
+    def members(self) -> np.ndarray:
+        """Numbers of the finished members."""
+        found = [np.arange(first, first + rows) for first, rows in self.parts]
+        return np.concatenate(found) if found else np.zeros(0, int)
+
+    @cached_property
+    def arrays(self) -> dict[str, np.ndarray]:
+        """All rows, in memory."""
+        parts = [self.pick(first, self.names) for first, _ in self.parts]
+        return {n: np.concatenate([part[n] for part in parts]) for n in self.names}
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self.arrays[name]
+
+    def pieces(self, *names: str) -> Iterator[tuple[np.ndarray, dict[str, np.ndarray]]]:
+        """Members and their rows, all at once where they are in memory, else PIECE after PIECE: sums over pieces do not
+        depend on how the sweep was cut."""
+        if not self.on_disk:
+            if len(self.members):
+                yield self.members, {n: self.arrays[n] for n in names}
+            return
+        members, rows = np.zeros(0, int), {n: [] for n in names}  # type: dict[str, list[np.ndarray]]
+        for first, length in self.parts:
+            part = self.pick(first, names)
+            members = np.concatenate([members, np.arange(first, first + length)])
+            for n in names:
+                rows[n].append(part[n])
+            while len(members) >= PIECE:
+                whole = {n: np.concatenate(found) for n, found in rows.items()}
+                yield members[:PIECE], {n: found[:PIECE] for n, found in whole.items()}
+                members, rows = members[PIECE:], {n: [found[PIECE:]] for n, found in whole.items()}
+        if len(members):
+            yield members, {n: np.concatenate(found) for n, found in rows.items()}
+
+    def column(
+        self, name: str, change: Callable[[np.ndarray], np.ndarray] = lambda rows: rows
+    ) -> np.ndarray | Streamed:
+        """One row of each member, changed; to be read from disk where the rows lie there."""
+        if not self.on_disk:
+            return change(self[name])
+        kind = change(self.pick(self.parts[0][0], [name])[name][:1]).dtype
+        return Streamed(self.finished, kind, lambda: (change(rows[name]) for _, rows in self.pieces(name)))
 
     def whole(self) -> "Swept":
         """Itself; Unfinished where members are missing."""
@@ -90,22 +145,36 @@ def stacked(rows: Callable[[int], dict[str, np.ndarray]], first: int, count: int
 class _Batches:
     """Finished rows, wherever they come from, and what is still to do."""
 
-    def __init__(self, context: Context, name: str, job: Job, count: int, tell: Callable[[int], None]):
+    def __init__(
+        self, context: Context, name: str, job: Job, count: int, tell: Callable[[int], None], large: bool = False
+    ):
         self.context, self.count, self.tell = context, count, tell
-        self.parts: dict[int, dict[str, np.ndarray]] = {}
+        #: first member -> rows, or where they lie
+        self.parts: dict[int, dict[str, np.ndarray] | Path] = {}
+        self.rows: dict[int, int] = {}
+        self.names: tuple[str, ...] = ()
+        self.on_disk = large and context.checkpoint is not None and count > IN_MEMORY
         self.name = ""
         self.again = "; --resume goes on from here" if context.checkpoint is not None else ""
         if context.checkpoint is not None:
             self.name = f"{name}-{fingerprint(job)[:16]}-{count}"
             end = 0
-            for first, arrays in context.checkpoint.load(self.name, context.warnings):
+            for first, arrays, path in context.checkpoint.placed(self.name, context.warnings):
                 if end <= first <= count - _rows(arrays):
-                    self.parts[first] = arrays
+                    self._put(first, arrays, path)
                     end = first + _rows(arrays)
                 else:  # of another run that was going on at the same time
                     context.warnings.append(f"a kept batch overlaps others and is left out: member {first} on")
-        self.done = sum(_rows(p) for p in self.parts.values())
+        self.done = sum(self.rows.values())
         tell(self.done)
+
+    def _put(self, first: int, arrays: dict[str, np.ndarray], path: Path | None) -> None:
+        self.rows[first], self.names = _rows(arrays), tuple(arrays)
+        self.parts[first] = path if self.on_disk and path is not None else arrays
+
+    def _pick(self, first: int, names: Sequence[str]) -> dict[str, np.ndarray]:
+        part = self.parts[first]
+        return self.context.checkpoint.pick(part, names) if isinstance(part, Path) else {n: part[n] for n in names}
 
     def missing(self) -> list[tuple[int, int]]:
         """Ranges (first, end) without rows."""
@@ -113,22 +182,18 @@ class _Batches:
         for first in sorted(self.parts):
             if first > at:
                 gaps.append((at, first))
-            at = first + _rows(self.parts[first])
+            at = first + self.rows[first]
         return gaps + ([(at, self.count)] if at < self.count else [])
 
     def add(self, first: int, arrays: dict[str, np.ndarray]) -> None:
-        self.parts[first] = arrays
+        path = self.context.checkpoint.keep(self.name, first, arrays) if self.name else None
+        self._put(first, arrays, path)
         self.done += _rows(arrays)
-        if self.name:
-            self.context.checkpoint.keep(self.name, first, arrays)
         self.tell(self.done)
 
     def swept(self, stopped: str = "", interrupted: bool = False) -> Swept:
-        order = sorted(self.parts)
-        members = [np.arange(first, first + _rows(self.parts[first])) for first in order]
-        names = self.parts[order[0]] if order else ()
-        arrays = {n: np.concatenate([self.parts[first][n] for first in order]) for n in names}
-        return Swept(np.concatenate(members) if members else np.zeros(0, int), arrays, self.count, stopped, interrupted)
+        parts = [(first, self.rows[first]) for first in sorted(self.parts)]
+        return Swept(parts, self.names, self._pick, self.count, self.on_disk, stopped, interrupted)
 
 
 def _rows(arrays: dict[str, np.ndarray]) -> int:
@@ -156,17 +221,19 @@ def sweep(
     slow: bool = False,
     parallel: bool = False,
     tell: Callable[[int], None] | None = None,
+    large: bool = False,
 ) -> Swept:
     """Run all `count` members of the job here, or on the scheduler of the context; see Swept for what may be missing.
 
     slow: a member may take seconds, batches begin with one. parallel: each thread runs a batch of its own, for slow
     members that the core computes; else one batch after the other has all threads. tell: is given the number of
-    finished members instead of the context's progress, where the sweep is one round of a search.
+    finished members instead of the context's progress, where the sweep is one round of a search. large: rows of very many
+    members stay in the checkpoint, where there is one.
     """
     if count < 1:
         raise ValueError(f"a sweep needs at least one member, got {count}")
     with interruptible():
-        batches = _Batches(context, name, job, count, tell or (lambda done: context.progress(done, count, text)))
+        batches = _Batches(context, name, job, count, tell or (lambda done: context.progress(done, count, text)), large)
         if batches.done == count:
             return batches.swept()
         pace = _Pace(1 if slow else FIRST_BATCH)

@@ -32,13 +32,14 @@ class Refused(Exception):
 @dataclass
 class Context:
     """What every driver is given. `progress(done, total, text)` may be called often; `out` is the results
-    folder of the run, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
+    folder of the run, `tell` shows words to the user before the end, `resume` asks to go on from a checkpoint beside it, `scheduler` is the address of a
     dask.distributed scheduler for sweeps. `building` is the deck's, as the running analysis sees it. `motions` keeps
     what was made of motion tables."""
 
     deck: Deck
     threads: int = 1
     progress: Callable[[float, float, str], None] = lambda done, total, text: None
+    tell: Callable[[str], None] = lambda text: None
     out: Path | None = None
     resume: bool = False
     scheduler: str = ""

@@ -6,16 +6,22 @@ kinds share stand here, those of a room in its `needs.py`, which the steps load 
 
 import importlib
 from collections.abc import Callable, Iterator
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from extrados import kinds
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry, Key
+from extrados.building.errors import BadGeometry, Key, NoView
+from extrados.building.geometry.assembly import Assembly
 from extrados.schema.programs import ffmpeg
 
+if TYPE_CHECKING:
+    from extrados.building.geometry.solids.assembly import SolidAssembly
+
 Need = Callable[[], Any]
+#: Keys that ask for solids
+SPATIAL = ("direction", "rose", "pyramids")
 #: Rooms whose kinds need more than all do
 ROOMS = ("limit", "rocking", "statistics", "codes", "motion", "dem", "sla")
 
@@ -47,13 +53,35 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
     if options.needs_motion:
         yield context.refuse_motion
     if options.view == "blocks":
-        yield building.blocks
-        yield building.friction
-        if building.ties:
-            yield building.anchored
+        yield lambda: _bound(building, options)
+    elif options.view == "shell":
+        yield lambda: building.shell(options.mesh)
     room = kinds.ANALYSES[options.kind].table.split(".")[1]
     if room in ROOMS:
         yield from importlib.import_module(f"extrados.analyses.{room}.needs").needs(context, options)
+
+
+def stones_of(building: Building, options: Analysis) -> "Assembly | SolidAssembly":
+    """What an analysis sees of the stones: solids where it asks for them, or there is no plane section."""
+    if options.solid and any(getattr(options, key, None) is not None for key in SPATIAL):
+        return building.solids()
+    try:
+        return building.blocks()
+    except NoView:
+        if not options.solid:
+            raise
+        return building.solids()
+
+
+def _bound(building: Building, options: Analysis) -> None:
+    """The stones with their joints and ties."""
+    stones = stones_of(building, options)
+    if isinstance(stones, Assembly):
+        building.friction()
+        if building.ties:
+            building.anchored()
+    else:
+        building.friction(stones)
 
 
 def _refused(text: str, key: Key) -> Need:

@@ -2,7 +2,7 @@
 
 import time
 
-from extrados import kinds
+from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
@@ -43,7 +43,7 @@ def run_analyses(context: Context) -> list[Result]:
 
 def run_one(context: Context, options: Analysis, building: Building) -> Result:
     """One analysis of a building, without its verdict; what it refuses and what fails is told in its result."""
-    begin = time.perf_counter()
+    begin, signals = time.perf_counter(), len(interrupts.asked)
     try:
         context.warnings = []
         if wrong := complaints(context, options, building):
@@ -66,6 +66,8 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     except Exception as error:
         if isinstance(error, ImportError) and "failed to map" in str(error):  # a library that is loaded when needed
             result = Result(options.kind, "failed", f"not enough memory: {error}")
+        elif len(interrupts.asked) > signals:  # a library that was interrupted while it is loaded says what it likes
+            result = Result(options.kind, "interrupted", "interrupted before it had a result")
         else:  # a fault of ours: the other analyses of the deck still count
             result = faulty(options.kind, error)
     remarks, _ = building.told()

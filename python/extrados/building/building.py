@@ -26,8 +26,10 @@ from extrados.schema.table import Table
 
 if TYPE_CHECKING:  # views are loaded when they are asked for
     from extrados.building.geometry.rigid import RigidBodies
+    from extrados.building.geometry.solids.assembly import SolidAssembly
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
     from extrados.building.rockers.rocker import Rocker
 
 
@@ -74,9 +76,12 @@ class Building:
         found: dict[str, Key] = {
             f"[[{section}]]": (section, 0) for section in ("ties", "dampers", "hinges") if getattr(self, section)
         }
-        if self.supports.abutting_wall is not None:
-            found["[supports] abutting_wall"] = ("supports", "abutting_wall")
-        return found
+        there = {
+            "abutting_wall": self.supports.abutting_wall is not None,
+            "foundation": "foundation" in self.supports.model_fields_set,
+            "damping_ratio": self.supports.damping_ratio is not None,
+        }
+        return found | {f"[supports] {name}": ("supports", name) for name, given in there.items() if given}
 
     def having(self, **tables: Any) -> "Building":
         """The same building with other tables: structure, material, joints, supports, initial, ties, dampers, hinges."""
@@ -90,6 +95,10 @@ class Building:
         """Stones and joints."""
         return self._view("blocks", self._stones, self._blocks)
 
+    def solids(self) -> "SolidAssembly":
+        """Blocks in space and the polygons along which they touch."""
+        return self._view("solids", self._stones, lambda: self._structure().solids(self))
+
     @property
     def _stones(self) -> tuple[Any, ...]:
         """What its stones depend on."""
@@ -97,7 +106,7 @@ class Building:
 
     def told(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """Remarks and notes on its stones, where something has looked at them; else nothing."""
-        made = self._views.get(self._key("blocks", self._stones))
+        made = self._views.get(self._key("blocks", self._stones)) or self._views.get(self._key("solids", self._stones))
         return (made.remarks, made.notes) if made is not None else ((), ())
 
     def _blocks(self) -> Assembly:
@@ -152,30 +161,32 @@ class Building:
                     ("materials", name, more[0]),
                 )
 
-    def friction(self) -> float | np.ndarray | None:
-        """Coefficient of friction of the joints, one for each where they differ; None excludes sliding."""
+    def friction(self, assembly: "SolidAssembly | None" = None) -> float | np.ndarray | None:
+        """Coefficient of friction of the joints, one for each where they differ; None excludes sliding. `assembly`: of
+        solids, in place of the plane stones."""
         if all(t.friction is None for t in self.joints.types):
             return self.joints.coefficient
-        return self.joint_property("friction")
+        return self.joint_property("friction", assembly)
 
-    def joint_property(self, name: str) -> np.ndarray:
-        """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given).
+    def joint_property(self, name: str, assembly: "SolidAssembly | None" = None) -> np.ndarray:
+        """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given), of
+        the plane stones or of the solids given.
 
         BadGeometry where [[joints.types]] names a joint that is not there, or one twice.
         """
-        assembly = self.blocks()
+        stones = self.blocks() if assembly is None else assembly
 
         def number(value: float | str | None) -> float:
             return np.nan if value is None else NO_SLIDING_COEFFICIENT if value == NO_SLIDING else float(value)
 
-        values = np.full(len(assembly.a), number(getattr(self.joints, name)))
-        for joints, table in self._typed_joints(assembly):
+        values = np.full(len(stones.a), number(getattr(self.joints, name)))
+        for joints, table in self._typed_joints(stones):
             given = getattr(table, name)
             if given is not None:
                 values[joints] = number(given)
         return values
 
-    def _typed_joints(self, assembly: Assembly) -> Iterator[tuple[np.ndarray, JointType]]:
+    def _typed_joints(self, assembly: "Assembly | SolidAssembly") -> Iterator[tuple[np.ndarray, JointType]]:
         """The joints that each of [[joints.types]] speaks of."""
         index = {name: j for j, name in enumerate(assembly.joint_names)}
         named: dict[str, int] = {}
@@ -223,6 +234,14 @@ class Building:
         options = options or MeshOptions()
         tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
         return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
+
+    def shell(self, options: "ShellOptions | None" = None) -> "ShellMesh":
+        """Flat shells in space: walls on a plan with the floors between them."""
+        from extrados.building.mesh.shells import ShellOptions
+
+        options = options or ShellOptions()
+        tables = (self.structure, self.material, *self.materials.items(), options)
+        return self._view("shell", tables, lambda: self._structure().shell(self, options))
 
     @property
     def meshed_by_stones(self) -> bool:

@@ -188,13 +188,23 @@ class Held(Placed):
 class Supports(Table):
     """What the building stands on. Stones stand on the joints to the ground that the structure has."""
 
-    stiffness: Stiffness | None = key(None, "stiffness of the ground per area, in series with the joints on it", gt=0)
+    stiffness: Stiffness | None = key(
+        None, "stiffness of the ground per area, in series with the joints on it; `rocking` takes joints as rigid", gt=0
+    )
+    foundation: Literal["winkler", "two-spring"] = key(
+        "winkler", "for `rocking`: springs of that stiffness all along the base, or half of them under each edge; neither pulls",
+        source="Psycharis and Jennings 1983",
+    )  # fmt: skip
+    damping_ratio: Annotated[float, Field(ge=0, le=10)] | None = key(
+        None, "for `rocking`: dashpots beside these springs, by their fraction of critical damping of what stands on the whole "
+        "base and moves up and down; default none",
+    )  # fmt: skip
     abutting_wall: Literal["left", "right"] | None = key(
         None, "a wall that stands against it on this side: it rocks away from it only, and is thrown back by it"
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
-        None, "rate after over rate before it is thrown back by the wall; default, of a block, three impacts in a row: of the "
-        "far toe, of the top on the wall, of the near toe", source="Sorrentino and others 2011",
+        None, "rate after over rate before it is thrown back by the wall; default, of a block, three impacts: of the far toe, of "
+        "the top on the wall, of the near toe, which is an upper bound", source="Sorrentino and others 2011, from memory, to be verified",
     )  # fmt: skip
     held: list[Held] = key(
         [], "held nodes of finite-element meshes, [[supports.held]]; default the bottom edge, or the joints on the ground",
@@ -205,6 +215,13 @@ class Supports(Table):
     def _thrown_back_by_a_wall(self) -> "Supports":
         if self.rebound is not None and self.abutting_wall is None:
             raise ValueError("rebound needs abutting_wall, the side on which the wall stands")
+        return self
+
+    @model_validator(mode="after")
+    def _gives_way(self) -> "Supports":
+        for name in ("foundation", "damping_ratio"):
+            if name in self.model_fields_set and self.stiffness is None:
+                raise ValueError(f"{name} needs stiffness, that of the ground")
         return self
 
 

@@ -11,8 +11,10 @@ if TYPE_CHECKING:
     from extrados.building.building import Building
     from extrados.building.geometry.assembly import Assembly
     from extrados.building.geometry.inspection import Inspection
+    from extrados.building.geometry.solids.assembly import SolidAssembly
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
 
 RocksAs = Literal["mechanism", "block", "piers", "frame", "stack"]
 Crossed = Literal["arch", "top"]
@@ -53,9 +55,22 @@ class Structure(Table):
         """The stones made of one density [kg/m^3], with the weights of parts that are of a named material."""
         return made
 
+    def solids(self, building: "Building") -> "SolidAssembly":
+        """Blocks in space: of a plane structure its section drawn out to its depth.
+
+        building: the one of this structure. BadGeometry with the part and the bound, NoView where it has no solids.
+        """
+        from extrados.building.geometry.solids.sections import drawn_out
+
+        return drawn_out(building.blocks())
+
     def pier_assembly(self, density: float) -> "Assembly":
         """A wall as few rigid bodies, of a density [kg/m^3]; NoView where the kind is no wall."""
         raise NoView(f"a structure of kind '{self.kind}' has no piers")
+
+    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
+        """Flat shells in space; NoView where the kind stands in a plane. BadGeometry says what is wrong."""
+        raise NoView(f"a structure of kind '{self.kind}' stands in a plane: shells are made of kind `building`")
 
     def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
         """Finite elements: of the stones, with a row of elements along every joint, where a kind does not mesh itself.

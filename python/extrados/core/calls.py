@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from extrados import _core
+from extrados import _core, interrupts
 from extrados.core.errors import check
 
 check(_core.api_support.init_libraries(), "loading the core")
@@ -85,7 +85,6 @@ def thread_count(threads: int) -> int:
 
 _lock = threading.Lock()
 _nesting = 0
-_stopped_by = 0
 
 
 def cancel_requested() -> bool:
@@ -93,15 +92,50 @@ def cancel_requested() -> bool:
     return bool(_core.api_support.cancel_requested())
 
 
-def stopped_by() -> int:
-    """The number of the signal that last asked to stop; 0 if none did."""
-    return _stopped_by
-
-
 def _ask(number: int = 0, _: object = None) -> None:
-    global _stopped_by
-    _stopped_by = number
+    interrupts.asked.append(number)
     _core.api_support.set_cancel(1)
+
+
+class Deadline:
+    """Tells whether the time of `within` has run out."""
+
+    def __init__(self) -> None:
+        self.over = threading.Event()
+
+    @property
+    def passed(self) -> bool:
+        return self.over.is_set()
+
+
+#: Between two looks of a deadline that has passed at computations that began since [s]
+_AGAIN = 0.05
+
+
+@contextlib.contextmanager
+def within(seconds: float) -> Iterator[Deadline]:
+    """Stop what the core computes in this block once the seconds are over, as Ctrl-C would; the Deadline then says so."""
+    deadline, left = Deadline(), threading.Event()
+
+    def watch() -> None:
+        if left.wait(max(seconds, 0.0)):
+            return
+        deadline.over.set()
+        while not left.wait(_AGAIN):
+            _core.api_support.set_cancel(1)
+
+    thread = threading.Thread(target=watch, daemon=True)
+    try:
+        thread.start()
+    except RuntimeError as error:  # the system has no room for its stack
+        raise MemoryError(f"not enough memory: {error}") from None
+    try:
+        yield deadline
+    finally:
+        left.set()
+        thread.join()
+        if deadline.passed:
+            _core.api_support.set_cancel(0)
 
 
 @contextlib.contextmanager

@@ -12,11 +12,13 @@ from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
     CRACKING,
+    DIRECTIONS,
     ELEMENTS,
     EVENT,
     EVENTS,
     LAWS,
     STOPS,
+    THROUGH,
     Bars,
     Bedding,
     Behaviour,
@@ -25,6 +27,7 @@ from extrados.core.sla_parts import (
     Joints,
     Monitor,
     Plane,
+    Shells,
     Softening,
     Springs,
     Stop,
@@ -32,12 +35,14 @@ from extrados.core.sla_parts import (
 
 __all__ = [
     "CRACKING",
+    "DIRECTIONS",
     "ELEMENTS",
     "EVENT",
     "EVENTS",
     "LAWS",
     "REPORT",
     "STOPS",
+    "THROUGH",
     "VARIANTS",
     "BadElement",
     "Bars",
@@ -50,6 +55,7 @@ __all__ = [
     "Model",
     "Monitor",
     "Plane",
+    "Shells",
     "Softening",
     "Springs",
     "Stop",
@@ -57,6 +63,7 @@ __all__ = [
     "intervals",
     "largest_band",
     "memory_limit",
+    "shell_axes",
     "teeth",
 ]  # fmt: skip
 
@@ -127,6 +134,17 @@ def body_force(
     return np.array(force.T)
 
 
+def shell_axes(xyz: npt.ArrayLike, connect: npt.ArrayLike) -> np.ndarray:
+    """Axes (elements, 3, 3) of flat shells, rows x, y, normal: x is horizontal, y goes up; of horizontal ones x is x."""
+    place = real("xyz", np.transpose(xyz), (3, None))
+    nodes = indices("connect", np.transpose(connect), place.shape[1], (None, None))
+    axes, bad, status = _core.api_shell.axes_of(place, nodes)
+    if bad:
+        raise BadElement(bad - 1, "shell")
+    check(status, "axes of shells")
+    return np.array(np.transpose(axes, (2, 0, 1)))
+
+
 def memory_limit() -> int:
     """Bytes a factor may take: 60 % of the machine's memory."""
     try:
@@ -138,7 +156,7 @@ def memory_limit() -> int:
 class Model(Owner):
     """A model in the core; close it, or use it in a `with`.
 
-    xy (nodes, 2) [m]. `algorithm` "update" changes the factor at each event, "refactor" makes it anew. IndexError
+    xy (nodes, 2) [m], of shells (nodes, 3). `algorithm` "update" changes the factor at each event, "refactor" makes it anew. IndexError
     where an element, a spring or a monitor names a node that is not there.
     """
 
@@ -161,19 +179,23 @@ class Model(Owner):
         self.behaviour = behaviour = behaviour or Behaviour()
         self.plane_points: list[tuple[Plane | Joints, int, int]] = []  # group, first point, points per element
         retention = -1.0 if behaviour.retention is None else float(behaviour.retention)
-        place = real("xy", np.transpose(xy), (2, None))
+        axes, self.freedoms = np.shape(xy)[-1], freedoms.of_node
+        place = real("xy", np.transpose(xy), (axes, None))
         self.nodes = place.shape[1]
         equation = np.asarray(freedoms.equation)
-        if equation.shape != (self.nodes, 2):
-            raise ValueError(f"equations have shape {equation.shape}, expected ({self.nodes}, 2)")
+        if (axes, self.freedoms) not in ((2, 2), (3, 6)) or len(equation) != self.nodes:
+            raise ValueError(
+                f"places have shape {np.shape(xy)} and equations {equation.shape}, expected ({self.nodes}, 2) of both in "
+                f"the plane, ({self.nodes}, 3) and ({self.nodes}, 6) in space"
+            )
         equations = int(equation.max(initial=-1)) + 1
-        if equations > 2 * self.nodes:
-            raise IndexError(f"a freedom belongs to equation {equations} of {2 * self.nodes} freedoms")
+        if equations > self.freedoms * self.nodes:
+            raise IndexError(f"a freedom belongs to equation {equations} of {self.freedoms * self.nodes} freedoms")
         self.moved = int(freedoms.moved)
         handle, status = _core.api_sla_model.create(
             place,
-            indices("equation", equation.T + 1, equations + 1, (2, self.nodes)) - np.int32(1), self.moved,
-            real("factor", np.transpose(freedoms.factor), (2, self.nodes)),
+            indices("equation", equation.T + 1, equations + 1, (self.freedoms, self.nodes)) - np.int32(1), self.moved,
+            real("factor", np.transpose(freedoms.factor), (self.freedoms, self.nodes)),
             CRACKING[behaviour.cracking], retention, int(behaviour.closure), int(behaviour.most_changes),
             float(behaviour.floor),
         )  # fmt: skip
@@ -266,10 +288,19 @@ class Model(Owner):
                 _each("lateral", group.lateral, count), np.where(given, axis, 0.0),
                 _each("confinement", group.confinement, count), *_bed_rows(group, count),
             )  # fmt: skip
-            bad, status = _core.api_sla_model.plane(
-                self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3), connect,
-                properties, _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32)),
-            )  # fmt: skip
+            choices = _rows(tables[0], *ladder, tables[1], (1 + int(group.joint)) * given.astype(np.int32))
+            if isinstance(group, Shells):
+                bad, status = _core.api_shell.shells(
+                    self.handle, ELEMENTS[group.kind],
+                    integers("section", [THROUGH[group.through], group.layers, int(group.bends), int(group.selective)], 4),
+                    real("frames", np.transpose(group.frames, (1, 2, 0)), (3, 3, self.nodes)),
+                    integers("flat", np.asarray(group.flat).astype(int), self.nodes), connect, properties, choices,
+                )  # fmt: skip
+            else:
+                bad, status = _core.api_sla_model.plane(
+                    self.handle, ELEMENTS[group.kind], integers("points", [*group.points, int(group.selective)], 3),
+                    connect, properties, choices,
+                )  # fmt: skip
             what = "element"
         if not isinstance(group, Bars):
             first = sum(len(g.connect) * n for g, _, n in self.plane_points)
@@ -295,7 +326,7 @@ class Model(Owner):
         node = indices("node of a spring", np.asarray(group.node).T + 1, self.nodes + 1, (2, count)) - np.int32(1)
         direction = np.where(ground, 0, np.asarray(group.direction))
         status = _core.api_sla_model.springs(
-            self.handle, node, indices("direction of a spring", direction.T, 2, (2, count)),
+            self.handle, node, indices("direction of a spring", direction.T, self.freedoms, (2, count)),
             real("stiffness", group.stiffness, (count,)),
         )  # fmt: skip
         check(status, "springs")
@@ -304,7 +335,7 @@ class Model(Owner):
         """Factor of the present damage; returns the smallest over the largest pivot."""
         node, direction, ratio, status = long_call(_core.api_sla_model.factorise, self.handle)
         if status == status_code("not_positive_definite"):
-            raise FreeNode(int(node) - 1, "xy"[max(int(direction) - 1, 0)], float(ratio))
+            raise FreeNode(int(node) - 1, DIRECTIONS[max(int(direction) - 1, 0)], float(ratio))
         check(status, "factor of the stiffness matrix")
         return float(ratio)
 
@@ -317,12 +348,12 @@ class Model(Owner):
         events: int = 0,
         ledger: npt.ArrayLike = (0.0, 0.0, 0.0),
     ) -> None:
-        """Start a stage under nodal forces (nodes, 2) [N]: constant + lambda reference."""
+        """Start a stage under nodal forces (nodes, 2) [N], of shells (nodes, 6) [N], [N m]: constant + lambda reference."""
         status = long_call(
             _core.api_sla.loads,
             self.handle,
-            real("constant", np.transpose(constant), (2, self.nodes)),
-            real("reference", np.transpose(reference), (2, self.nodes)),
+            real("constant", np.transpose(constant), (self.freedoms, self.nodes)),
+            real("reference", np.transpose(reference), (self.freedoms, self.nodes)),
             int(carried),
             int(events),
             real("ledger", ledger, (3,)),
@@ -358,7 +389,9 @@ class Model(Owner):
         first = integers("monitors", np.cumsum([1] + [len(m.node) for m in monitors]))
         huge = float(np.finfo(float).max)
         node = indices("node of a monitor", np.concatenate([m.node for m in monitors]), self.nodes, (None,))
-        direction = indices("direction of a monitor", np.concatenate([m.direction for m in monitors]), 2, node.shape)
+        direction = indices(
+            "direction of a monitor", np.concatenate([m.direction for m in monitors]), self.freedoms, node.shape
+        )
         limits = [
             min(stop.load, huge),
             min(stop.displacement, huge),
@@ -397,8 +430,8 @@ class Model(Owner):
         return int(damaged), float(cracked)
 
     def displacement(self, load: float) -> np.ndarray:
-        """Displacements (nodes, 2) [m] under constant + load * reference."""
-        ua, ub, status = _core.api_sla.displacement(self.handle, self.nodes)
+        """Displacements (nodes, 2) [m], of shells (nodes, 6) [m], [rad], under constant + load * reference."""
+        ua, ub, status = _core.api_sla.displacement(self.handle, self.freedoms, self.nodes)
         check(status, "displacements")
         return np.array((ua + load * ub).T)
 

@@ -1,16 +1,19 @@
 """What a sequentially linear analysis is made of: laws, elements, freedoms, monitors, and what it records."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from extrados.core import lists
 
 LAWS = lists.numbers("sla_law")
+#: The freedoms of a node; in the plane it has the first two
+DIRECTIONS = ("x", "y", "z", "rotation about x", "rotation about y", "rotation about z")
 ELEMENTS = lists.numbers("sla_element")
 CRACKING = lists.numbers("sla_cracking")
 EVENTS = lists.words("sla_event")
+THROUGH = lists.numbers("shell_through")
 #: Name of an event -> its number
 EVENT = {entry.name: entry.number for entry in lists.entries("sla_event")}
 STOPS = lists.words("sla_stop")
@@ -69,7 +72,7 @@ class Stop:
     already: float = 0.0
 
 
-#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane.f90)
+#: Least part of its strength that shear leaves a crack of bedded masonry (fortran/sla/plane_points.f90)
 LEAST_SHARE = 0.2
 
 
@@ -134,6 +137,28 @@ class Plane:
     def points_each(self) -> int:
         """Integration points of an element."""
         return {"T3": 1, "T6": 3}.get(self.kind, self.points[0] * self.points[1])
+
+
+@dataclass(frozen=True)
+class Shells(Plane):
+    """Flat shells of three or four nodes in space, fields as of Plane; angles are to the element's own x axis, which is
+    horizontal.
+
+    frames (nodes, 3, 3) columns: axes of the rotations of each node of the model; flat (nodes) True where all shells at
+    a node lie in the plane across its third axis, whose rotation is then to be held. `layers` through the thickness at
+    Gauss's or Lobatto's points; a group that does not bend is a membrane of one layer.
+    """
+
+    frames: np.ndarray = field(default_factory=lambda: np.empty((0, 3, 3)))
+    flat: np.ndarray = field(default_factory=lambda: np.empty(0, dtype=bool))
+    layers: int = 5
+    through: str = "lobatto"
+    bends: bool = True
+
+    @property
+    def points_each(self) -> int:
+        """Integration points of an element, those of one place through the thickness one after the other."""
+        return {"T3": 3, "Q4": 4}[self.kind] * self.layers
 
 
 @dataclass(frozen=True)
@@ -209,26 +234,32 @@ class Behaviour:
 
 @dataclass
 class Freedoms:
-    """Which equation each freedom (nodes, 2) belongs to (-1 held) and its share of it; the last `moved` equations are
-    those of supports whose displacements are given."""
+    """Which equation each freedom belongs to (-1 held) and its share of it, both (nodes, 2), of shells (nodes, 6) with
+    the rotations; the last `moved` equations are those of supports whose displacements are given."""
 
     equation: np.ndarray
     factor: np.ndarray
     moved: int = 0
+
+    @property
+    def of_node(self) -> int:
+        """Freedoms of a node."""
+        return int(np.shape(self.equation)[1])
 
     @staticmethod
     def make(
         nodes: int,
         held: Iterable[tuple[int, int]] = (),
         ties: Sequence[Sequence[tuple[int, int, float]]] = (),
+        of_node: int = 2,
     ) -> "Freedoms":
-        """held: (node, direction) pairs; ties: lists of (node, direction, factor) that move as one."""
+        """held: (node, direction) pairs; ties: lists of (node, direction, factor) that move as one; `of_node` freedoms."""
         held = list(held)
         for node, direction, *_ in [*held, *(entry for tie in ties for entry in tie)]:
-            if not (0 <= node < nodes and direction in (0, 1)):
-                raise IndexError(f"a freedom names node {node}, direction {direction} of {nodes} nodes in the plane")
-        equation = np.zeros((nodes, 2), dtype=np.int64)
-        factor = np.ones((nodes, 2))
+            if not (0 <= node < nodes and 0 <= direction < of_node):
+                raise IndexError(f"a freedom names node {node}, direction {direction} of {nodes} nodes with {of_node}")
+        equation = np.zeros((nodes, of_node), dtype=np.int64)
+        factor = np.ones((nodes, of_node))
         for node, direction in held:
             equation[node, direction] = -1
         number = 0
@@ -236,7 +267,7 @@ class Freedoms:
             for node, direction, share in tie:
                 if equation[node, direction] != 0:
                     what = "held" if equation[node, direction] < 0 else "tied already"
-                    raise ValueError(f"node {node + 1} cannot be tied in {'xy'[direction]}: it is {what}")
+                    raise ValueError(f"node {node + 1} cannot be tied in {DIRECTIONS[direction]}: it is {what}")
                 equation[node, direction] = number + 1
                 factor[node, direction] = share
             number += 1

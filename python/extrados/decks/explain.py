@@ -7,7 +7,7 @@ from typing import Any
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
-from extrados.decks.manual import KeyFacts, TableFacts, refuse_renamed
+from extrados.decks.manual import KeyFacts, TableFacts
 from extrados.decks.plural import PLURAL
 from extrados.schema import quantities
 from extrados.schema.table import Table
@@ -45,6 +45,7 @@ def json_schema() -> dict[str, Any]:
         "required": ["analysis"],
         "properties": {
             "title": {"type": "string"},
+            **{word: {"type": "string"} for word in ("project", "author", "date")},
             "note": {"type": "string"},
             **one,
             **{name: {"type": "array", "items": one[name]} for name in PLURAL},
@@ -157,7 +158,6 @@ def starter(kind: str) -> str:
     section = next((name for name in ("analysis", "structure", "motion") if kind in kinds.TABLES[name]), None)
     if section is None:
         known = [kind for there in kinds.TABLES.values() for kind in there]
-        refuse_renamed(kind)
         close = difflib.get_close_matches(kind, known, n=1, cutoff=0.4)
         raise KeyError(f"no kind '{kind}'" + (f"; did you mean '{close[0]}'?" if close else ""))
     asked = kind

@@ -12,7 +12,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from extrados import kinds
-from extrados.decks.moved import MOVED_KINDS
 
 STORED = Path(__file__).with_name("facts.json")
 
@@ -78,7 +77,6 @@ def explain(word: str, tables: Sequence[TableFacts]) -> str:
             if any(name == one or name.startswith(f"{one}.") for one in asked)
         ]
     if not found:
-        refuse_renamed(word)
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
         raise KeyError(f"no key or kind '{word}'" + (f"; near are {', '.join(close)}" if close else ""))
     return "\n".join(found)
@@ -95,13 +93,6 @@ def _entry(table: TableFacts, name: str) -> str:
     source = f" [{key.source}]" if key.source else ""
     of = f" ({table.kind})" if table.kind else ""
     return f"{table.section}.{name}{of}: {key.about}{source}" + (f"\n    {key.facts}" if key.facts else "")
-
-
-def refuse_renamed(kind: str) -> None:
-    """KeyError with the new name of a kind that had another one."""
-    for (_, old), new in MOVED_KINDS.items():
-        if kind == old:
-            raise KeyError(f"'{old}' is now called '{new}'")
 
 
 def manual(tables: Sequence[TableFacts]) -> str:

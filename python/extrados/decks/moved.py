@@ -47,5 +47,3 @@ MOVED: dict[tuple[str, str], str] = {
     ("analysis", "support_movements"): "[[initial.movements]]",
     ("analysis", "initial_rotation_ratio"): f"[initial] rotation_ratio (or, {_FOR_ONE.format('initial')})",
 }  # fmt: skip
-#: (section, kind) -> its new name
-MOVED_KINDS: dict[tuple[str, str], str] = {("structure", "wall"): "brickwork"}

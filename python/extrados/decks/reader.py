@@ -16,7 +16,7 @@ from extrados.analyses.table import OVERRIDES, Analysis
 from extrados.building.building import Building
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.building.structure import Structure
-from extrados.decks.moved import MOVED, MOVED_KINDS
+from extrados.decks.moved import MOVED
 from extrados.decks.plural import MOST, PLURAL
 from extrados.decks.positions import Path as Key
 from extrados.decks.positions import Positions, key_lines
@@ -28,7 +28,9 @@ LARGEST = 1_000_000  # bytes
 MOST_COMPLAINTS = 50
 #: Tables that say what the building is besides its geometry
 PROPERTIES: dict[str, type[Table]] = {"material": Material, "joints": Joints, "supports": Supports, "initial": Initial}
-TOP_LEVEL = {"title", "note", "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
+#: What the report says of a deck in words
+WORDS = ("title", "note", "project", "author", "date")
+TOP_LEVEL = {*WORDS, "structure", *PROPERTIES, "materials", *PLURAL, "motion", "analysis"}
 
 
 class DeckError(Exception):
@@ -57,6 +59,9 @@ class Deck:
     folder: Path = field(default_factory=Path.cwd)
     sha256: str = ""
     data: dict[str, Any] = field(default_factory=dict)
+    project: str = ""
+    author: str = ""
+    date: str = ""
     positions: Positions = field(default_factory=Positions)
     tables: list[Key] = field(default_factory=list)
 
@@ -171,7 +176,7 @@ class _Checker:
         for word in data:
             if word not in TOP_LEVEL:
                 self.complain((word,), f"unknown key or section{_nearest(word, sorted(TOP_LEVEL))}")
-        for word in ("title", "note"):
+        for word in WORDS:
             if not isinstance(data.get(word, ""), str):
                 self.complain((word,), "expected text in quotes")
         structure = self.section("structure", data.get("structure"), ("structure",))
@@ -210,8 +215,11 @@ class _Checker:
             folder,
             sha256,
             data,
-            self.positions,
-            tables_of,
+            project=data.get("project", ""),
+            author=data.get("author", ""),
+            date=data.get("date", ""),
+            positions=self.positions,
+            tables=tables_of,
         )
 
     def building(self, structure: Structure | None, data: dict[str, Any], folder: Path) -> Building:
@@ -272,8 +280,6 @@ class _Checker:
         if not isinstance(kind, str) or kind not in known:
             if kind is None:
                 self.complain(path, f"kind is missing: expected one of {_words(known)}")
-            elif isinstance(kind, str) and (section, kind) in MOVED_KINDS:
-                self.complain((*path, "kind"), f"'{kind}' is now called '{MOVED_KINDS[section, kind]}'")
             else:
                 self.complain((*path, "kind"), f"unknown kind {_shown(kind)}{_nearest(str(kind), known)}")
             return None
@@ -345,7 +351,7 @@ class _Checker:
             lacks = kinds.table("structure", shape).lacks if known else {}
             if known and wanted is not None and shape not in wanted:
                 self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
-            elif analysis.view in lacks:
+            elif analysis.view in lacks and not (analysis.solid and "solids" not in lacks):
                 self.complain(path, f"{kind} cannot look at a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")

@@ -17,10 +17,8 @@ from typing import Any
 from extrados.decks.reader import LARGEST
 from extrados.results.store import SUMMARY, Stored, StoreError, read
 from extrados.schema import files
+from extrados.schema.places import CASES
 
-#: The decks with known answers: beside the sources, or within an installed package
-PACKAGE = Path(__file__).resolve().parents[1]
-CASES = next((p for p in (PACKAGE / "cases", PACKAGE.parents[1] / "cases") if p.is_dir()), PACKAGE / "cases")
 #: How deep decks and runs are looked for, how many are listed, how many folders are looked into
 DEEP, MOST, MOST_FOLDERS = 4, 500, 2000
 #: Bytes of a run that a page is shown

@@ -80,6 +80,8 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         )
     if r.restraints:
         found.append(_draw_restraints(run, name, folder, t))
+    if r.soft_base:
+        found.append(_draw_base(run, name, folder, t))
     animation.draw_rocking(run, name, folder)
     moving = _rocks(run, name)
     if moving.any() and run.array(name, "required_friction").shape[1] > 1:
@@ -140,6 +142,28 @@ def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tup
     return saved, "Forces of what holds it" + (", the first twelve of each kind." if len(arrays) > 12 else ".")
 
 
+def _draw_base(run: Stored, name: str, folder: Path, t: np.ndarray) -> tuple[str, str]:
+    """Which part of a base that gives way pushes, and how far the block sinks, over time."""
+    low, high = run.array(name, "pressed").T
+    edges = run.array(name, "outline")[:, 0]
+    with style.figure(8.0, 4.4, rows=2, sharex=True) as (fig, (base, sinking)):
+        base.fill_between(t, low, high, color=style.GROUND, alpha=0.5, linewidth=0.6)
+        base.set_ylim(edges.min(), edges.max())
+        base.set_ylabel("base that pushes\nx [m]")
+        sinking.plot(t, 1e3 * run.array(name, "sinking"), color=style.THRUST, linewidth=0.9)
+        sinking.axhline(1e3 * run[name].soft_base.sinking_at_rest_m, color=style.EDGE, linestyle=":", linewidth=0.8)
+        sinking.set_ylabel("sinking of its\nmiddle [mm]")
+        sinking.invert_yaxis()
+        sinking.set_xlabel("time [s]")
+        moving = np.flatnonzero(
+            np.abs(run.array(name, "rotation")) > 0.02 * np.abs(run.array(name, "rotation")).max(initial=0.0)
+        )
+        if len(moving):
+            sinking.set_xlim(max(0.0, t[moving[0]] - 0.5), min(t[-1], t[moving[-1]] + 0.5))
+        saved = style.save(fig, folder, f"{name}-base")
+    return saved, "The part of the base that pushes, and the sinking at the foot of the centre (dotted: at rest)."
+
+
 def _once(ax: Any) -> tuple[list[Any], list[str]]:
     """Lines and words of a legend in which each word stands once."""
     lines, words = ax.get_legend_handles_labels()
@@ -149,7 +173,9 @@ def _once(ax: Any) -> tuple[list[Any], list[str]]:
 
 def _rocks(run: Stored, name: str) -> np.ndarray:
     """Whether it is off rest, of each time; of stacked blocks whether either is."""
-    rocks = np.abs(run.array(name, "rotation")) > 0.0
+    size = np.abs(run.array(name, "rotation"))
+    # a base that gives way lets it tremble long after
+    rocks = size > (0.02 * size.max(initial=0.0) if run[name].soft_base else 0.0)
     return rocks | (np.abs(run.array(name, "rotation_upper")) > 0.0) if run[name].stack else rocks
 
 

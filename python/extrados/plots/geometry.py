@@ -1,13 +1,16 @@
 """The picture of a survey before it is computed: stones, joints, supports, and what is amiss between them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
+from matplotlib.colors import to_rgb
 
-from extrados.plots import style
+from extrados.plots import scene, style
+from extrados.results.solid_files import Solid
 
 COLOURS = {
     "closed": style.GROUND,
@@ -87,3 +90,50 @@ def _stones(ax: Axes, outlines: list[np.ndarray], joints: np.ndarray, ground: np
     ax.add_collection(LineCollection(ground.reshape(-1, 2, 2), colors=style.EDGE, linewidths=2.2, zorder=1))
     points = np.concatenate(outlines)
     ax.update_datalim(points)
+
+
+SHRUNK = 0.82  # of their size: stones of the exploded drawing, so that what lies between them shows
+
+
+def draw_stones(
+    folder: Path,
+    name: str,
+    parts: Sequence[Solid],
+    owner: np.ndarray,
+    contacts: Sequence[np.ndarray],
+    grounded: np.ndarray,
+) -> None:
+    """Write folder/NAME.png and .svg: solids as they stand, and shrunk about their middles with the contacts between them,
+    those on the ground in another colour."""
+    view = scene.View()
+    points = np.concatenate([p.vertices for p in parts])
+    frame = scene.frame_of(points, view)
+    start = np.cumsum([0, *(len(p.vertices) for p in parts)])
+    faces = [np.array(f) + k for p, k in zip(parts, start[:-1].tolist(), strict=True) for f in p.faces]
+    block = np.repeat(owner, [len(p.faces) for p in parts])
+    whole = scene.Faces(points, faces, block)
+    whose = np.repeat(owner, [len(p.vertices) for p in parts])
+    count = int(owner.max()) + 1
+    middle = (
+        np.stack([np.bincount(whose, x, count) for x in points.T], axis=1)
+        / np.bincount(whose, minlength=count)[:, None]
+    )
+    shrunk = middle[whose] + SHRUNK * (points - middle[whose])
+    first = len(points) + np.cumsum([0, *map(len, contacts)])
+    sheets = [np.arange(a, a + len(c)) for a, c in zip(first[:-1].tolist(), contacts, strict=True)]
+    both = scene.Faces(
+        np.concatenate([shrunk, *contacts]), [*faces, *sheets, *(s[::-1] for s in sheets)],
+        np.concatenate([block, *[np.where(grounded, count + 1, count)] * 2]),
+    )  # fmt: skip
+    stone = np.tile(to_rgb(style.STONE), (count, 1))
+    colours = np.vstack([stone, to_rgb(style.HINGE), to_rgb(style.GROUND)])
+    with style.figure(10.5, 5.0, columns=2) as (fig, axes):
+        for ax, solids, title in (
+            (axes[0], whole, f"{count} stones"),
+            (axes[1], both, f"{len(contacts)} contacts between them, {int(grounded.sum())} on the ground"),
+        ):
+            scene.show(ax, scene.picture(solids, view, frame, colours), frame)
+            scene.ground(ax, points, view)
+            scene.compass(ax, points, view)
+            ax.set_title(title)
+        style.write(fig, folder, name)

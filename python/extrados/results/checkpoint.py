@@ -12,7 +12,8 @@ import json
 import logging
 import os
 import tempfile
-from collections.abc import Iterator
+import zipfile
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from functools import cache
 from pathlib import Path
@@ -124,16 +125,29 @@ class Checkpoint:
 
     def load(self, name: str, warnings: list[str]) -> Iterator[tuple[int, dict[str, np.ndarray]]]:
         """(first member, arrays) of every batch of a sweep that was kept whole; `warnings` tells of damaged ones."""
+        for first, arrays, _ in self.placed(name, warnings):
+            yield first, arrays
+
+    def placed(self, name: str, warnings: list[str]) -> Iterator[tuple[int, dict[str, np.ndarray], Path]]:
+        """The same, with the place of each batch."""
         for path in sorted((self.folder / name).glob("*.npz")):
             content = _sound(path)
             if content is not None:
                 with np.load(io.BytesIO(content), allow_pickle=False) as store:
-                    yield int(path.name.partition("-")[0]), {key: store[key] for key in store.files}
+                    yield int(path.name.partition("-")[0]), {key: store[key] for key in store.files}, path
             else:
                 told = f"{path.parent.name}/{path.name}"
                 warnings.append(f"a kept batch was damaged and is computed again: {told} is now {path.name}.damaged")
                 with contextlib.suppress(FileNotFoundError):  # another run may have done so
                     path.rename(path.with_name(f"{path.name}.damaged"))
+
+    def pick(self, path: Path, names: Sequence[str]) -> dict[str, np.ndarray]:
+        """Some arrays of a batch that this run has kept, or loaded, at a path."""
+        try:
+            with np.load(path, allow_pickle=False) as store:
+                return {key: store[key] for key in names}
+        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
+            raise StoreError(f"{path}: a kept batch cannot be read again: {error}; run with --resume") from None
 
     def keep(self, name: str, first: int, arrays: dict[str, np.ndarray]) -> Path:
         """Store a batch; it is there whole or not at all."""

@@ -21,13 +21,9 @@ class Check(ResultModel):
     )
 
 
-class CodeChecks(KindResults):
-    """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
+class Checked(KindResults):
+    """Rules of codes, by name, and one verdict for all."""
 
-    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: what the computed rocking gives")
-    dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
-    peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
-    peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
     checks: dict[str, Check] = fact("the rules by name")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -64,3 +60,31 @@ class CodeChecks(KindResults):
             return judge("The deck holds no demand of a code: give its spectrum.")
         name, weakest = min(strengths.items(), key=lambda item: item[1].capacity)
         return judge(f"{name} gives the least strength, {weakest.capacity / 1e3:.4g} kN.", None, weakest.capacity, "N")
+
+
+class CodeChecks(Checked):
+    """code-checks: rules for rocking bodies and wall piers, beside the computed rocking."""
+
+    dynamic_outcome: RockingOutcome = maybe("of a block under a motion: what the computed rocking gives")
+    dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
+    peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
+    peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
+
+
+class LocalMechanism(Checked):
+    """local-mechanism: a local mechanism by the kinematic analysis of codes."""
+
+    mechanism: str = fact("which")
+    multiplier: float = fact(
+        "alpha_0, the horizontal multiplier of the weights that starts it", source="NTC 2018 C8.7.1"
+    )
+    participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="NTC 2018 C8.7.1")
+    participating_part: float = fact("e* = g M* over the weights that sway")
+    activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="NTC 2018 C8.7.1")
+    zero_displacement_m: float | None = fact("d_0*, at which the multiplier vanishes; null: at none", "m")
+    ultimate_displacement_m: float | None = fact("d_u* = 0.4 d_0*", "m")
+    secant_period_s: float | None = fact("T_s, at d_s* = 0.4 d_u*", "s")
+    swaying_weight_N: float = fact("weights that sway", "N")
+    floor_acceleration_g: float = maybe(
+        "of a place above the ground: acceleration there, the demand of the linear check", "g"
+    )

@@ -1,5 +1,6 @@
 """What an analysis returns."""
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -9,6 +10,32 @@ from extrados.results.assumptions import Assumption
 from extrados.results.verdict import KindResults, Verdict
 
 
+class Streamed:
+    """Numbers along one axis that lie on disk: `pieces()` reads them in order, in arrays that fit into memory.
+
+    numpy functions and indices read them whole.
+    """
+
+    ndim = 1
+
+    def __init__(self, length: int, dtype: np.dtype, pieces: Callable[[], Iterator[np.ndarray]]):
+        self.shape, self.dtype, self.pieces = (length,), np.dtype(dtype), pieces
+
+    def __len__(self) -> int:
+        return self.shape[0]
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        whole = np.empty(self.shape, self.dtype)
+        at = 0
+        for piece in self.pieces():
+            whole[at : at + len(piece)] = piece
+            at += len(piece)
+        return whole if dtype is None else whole.astype(dtype)
+
+    def __getitem__(self, index: Any) -> Any:
+        return np.asarray(self)[index]
+
+
 @dataclass(frozen=True)
 class Array:
     """A named, dimensioned array; `dims` names its axes, `unit` in SI ("" where it has none).
@@ -16,7 +43,7 @@ class Array:
     series: what arrays of one kind are called together where there are several, in their order.
     """
 
-    data: np.ndarray
+    data: np.ndarray | Streamed
     dims: tuple[str, ...]
     unit: str = ""
     about: str = ""
@@ -34,6 +61,18 @@ class TableData:
     columns: dict[str, np.ndarray | list]
     units: dict[str, str] = field(default_factory=dict)
 
+    def pieces(self) -> Iterator[dict[str, np.ndarray | list]]:
+        """The columns, some rows after the other."""
+        yield self.columns
+
+
+class StreamedTable(TableData):
+    """A table whose rows lie on disk: `make()` gives its columns piece by piece, in the same order each time."""
+
+    def __init__(self, make: Callable[[], Iterator[dict[str, Any]]], units: dict[str, str]):
+        super().__init__({}, units)
+        object.__setattr__(self, "pieces", make)
+
 
 @dataclass
 class Result:
@@ -43,7 +82,9 @@ class Result:
     not succeed) or interrupted (partial results are kept); `reason` says why. `answer` is the result in
     words an engineer reads. `results` holds numbers and words whose keys end in their unit, in the typed model of the
     kind; it is empty where there is no result. `verdict` concludes; `assumptions` are the properties of the building
-    that it rests on, by their keys. `files` maps the name of a further file (VTU, PVD, AT2, MP4) to its bytes.
+    that it rests on, by their keys. `files` maps the name of a further file (VTU, PVD, AT2, MP4) to its bytes. `parts`
+    are analyses that this one has asked for itself: a run tells them after those of the deck; `asked` is the table of such a
+    part with all its defaults.
     """
 
     kind: str
@@ -58,6 +99,8 @@ class Result:
     tables: dict[str, TableData] = field(default_factory=dict)
     files: dict[str, bytes] = field(default_factory=dict)
     warnings: list[str] = field(default_factory=list)
+    parts: list["Result"] = field(default_factory=list)
+    asked: dict[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         return f"<Result of {self.kind}: {self.status}, {len(self.results.keys())} values, {len(self.arrays)} arrays>"

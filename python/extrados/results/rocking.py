@@ -23,7 +23,7 @@ class RockingHinge(ResultModel):
 class RuleOutcome(ResultModel):
     """What the motion does under an impact rule."""
 
-    rule: str = fact("word of [joints] restitution")
+    rule: str = fact("word of [joints] restitution, or a number that discrete elements may keep")
     restitution: float = fact("rate after over before an impact, held between 0 and 1; of a mechanism to +x")
     outcome: RockingOutcome = fact("does not rock, rocks and stays up, or comes down")
 
@@ -61,6 +61,25 @@ class StackRocking(ResultModel):
     modes: list[ModeShare] = fact("how long it rocks in each mode")
 
 
+class SoftBaseRocking(ResultModel):
+    """What a block on a base that gives way has besides its rotation."""
+
+    foundation: Literal["winkler", "two-spring"] = fact("springs all along the base, or under both edges")
+    rocking_period_s: float = fact("natural period of small rocking on the whole base, undamped", "s")
+    vertical_period_s: float = fact("natural period of its motion up and down, undamped", "s")
+    sinking_at_rest_m: float = fact("how far it sinks under its weight, at the foot of its centre", "m")
+    lift_rotation_rad: float = fact("rotation at which an edge lifts, in equilibrium", "rad")
+    capacity_g: float = fact("greatest constant horizontal acceleration that it bears, partly lifted", "g")
+    peak_sinking_m: float = fact("greatest sinking; of either sign", "m")
+    greatest_pressure_Pa: float = maybe("of a Winkler base: greatest pressure at an edge", "Pa")
+    greatest_edge_force_N: float = maybe("of springs under the edges: greatest force of one", "N")
+    lifted_share: float = fact("share of the time in which part of the base is lifted")
+    free_share: float = fact("share of the time in which the base does not press at all")
+    energy_taken_up_J: float = fact("energy that the dashpots of the base have taken up", "J")
+    rigid_outcome: RockingOutcome | None = fact("what it does on a rigid base, with Housner's impact; null: no answer")
+    rigid_peak_rotation_rad: float | None = fact("greatest rotation on a rigid base; null: no answer", "rad")
+
+
 class Rocking(KindResults):
     """rocking: the response of the single-degree-of-freedom mechanism to a motion."""
 
@@ -79,14 +98,13 @@ class Rocking(KindResults):
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
     energy_taken_up_J: float = maybe("what dampers and yielding have taken up, where something holds it", "J")
     restraints: list[RestraintForces] = maybe("what holds it besides its weight")
-    rebound: float = maybe(
-        "against a wall: rate after over before it is thrown back", source="Sorrentino and others 2011"
-    )
+    rebound: float = maybe("against a wall: rate after over before it is thrown back, as given or by three impacts")
     energy_residual_ratio: float = fact("greatest error of the energy ledger over the energy that went round")
     steps: int = fact("steps of the integrator")
     rejected_steps: int = fact("steps that it tried and refused")
-    restitution: float = fact(
-        "rate after over before an impact; of a block or a mechanism that after which it rocks to +x"
+    restitution: float | None = fact(
+        "rate after over before an impact; of a block or a mechanism that after which it rocks to +x; null on a base that "
+        "gives way, from which it follows"
     )
     restitution_to_left: float = maybe("of a block or a mechanism: that after which it rocks to -x")
     energy_ratio: float = maybe("of a block: kinetic energy after over before an impact", source="thesis Eq. 6.2")
@@ -102,9 +120,12 @@ class Rocking(KindResults):
     restitution_thesis: float = maybe("of an arch: by the momentum balance of the thesis", source="thesis Eq. 5.3")
     restitution_energy_safe: float = maybe("of an arch: by the energy-safe projection")
     restitution_inelastic: float = maybe("of an arch: by a blow without rebound at all joints", source="Moreau 1988")
-    outcomes_by_rule: list[RuleOutcome] = maybe("under each impact rule, where their c_v differ by more than 1.3")
+    outcomes_by_rule: list[RuleOutcome] = maybe(
+        "under each impact rule, where their c_v differ by more than 1.3, and by what discrete elements keep where the blow is unsafe"
+    )
     decided_by_last_digits: bool = fact("whether the motion scaled by 1 +- 1e-6 ends in another outcome")
     stack: StackRocking = maybe("of two stacked blocks")
+    soft_base: SoftBaseRocking = maybe("on a base that gives way ([supports] stiffness)")
     thrust_line_residual_m: float = maybe("of an arch: greatest error of the closing thrust line", "m")
 
     def judged(self, demand: Demand) -> Verdict:

@@ -3,7 +3,7 @@
 import contextlib
 import csv
 import ctypes
-import hashlib
+import errno
 import io
 import json
 import logging
@@ -21,7 +21,7 @@ from pydantic import ValidationError
 
 from extrados.results import written
 from extrados.results.fields import plain
-from extrados.results.model import Array, Result, TableData
+from extrados.results.model import Array, Result, Streamed, TableData
 from extrados.results.typed import typed
 from extrados.results.verdict import KindResults
 from extrados.schema import files
@@ -30,6 +30,8 @@ from extrados.schema.text import printable
 SUMMARY = "summary.json"
 STORE = "results.h5"
 CSV_ROWS = 10_000  # turned into text at a time
+#: Numbers of one axis beyond which a folder is read piece by piece
+LARGE = 1_000_000
 REPORT = "report.html"
 #: What an array says of itself, in the order of Array's fields
 MARKS = ("unit", "about", "series")
@@ -72,7 +74,10 @@ def typed_of(results: list[Result]) -> dict[str, KindResults]:
 def arrays_of(results: list[Result]) -> dict[str, dict[str, Array]]:
     """The arrays of each analysis by its name; a reader of the folder finds the same."""
     return {
-        name: {title: replace(a, data=np.asarray(a.data)) for title, a in r.arrays.items()}
+        name: {
+            title: a if isinstance(a.data, Streamed) else replace(a, data=np.asarray(a.data))
+            for title, a in r.arrays.items()
+        }
         for name, r in zip(group_names([r.kind for r in results]), results, strict=True)
     }
 
@@ -214,15 +219,21 @@ def write(folder: Path, head: dict[str, Any], results: list[Result]) -> None:
 def csv_parts(table: TableData) -> Iterator[str]:
     """A table as CSV, some rows at a time, since the text of many takes more memory than their numbers: the header carries
     the unit after the name; numbers round-trip."""
-    names = list(table.columns)
-    units = [table.units.get(name, "") for name in names]
-    columns = [np.asarray(column) for column in table.columns.values()]
-    if len({len(column) for column in columns}) > 1:
-        raise ValueError(f"columns of unlike length: {', '.join(names)}")
-    yield _lines([[_cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]])
-    for first in range(0, len(columns[0]) if columns else 0, CSV_ROWS):
-        some = (column[first : first + CSV_ROWS].tolist() for column in columns)
-        yield _lines([repr(v) if isinstance(v, float) else _cell(v) for v in row] for row in zip(*some, strict=True))
+    for number, piece in enumerate(table.pieces()):
+        names = list(piece)
+        units = [table.units.get(name, "") for name in names]
+        columns = [np.asarray(column) for column in piece.values()]
+        if len({len(column) for column in columns}) > 1:
+            raise ValueError(f"columns of unlike length: {', '.join(names)}")
+        if number == 0:
+            yield _lines(
+                [[_cell(f"{name} [{unit}]" if unit else name) for name, unit in zip(names, units, strict=True)]]
+            )
+        for first in range(0, len(columns[0]) if columns else 0, CSV_ROWS):
+            some = (column[first : first + CSV_ROWS].tolist() for column in columns)
+            yield _lines(
+                [repr(v) if isinstance(v, float) else _cell(v) for v in row] for row in zip(*some, strict=True)
+            )
 
 
 def _lines(rows: Iterable[list[Any]]) -> str:
@@ -242,22 +253,22 @@ def _cell(value: Any) -> Any:
 def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
     """One group per analysis; axes that have an array of their name become dimension scales (xarray reads them).
 
-    Built in memory first: HDF5 on a full disk fails again and again while it closes, Python's write fails once.
+    Built in memory first: HDF5 on a full disk fails again and again while it closes, Python's write fails once. What is
+    read from disk goes to disk, where there is room for it.
     """
     import h5py
 
-    image = io.BytesIO()
+    streamed = [len(a.data) for r in results for a in r.arrays.values() if isinstance(a.data, Streamed)]
+    if streamed and shutil.disk_usage(path.parent).free < 16 * sum(streamed) + 2**26:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+    image = path if streamed else io.BytesIO()
     with h5py.File(image, "w", track_order=True) as file:
         for name, result in zip(names, results, strict=True):
             group = file.create_group(name, track_order=True)
             group.attrs["kind"] = result.kind
             group.attrs["status"] = result.status
             for title, array in result.arrays.items():
-                data = np.asarray(array.data)
-                if data.dtype.kind in "OU":
-                    shown = [printable(str(text), keep="\n") for text in data.ravel()]
-                    data = np.array(shown, dtype=object).reshape(data.shape).astype(h5py.string_dtype())
-                store = group.create_dataset(title, data=data)
+                store = _dataset(group, title, array.data)
                 store.attrs["unit"] = store.attrs["units"] = array.unit
                 store.attrs["about"] = printable(array.about, keep="\n")
                 store.attrs["series"] = array.series
@@ -265,12 +276,40 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                     store.make_scale(title)
             for dim, size in _sizes(result.arrays).items():
                 if dim not in group:
-                    group.create_dataset(dim, data=np.arange(size)).make_scale(dim)
+                    _dataset(group, dim, _numbers(size)).make_scale(dim)
             for title, array in result.arrays.items():
                 for axis, dim in enumerate(array.dims):
                     if dim != title:
                         group[title].dims[axis].attach_scale(group[dim])
-    path.write_bytes(image.getbuffer())
+    if isinstance(image, io.BytesIO):
+        path.write_bytes(image.getbuffer())
+
+
+def _dataset(group: Any, title: str, data: np.ndarray | Streamed) -> Any:
+    """An array in a group; text as HDF5 has it, what lies on disk piece by piece."""
+    import h5py
+
+    if isinstance(data, Streamed):
+        store = group.create_dataset(title, shape=data.shape, dtype=data.dtype)
+        at = 0
+        for piece in data.pieces():
+            store[at : at + len(piece)] = piece
+            at += len(piece)
+        return store
+    data = np.asarray(data)
+    if data.dtype.kind in "OU":
+        shown = [printable(str(text), keep="\n") for text in data.ravel()]
+        data = np.array(shown, dtype=object).reshape(data.shape).astype(h5py.string_dtype())
+    return group.create_dataset(title, data=data)
+
+
+def _numbers(size: int) -> np.ndarray | Streamed:
+    """0, 1, 2, ..., along an axis."""
+    if size <= LARGE:
+        return np.arange(size)
+    return Streamed(
+        size, np.arange(1).dtype, lambda: (np.arange(k, min(k + LARGE, size)) for k in range(0, size, LARGE))
+    )
 
 
 def _sizes(arrays: dict[str, Array]) -> dict[str, int]:
@@ -342,7 +381,7 @@ class Stored:
         there = self.arrays[analysis]
         if name not in there:
             raise KeyError(f"{self._place}{analysis} has no array '{name}'; there are {', '.join(there) or 'none'}")
-        return there[name].data
+        return np.asarray(there[name].data)
 
     def dataset(self, analysis: str) -> Any:
         """The arrays of an analysis as an xarray.Dataset (xarray must be installed), with the coordinates that its
@@ -351,7 +390,7 @@ class Stored:
 
         arrays = self.arrays[analysis]
         return xarray.Dataset(
-            {n: (a.dims, a.data, {"units": a.unit, "about": a.about}) for n, a in arrays.items()},
+            {n: (a.dims, np.asarray(a.data), {"units": a.unit, "about": a.about}) for n, a in arrays.items()},
             coords={dim: np.arange(size) for dim, size in _sizes(arrays).items() if dim not in arrays},
             attrs={"kind": analysis, "extrados": self.summary["extrados"]["version"]},
         )
@@ -369,6 +408,19 @@ def _check_shape(summary: dict[str, Any]) -> None:
         _ = analysis["name"], analysis["kind"], analysis["status"], analysis["results"].items()
 
 
+def _on_disk(path: Path, name: str, length: int, dtype: np.dtype) -> Streamed:
+    """An array of results.h5 that is read when it is asked for."""
+
+    def pieces() -> Iterator[np.ndarray]:
+        import h5py
+
+        with h5py.File(path, "r") as file:
+            for first in range(0, length, LARGE):
+                yield file[name][first : first + LARGE]
+
+    return Streamed(length, dtype, pieces)
+
+
 def read(folder: str | Path) -> Stored:
     """Read a run's folder; StoreError where it is damaged."""
     import h5py
@@ -377,18 +429,21 @@ def read(folder: str | Path) -> Stored:
     try:
         summary = json.loads(files.read(SUMMARY, None, folder).text())
         _check_shape(summary)
-        recorded = summary["files"].get(STORE)
-        content = files.read(STORE, None, folder).content
-        if hashlib.sha256(content).hexdigest() != recorded:
+        if files.sum_of(STORE, folder) != summary["files"].get(STORE):
             raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
+        small = (folder / STORE).stat().st_size <= 8 * LARGE
+        content = io.BytesIO(files.read(STORE, None, folder).content) if small else folder / STORE
         arrays: dict[str, dict[str, Array]] = {}
-        with h5py.File(io.BytesIO(content), "r") as file:
+        with h5py.File(content, "r") as file:
             for name, group in file.items():
                 arrays[name] = {}
                 for title, store in group.items():
                     if "unit" not in store.attrs:
                         continue
-                    data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
+                    if not small and store.ndim == 1 and len(store) > LARGE // 8 and store.dtype.kind in "iuf":
+                        data = _on_disk(folder / STORE, store.name, len(store), store.dtype)
+                    else:
+                        data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]
                     dims = tuple(title if not len(d) else d[0].name.rsplit("/", 1)[1] for d in store.dims)
                     arrays[name][title] = Array(data, dims, *(store.attrs.get(mark, "") for mark in MARKS))
         head = {key: value for key, value in summary.items() if key != "analyses"}

@@ -6,6 +6,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+POLYGON = 7
 CELLS = {"T3": 5, "Q4": 9, "T6": 22, "Q8": 23, "points": 1}
 _NAMES = {"f": "Float64", "i": "Int64", "u": "UInt8"}
 
@@ -22,8 +23,8 @@ def _data(name: str, values: np.ndarray) -> str:
 
 
 def _three(values: np.ndarray) -> np.ndarray:
-    """Plane vectors with a third component of zero."""
-    return np.column_stack([values, np.zeros(len(values))])
+    """Plane vectors with a third component of zero; those in space as they are."""
+    return values if values.shape[1] == 3 else np.column_stack([values, np.zeros(len(values))])
 
 
 def vtu(
@@ -32,7 +33,7 @@ def vtu(
     point_data: Mapping[str, np.ndarray] | None = None,
     cell_data: Mapping[str, np.ndarray] | None = None,
 ) -> bytes:
-    """One unstructured grid: xy (nodes, 2) [m], cells as (kind, connect (n, nodes)); vectors (n, 2) get a z of 0."""
+    """One unstructured grid: xy (nodes, 2 or 3) [m], cells as (kind, connect (n, nodes)); vectors (n, 2) get a z of 0."""
     connect = np.concatenate([c.ravel() for _, c in cells])
     ends = np.cumsum(np.concatenate([np.full(len(c), c.shape[1]) for _, c in cells]))
     kinds = np.concatenate([np.full(len(c), CELLS[k], dtype=np.uint8) for k, c in cells])
@@ -50,6 +51,24 @@ def vtu(
         f"<Points>{_data('Points', _three(np.asarray(xy, dtype=float)))}</Points>"
         f"<Cells>{_data('connectivity', connect)}{_data('offsets', ends)}{_data('types', kinds)}</Cells>"
         "</Piece></UnstructuredGrid></VTKFile>\n"
+    ).encode()
+
+
+def vtu_faces(
+    xyz: np.ndarray,
+    faces: Sequence[np.ndarray],
+    point_data: Mapping[str, np.ndarray],
+    cell_data: Mapping[str, np.ndarray],
+) -> bytes:
+    """Faces of solids as polygons: xyz (nodes, 3) [m], each face as numbers of nodes."""
+    connect, ends = np.concatenate(faces), np.cumsum([len(face) for face in faces])
+    fields = ["".join(_data(n, v) for n, v in data.items()) for data in (point_data, cell_data)]
+    return (
+        '<?xml version="1.0"?>\n<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" '
+        f'header_type="UInt64"><UnstructuredGrid><Piece NumberOfPoints="{len(xyz)}" NumberOfCells="{len(faces)}">'
+        f"<PointData>{fields[0]}</PointData><CellData>{fields[1]}</CellData><Points>{_data('Points', xyz)}</Points>"
+        f"<Cells>{_data('connectivity', connect)}{_data('offsets', ends)}"
+        f"{_data('types', np.full(len(faces), POLYGON, dtype=np.uint8))}</Cells></Piece></UnstructuredGrid></VTKFile>\n"
     ).encode()
 
 

@@ -4,7 +4,6 @@ A hidden list in the folder holds the checksums.
 """
 
 import contextlib
-import hashlib
 import itertools
 import json
 import logging
@@ -20,15 +19,10 @@ LIST = ".written.json"
 log = logging.getLogger(__name__)
 
 
-def sum_of(content: bytes) -> str:
-    """The checksum by which a file is known again."""
-    return hashlib.sha256(content).hexdigest()
-
-
 def sums_of(folder: Path) -> dict[str, str]:
     """The checksums of all files below a folder by their place in it."""
     return {
-        path.relative_to(folder).as_posix(): sum_of(path.read_bytes())
+        path.relative_to(folder).as_posix(): files.sum_of(path)
         for path in sorted(folder.rglob("*")) if path.is_file() and path.name != LIST
     }  # fmt: skip
 
@@ -56,7 +50,7 @@ def is_ours(folder: Path, name: str, known: dict[str, list[str]]) -> bool:
     if name not in known:
         return False
     try:
-        return sum_of(files.read(name, None, folder).content) in known[name]
+        return files.sum_of(name, folder) in known[name]
     except files.BadFile:
         return False
 

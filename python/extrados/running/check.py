@@ -11,12 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from extrados.analyses.context import Context
-from extrados.analyses.needs import complaints
+from extrados.analyses.needs import complaints, stones_of
 from extrados.building.errors import BadGeometry
+from extrados.building.geometry.assembly import Assembly
 from extrados.decks.reader import Deck
 
 if TYPE_CHECKING:
     from extrados.building.geometry.inspection import Inspection
+    from extrados.building.geometry.solids.assembly import SolidAssembly
+    from extrados.building.mesh.shells import ShellMesh
 
 
 @dataclass(frozen=True)
@@ -34,13 +37,16 @@ class Place:
 @dataclass(frozen=True)
 class Checked:
     """complaints: why the deck would be refused; remarks and notes on its geometry; the list of places, the refused
-    first, then the open, then those that the tolerance closes; inspection: None where it is no survey."""
+    first, then the open, then those that the tolerance closes; inspection: None where it is no survey; solids: what has
+    no plane section, or is asked for in a direction; plan: the mesh of a building on a plan."""
 
     complaints: list[str] = field(default_factory=list)
     remarks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
     inspection: "Inspection | None" = None
+    solids: "SolidAssembly | None" = None
+    plan: "ShellMesh | None" = None
 
 
 def check_building(deck: Deck) -> Checked:
@@ -58,9 +64,24 @@ def check_building(deck: Deck) -> Checked:
         for options, building in zip(deck.analyses, deck.buildings, strict=True):
             found += complaints(context, options, building)
     found = list(dict.fromkeys(found))
+    solids, plan = (None, None) if found else _in_space(deck)
+    if solids is not None:
+        return Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids)
     if inspection is None:
-        return Checked(found)
+        return Checked(found, plan.warnings if plan else [], plan=plan)
     return Checked(found, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
+
+
+def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":
+    """What of a sound deck's building stands in space, as one of its analyses looks at it."""
+    solids, plan = None, None
+    for options, building in zip(deck.analyses, deck.buildings, strict=True):
+        if options.view == "shell":
+            plan = building.shell(options.mesh)  # type: ignore[attr-defined]
+        elif options.view == "blocks":
+            stones = stones_of(building, options)
+            solids = solids if isinstance(stones, Assembly) else stones
+    return solids, plan
 
 
 def _places(inspection: "Inspection") -> list[Place]:
@@ -108,3 +129,39 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
         with written.alone(folder.parent):
             names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
     return folder / names["geometry.png"], folder / names["geometry.csv"]
+
+
+def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
+    """Plan and elevations of a building with its mesh into a folder: plan.png (and .svg), under the rule of write_check."""
+    from extrados.plots.plan import Elevation, draw_plan
+    from extrados.results import written
+
+    folder = Path(os.path.abspath(folder))
+    folder.mkdir(parents=True, exist_ok=True)
+    walls = []
+    for number, wall in enumerate(mesh.walls):
+        part = next(p for p in mesh.parts if p.wall == number)
+        corner = wall.unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        end = wall.origin + wall.length * wall.along
+        walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear))
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        scratch = Path(place)
+        draw_plan(scratch, "plan", walls, mesh.levels)
+        with written.alone(folder.parent):
+            names = written.put(scratch, folder, lambda name: name.startswith("plan"))
+    return folder / names["plan.png"]
+
+
+def write_solids(solids: "SolidAssembly", folder: Path) -> Path:
+    """The picture of solids into a folder: geometry.png (and .svg). What extrados did not write there stays."""
+    from extrados.plots.geometry import draw_stones
+    from extrados.results import written
+
+    folder = Path(os.path.abspath(folder))
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
+        scratch = Path(place)
+        draw_stones(scratch, "geometry", solids.parts, solids.owner, solids.polygon, solids.b < 0)
+        with written.alone(folder.parent):
+            names = written.put(scratch, folder, lambda name: name.startswith("geometry"))
+    return folder / names["geometry.png"]

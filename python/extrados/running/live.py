@@ -12,7 +12,7 @@ from extrados.analyses.context import Context, default_threads
 from extrados.analyses.run import run_one
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
-from extrados.decks.reader import Deck, DeckError, make_deck
+from extrados.decks.reader import WORDS, Deck, DeckError, make_deck
 from extrados.motions.motion import Motion
 from extrados.results import store
 from extrados.results.model import Result
@@ -174,7 +174,7 @@ class _Seen:
 
     def _part(self, part: str) -> Any:
         if part == "data":  # an analysis knows the values of its own building; words change no result
-            return {k: v for k, v in self.whole.data.items() if k not in ("title", "note", "analysis")}
+            return {k: v for k, v in self.whole.data.items() if k not in (*WORDS, "analysis")}
         if part == "motion":
             return self.whole.motion
         owner, _, table = part.partition(".")

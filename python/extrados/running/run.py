@@ -12,8 +12,9 @@ from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.decks.reader import Deck
 from extrados.results import checkpoint, store
-from extrados.results.model import Result
+from extrados.results.model import Result, Streamed
 from extrados.results.store import Stored
+from extrados.running.described import described
 from extrados.running.provenance import provenance
 
 
@@ -27,8 +28,12 @@ class Run(Stored):
 
     @classmethod
     def of(cls, deck: Deck, results: list[Result]) -> "Run":
-        """The run of a deck that has been computed; it has no folder yet."""
-        run = cls(None, lambda: _head(deck), store.rows(results), store.arrays_of(results), store.typed_of(results))
+        """The run of a deck that has been computed, the parts of its analyses after them; it has no folder yet."""
+        parts = [part for result in results for part in result.parts]
+        results = [*results, *parts]
+        run = cls(
+            None, lambda: _head(deck, parts), store.rows(results), store.arrays_of(results), store.typed_of(results)
+        )
         run.results = tuple(results)
         return run
 
@@ -61,6 +66,8 @@ class Run(Stored):
                     (scratch / name).parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(self.folder / name, scratch / name)
         self.folder = Path(folder) if making.place == making.out else making.place
+        if any(isinstance(a.data, Streamed) for arrays in self.arrays.values() for a in arrays.values()):
+            self.arrays = store.read(self.folder).arrays  # what lay beside the folder until now lies in it
         if figures:  # the results are safe by now, whatever happens while drawing
             from extrados.plots.report import write_report
 
@@ -68,8 +75,10 @@ class Run(Stored):
         return self.folder
 
 
-def _head(deck: Deck) -> dict[str, Any]:
+def _head(deck: Deck, parts: list[Result]) -> dict[str, Any]:
     """What summary.json says besides the analyses."""
+    resolved = deck.resolved()
+    resolved["analysis"] += [part.asked for part in parts]
     return {
         "extrados": provenance(),
         "deck": {
@@ -77,7 +86,11 @@ def _head(deck: Deck) -> dict[str, Any]:
             "sha256": deck.identity,
             "title": deck.title,
             "note": deck.note,
-            "resolved": deck.resolved(),
+            "project": deck.project,
+            "author": deck.author,
+            "date": deck.date,
+            **described(deck),
+            "resolved": resolved,
         },
     }
 

@@ -2,11 +2,13 @@
 
 import contextlib
 import contextvars
+import hashlib
 import os
 import stat
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -88,6 +90,22 @@ def read(file: str | Path, largest: int | None, folder: Path | None = None) -> F
     largest: the most bytes it may have, None for results of our own. BadFile where it is not there, leads out of the
     deck's folder (also by links, and also where a link is put there while we look), is no regular file or too large.
     """
+    with _opened(file, largest, folder) as (path, stream):
+        content = stream.read() if largest is None else stream.read(largest + 1)
+        if largest is not None and len(content) > largest:  # it grew while it was read
+            raise _too_large(path, len(content), largest)
+        return File(path, content)
+
+
+def sum_of(file: str | Path, folder: Path | None = None) -> str:
+    """SHA-256 of a file that `read` would read, whose content need not fit into memory."""
+    with _opened(file, None, folder) as (_, stream):
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+@contextlib.contextmanager
+def _opened(file: str | Path, largest: int | None, folder: Path | None) -> Iterator[tuple[Path, BufferedReader]]:
+    """The place of a file and its bytes; BadFile as `read` has it."""
     path = Path(file) if folder is None else locate(str(file), folder)
     try:
         handle = _open(path, folder if folder is not None and not Path(file).is_absolute() else None)
@@ -97,10 +115,7 @@ def read(file: str | Path, largest: int | None, folder: Path | None = None) -> F
             os.close(handle)
             raise
         with os.fdopen(handle, "rb") as stream:
-            content = stream.read() if largest is None else stream.read(largest + 1)
-        if largest is not None and len(content) > largest:  # it grew while it was read
-            raise _too_large(path, len(content), largest)
-        return File(path, content)
+            yield path, stream
     except FileNotFoundError:
         raise BadFile(f"{path}: no such file") from None
     except (OSError, ValueError) as error:

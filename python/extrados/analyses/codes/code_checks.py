@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, ntc, piers, west
+from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, more_piers, ntc, piers, west
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
 from extrados.building.templates.block import BlockAssembly
@@ -16,6 +16,7 @@ from extrados.motions.tables import Compatible
 from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
+from extrados.schema.spectrum import CodeSpectrum
 
 
 def run(context: Context, options: CodeChecks) -> Result:
@@ -73,7 +74,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     model = rocker.model
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
-    spectrum = spectrum_of(context, options)
+    spectrum = spectrum_of(context, options.spectrum)
     pga, sd, sa = None, None, None
     if spectrum is not None:
         pga = spectrum(0.0, 0.05) / GRAVITY
@@ -106,11 +107,10 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     return lines, beside
 
 
-def spectrum_of(context: Context, options: CodeChecks) -> Callable[[float, float], float] | None:
+def spectrum_of(context: Context, model: CodeSpectrum | None) -> Callable[[float, float], float] | None:
     """Pseudo-acceleration [m/s^2] of the code over period and damping ratio, whatever the seed of the motion; None
     without a spectrum.
     """
-    model = options.spectrum
     if model is None and isinstance(context.deck.motion, Compatible):
         model = context.deck.motion
     if model is None:
@@ -146,4 +146,10 @@ def _pier(
     if load >= 0.7 * strength * width * thickness:
         raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)")
     fixed = options.fixity == "double"
-    return piers(width, height, thickness, load, strength, joints.cohesion, options.sliding_friction, fixed)
+    return [
+        *piers(width, height, thickness, load, strength, joints.cohesion, options.sliding_friction, fixed),
+        *more_piers(
+            width, height, thickness, options.axial_load, weight, strength, joints.cohesion, options.sliding_friction,
+            options.diagonal_strength, fixed,
+        ),
+    ]  # fmt: skip

@@ -172,3 +172,36 @@ def piers(
             "Magenes and Calvi 1997, Eq. 4 (verify clause)",
         ),
     ]
+
+
+def more_piers(
+    width: float, height: float, thickness: float, axial: float, weight: float, strength: float, cohesion: float, friction: float,
+    diagonal: float | None, double: bool,
+) -> list[Line]:  # fmt: skip
+    """Rules that tell the load on top from the pier's own weight [N], and those of EN 1998-3 and NTC; lengths m, stresses Pa.
+
+    diagonal: tau_0, the shear strength without compression of the rule of diagonal cracking; None leaves it out.
+    """
+    area, load = width * thickness, axial + weight
+    stress = load / area
+    effective = height / 2.0 if double else height
+    factor = 1.0 if double else 0.5
+    lines = [
+        Line("ASCE 41 rocking of a pier", "lateral strength", 0.9 * (factor * axial + 0.5 * weight) * width / height, None, "N",
+             "ASCE 41-13: V_r = 0.9 (alpha P_D + 0.5 P_W) L/h_eff, alpha 0.5 free, 1 fixed at the top (as in the worked example of "
+             "Advanced Design Examples of Seismic Retrofit of Structures, Eq. 2.31)"),
+        Line("EN 1998-3 flexure", "lateral strength", max(0.0, width * load / (2.0 * effective) * (1.0 - 1.15 * stress / strength)), None,
+             "N", "EN 1998-3:2005 C.4.2.1: V_f = D N (1 - 1.15 nu_d)/(2 H_0) (verify clause)"),
+    ]  # fmt: skip
+    lines.append(
+        Line("EN 1998-3 shear", "lateral strength", area * min(cohesion + friction * stress, 0.065 * strength),
+             None, "N", "EN 1998-3:2005 C.4.3.1: V_f = f_vd D' t, f_vd = f_vm0 + 0.4 N/(D' t) <= 0.065 f_m, whole length pressed (verify clause)")
+    )  # fmt: skip
+    if diagonal is not None:
+        b = min(max(height / width, 1.0), 1.5)
+        tension = 1.5 * diagonal
+        lines.append(
+            Line("NTC diagonal cracking", "lateral strength", area * tension / b * float(np.sqrt(1.0 + stress / tension)), None, "N",
+                 "NTC 2018, Circ. 7/2019 C8.7.1.16: V_t = l t (1.5 tau_0/b) sqrt(1 + sigma_0/(1.5 tau_0)), 1 <= b = h/l <= 1.5 (verify clause)")
+        )  # fmt: skip
+    return lines

@@ -5,11 +5,14 @@ from collections.abc import Iterator
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
+from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 
 
-def needs(context: Context, options: CodeChecks) -> Iterator[Need]:
+def needs(context: Context, options: Analysis) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
+    if not isinstance(options, CodeChecks):
+        return
     building, structure = context.building, context.building.structure
     wall = structure is not None and structure.rocks_as == "piers"
     if wall:
@@ -21,7 +24,7 @@ def needs(context: Context, options: CodeChecks) -> Iterator[Need]:
         if options.spectrum is not None:
             from extrados.analyses.codes.code_checks import spectrum_of
 
-            yield lambda: spectrum_of(context, options)(0.0, 0.05)
+            yield lambda: spectrum_of(context, options.spectrum)(0.0, 0.05)
     if (wall or options.axial_load is not None) and building.material.compressive_strength is None:
         yield lambda: _refuse_weak()
 

@@ -2,10 +2,12 @@
 
 from typing import ClassVar, Literal
 
+from pydantic import model_validator
+
 from extrados.analyses.table import BuildingAnalysis
-from extrados.schema.quantities import Acceleration, Force, Length, Time, Velocity
+from extrados.schema.quantities import Acceleration, Angle, Force, Length, Stress, Time, Velocity
 from extrados.schema.spectrum import CodeSpectrum
-from extrados.schema.table import key
+from extrados.schema.table import Table, key
 
 
 class CodeChecks(BuildingAnalysis):
@@ -28,4 +30,81 @@ class CodeChecks(BuildingAnalysis):
     sliding_friction: float = key(
         0.4, "coefficient of friction that the code gives for sliding along a bed joint", gt=0, le=2, source="NTC 2018"
     )
+    diagonal_strength: Stress | None = key(
+        None, "tau_0, shear strength of the masonry without compression; asks for the rule of diagonal cracking", gt=0
+    )
     fixity: Literal["cantilever", "double"] = key("cantilever", "rotation of the top: free or held")
+
+
+class Floor(Table):
+    """A floor, roof or vault that rests on the wall."""
+
+    height: Length = key(about="height at which it acts, above the foot of the wall", ge=0)
+    load: Force = key(0.0, "its weight on the mechanism", ge=0)
+    arm: Length | None = key(None, "how far behind the hinge it rests; default the middle of the wall", ge=0)
+    sways: bool = key(True, "whether its mass is accelerated with the wall; false where other walls hold it")
+    thrust: Force = key(0.0, "its horizontal thrust at rest, outward")
+
+
+class WallTie(Table):
+    """A tie that holds the wall."""
+
+    height: Length = key(about="its height above the foot of the wall", gt=0)
+    force: Force = key(about="what it bears: the least of steel, anchorage and masonry", gt=0)
+
+
+class SideWalls(Table):
+    """Walls at right angles of which wedges go with the facade."""
+
+    thickness: Length = key(about="of each", gt=0)
+    crack_angle: Angle = key(about="of the crack from the vertical", gt=0, lt=80)
+    count: int = key(2, "how many", ge=1, le=4)
+
+
+class LocalMechanism(BuildingAnalysis):
+    """A local mechanism by the kinematic analysis of codes: multiplier, participating mass, linear and nonlinear checks."""
+
+    kind: Literal["local-mechanism"]
+    uses: ClassVar = ("material.density", "material.compressive_strength")
+    view: ClassVar = ""
+    bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
+    starter: ClassVar = {
+        "mechanism": '"facade"', "height": "6.0", "thickness": '"60 cm"', "width": "1.0", "peak_acceleration": '"0.15 g"',
+        "floors": '[{ height = 5.8, load = "10 kN", arm = 0.4 }]',
+    }  # fmt: skip
+    mechanism: Literal["facade", "corner", "gable", "parapet", "wall", "tower", "building"] = key(
+        about="facade, corner of two walls, gable, parapet on a building, free-standing wall, tower as one body; or `building`, "
+        "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults)"
+    )
+    height: Length | None = key(None, "top of what turns, above the foot of the wall", gt=0)
+    thickness: Length | None = key(None, "thickness at the hinge", gt=0)
+    width: Length | None = key(None, "length of wall that turns; default 1 m, of a tower its thickness", gt=0)
+    hinge_height: Length = key(0.0, "height of the hinge, the crack about which it turns", ge=0)
+    crack_angle: Angle | None = key(None, "of a corner: of the cracks in both walls from the vertical", gt=0, lt=80)
+    floors: list[Floor] = key([], "floors, roofs and vaults on it", max_length=50)
+    ties: list[WallTie] = key([], "ties that hold it", max_length=50)
+    side_walls: SideWalls | None = key(None, "wedges of side walls that go with it")
+    spectrum: CodeSpectrum | None = key(
+        None,
+        "elastic spectrum of the site; default that of a `compatible` motion",
+        source="EN 1998-1 3.2.2; NTC 2018 3.2.3",
+    )
+    peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
+    behaviour_factor: float = key(2.0, "q of the linear checks", ge=1, le=6, source="NTC 2018, C8.7.1")
+    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="NTC 2018, C8.5.4")
+    base_height: Length = key(
+        0.0, "height z of the hinge's place above the foundation: above 0 the floor amplifies", ge=0
+    )
+    building_height: Length | None = key(None, "height H of the building, where base_height is above 0", gt=0)
+    building_period: Time | None = key(
+        None, "first period T_1 of the building; default 0.05 H^0.75", gt=0, source="EN 1998-1 Eq. 4.6"
+    )
+    storeys: int = key(1, "storeys N of the building, for the modal participation", ge=1, le=50)
+    one_second_acceleration: Acceleration | None = key(None, "S_X1; asks for the slenderness limits of ASCE 41", gt=0)
+    storey: Literal["one-story", "first", "top", "other"] = key("one-story", "where the wall stands, for ASCE 41")
+
+    @model_validator(mode="after")
+    def _elevated(self) -> "LocalMechanism":
+        if self.base_height > 0.0 and self.building_height is None:
+            raise ValueError("base_height above 0 needs building_height")
+        return self

@@ -11,7 +11,7 @@ from extrados.results.model import Result
 
 def run(context: Context, options: Dem) -> Result:
     """A run with its variations, or a tilt test."""
-    model = dem_model.make_model(context, options, options.floor)
+    model = dem_model.make_model(context, options)
     context.warnings += dem_model.warnings(model, options)
     try:
         with interruptible():  # Ctrl-C between two runs stops the next one

@@ -4,6 +4,8 @@ import numpy as np
 
 from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.tables import Dem
+from extrados.building.geometry.assembly import GROUND
+from extrados.building.geometry.rigid import FOOTING
 from extrados.core import dem
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND
 from extrados.results.model import Array, TableData
@@ -64,6 +66,21 @@ def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray, slip: np.ndarray)
 def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
     """Greatest slip of joints that still touch [m]."""
     return float(np.nanmax(np.abs(np.where(state == APART, 0.0, slip)), initial=0.0))
+
+
+def off_their_footings(model: Model, state: np.ndarray, slip: np.ndarray) -> list[str]:
+    """Blocks that slide farther on the ground than their footings reach, by the states and slips (time, joint) [m]."""
+    a = model.assembly
+    far = np.where(state == APART, 0.0, np.abs(np.nan_to_num(slip))).max(axis=0, initial=0.0) > FOOTING * a.length
+    ground = (a.a == GROUND) | (a.b == GROUND)
+    return [a.block_names[max(a.a[j], a.b[j])] for j in np.flatnonzero(far & ground)]
+
+
+def ground_level(model: Model) -> float:
+    """Height of the lowest joint on the ground [m]."""
+    a = model.assembly
+    ground = (a.a == GROUND) | (a.b == GROUND)
+    return float(np.minimum(a.p[ground, 1], a.q[ground, 1]).min())
 
 
 def displacements(model: Model, run: dem.Run) -> np.ndarray:

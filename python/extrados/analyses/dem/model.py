@@ -112,7 +112,7 @@ class Model:
         return dem.Bodies(r.centroid, r.mass, r.inertia, r.parts, r.owner, r.outer, r.depth, laws, joints)
 
 
-def make_model(context: Context, options: DemTable, floor: float | None = None) -> Model:
+def make_model(context: Context, options: DemTable) -> Model:
     """The model of a deck; Refused where a block has no area or crosses itself."""
     building = context.building
     assembly = building.blocks()
@@ -121,7 +121,7 @@ def make_model(context: Context, options: DemTable, floor: float | None = None) 
         assert isinstance(assembly, ArchAssembly)
         joint = ArchModel(assembly).four_hinge.joint
         groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
-    return Model(assembly, building.rigid(groups, floor), joint_values(building))
+    return Model(assembly, building.rigid(groups, options.floor), joint_values(building))
 
 
 class Falls(Refused):

@@ -63,6 +63,10 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     _store(options, model, found, seen, result)
     if seen.sliding > measures.SLIDES * float(model.assembly.length.min()):
         result.warnings.append(f"joints slide by up to {1e3 * seen.sliding:.3g} mm")
+    if options.floor is None and (who := measures.off_their_footings(model, seen.state, seen.slip)):
+        result.warnings.append(
+            f"{', '.join(who[:6])} slides off its footing: floor = {measures.ground_level(model):.4g} names a floor to slide on"
+        )
     if found.residual > 0.01:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"

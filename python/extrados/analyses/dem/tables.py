@@ -25,6 +25,10 @@ class DemTable(BuildingAnalysis):
         "none", "glue the voussoirs of an arch into the three links of its four-hinge mechanism"
     )
     fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
+    floor: Length | None = key(
+        None, "height of a level floor that catches what falls and on which blocks slide on; default none, but a footing a "
+        "quarter wider on both sides under each joint to the ground",
+    )  # fmt: skip
 
 
 class Dem(DemTable, Animated):
@@ -40,7 +44,6 @@ class Dem(DemTable, Animated):
     time_step: Time | None = key(None, "instead of the fraction of the critical step", gt=0)
     base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
     collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
-    floor: Length | None = key(None, "height of a floor that catches what falls")
     domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
     stop_at_collapse: bool = key(True, "end the run once a block has moved that far")
     track: list[str] = key([], "names of blocks whose rotation is followed; default all, at most 24", max_length=200)

@@ -6,13 +6,20 @@ from collections.abc import Iterator
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit import tables
 from extrados.analyses.limit.asked import deviation_of, refuse_still, sections_of, values_of
-from extrados.analyses.needs import Need
+from extrados.analyses.needs import Need, stones_of
 from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
+from extrados.building.geometry.assembly import Assembly
 
 
 def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
+    try:
+        if not isinstance(stones_of(building, options), Assembly):
+            return  # solids have no loads, chains and trains
+    except BadGeometry:
+        return  # told already
     if loads := getattr(options, "load", []):
         from extrados.analyses.limit.applied import pieces
 

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 from pydantic import model_validator
 
 from extrados.analyses.table import Animated, BuildingAnalysis
-from extrados.schema.quantities import Force, Gravities, Length, LineForce
+from extrados.schema.quantities import Angle, Force, Gravities, Length, LineForce
 from extrados.schema.table import Table, key
 
 
@@ -51,7 +51,19 @@ class Tilt(LimitAnalysisTable, Animated):
     """Limit analysis: the horizontal acceleration and tilt at which the structure becomes a mechanism."""
 
     kind: Literal["tilt"]
+    solid: ClassVar = True
     fracture: bool = key(False, "also let the leeward buttress crack: monolithic and fractured side by side")
+    direction: Angle | None = key(
+        None, "direction in plan of the push, from +x to +y, which is across a section; with it, and where there is no plane section, "
+        "the blocks are looked at as solids", ge=-360, le=360,
+    )  # fmt: skip
+    rose: int | None = key(
+        None, "of solids: directions all around at which the capacity is sought; default 16 up to 300 stones, beyond the direction alone",
+        ge=4, le=720,
+    )  # fmt: skip
+    pyramids: int | None = key(
+        None, "of solids: also bound the capacity by pyramids of so many sides, within and around the cones of friction", ge=3, le=64
+    )  # fmt: skip
 
 
 class Thrust(LimitAnalysisTable):

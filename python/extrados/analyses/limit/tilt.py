@@ -20,6 +20,7 @@ from extrados.analyses.limit.common import (
 )  # fmt: skip
 from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
+from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
@@ -46,9 +47,28 @@ def degrees(gamma: float) -> float:
     return float(np.degrees(np.arctan(gamma)))
 
 
+def looks_at_solids(building: Building, options: Tilt) -> bool:
+    """Whether a deck asks for solids: by a direction or a rose, or since there is no plane section."""
+    if options.direction is not None or options.rose is not None or options.pyramids is not None:
+        return True
+    try:
+        building.blocks()
+    except NoView as error:
+        try:
+            building.solids()
+        except NoView:
+            raise error from None
+        return True
+    return False
+
+
 def run(context: Context, options: Tilt) -> Result:
     """Capacity both ways, hinges, mechanism, thrust line at collapse, least and greatest thrust upright."""
     building = context.building
+    if looks_at_solids(building, options):
+        from extrados.analyses.limit import solids  # with a solver of its own, which takes a while to load
+
+        return solids.run(context, options)
     assembly: Assembly = building.blocks()
     limit = limit_of(building, options)
     answer = answer_of(building, options, limit)

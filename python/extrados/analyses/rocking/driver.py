@@ -6,6 +6,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.limit.tilt import geometry_arrays
 from extrados.analyses.rocking import block as block_rocking
 from extrados.analyses.rocking import mechanism as mechanism_rocking
+from extrados.analyses.rocking import soft_base as soft_base_rocking
 from extrados.analyses.rocking import stack as stack_rocking
 from extrados.analyses.rocking.common import with_moving_supports
 from extrados.analyses.rocking.doubts import doubts
@@ -30,7 +31,9 @@ def run(context: Context, options: Rocking) -> Result:
     context = with_moving_supports(context)
     structure = context.building.structure
     if structure is not None and structure.rocks_as == "stack":
-        return stack_rocking.run(context, options)
+        return _with_friction(context, stack_rocking.run(context, options))
+    if context.building.supports.stiffness is not None:
+        return _with_friction(context, soft_base_rocking.run(context, options))
     rocker = context.building.rocker(options.form == "linear")
     kinds = {BlockModel: block_rocking.run, MechanismModel: mechanism_rocking.run, ArchModel: _arch}
     result = next(run for kind, run in kinds.items() if isinstance(rocker.model, kind))(context, options, rocker)
@@ -38,6 +41,11 @@ def run(context: Context, options: Rocking) -> Result:
         from extrados.analyses.rocking.shapes import film_arrays
 
         result.arrays |= film_arrays(rocker, result)
+    return _with_friction(context, result)
+
+
+def _with_friction(context: Context, result: Result) -> Result:
+    """The result, with a warning where the joints do not have the friction that it needs."""
     needed, given = result.results.required_friction, context.building.joints.coefficient
     if given is not None and needed is not None and needed > given:
         result.warnings.append(

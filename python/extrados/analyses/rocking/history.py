@@ -202,6 +202,18 @@ def snapshot_index(response: Response, options: Rocking, warnings: list[str]) ->
     return np.unique(np.clip(index, 0, len(response.time) - 1))
 
 
+def drawn_times(time: np.ndarray, rotations: np.ndarray, options: Rocking) -> np.ndarray:
+    """Output times at which several coordinates (coordinates, times) are drawn: those asked for, or up to six crests."""
+    if not len(time):
+        return np.zeros(0, dtype=int)
+    if options.thrust_line_times:
+        return np.unique(np.clip(np.searchsorted(time, options.thrust_line_times), 0, len(time) - 1))
+    crests = [k for q in np.abs(rotations) for k in np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1]
+    size = np.abs(rotations).max(axis=0)
+    chosen = sorted(dict.fromkeys([*crests, int(size.argmax())]), key=lambda k: -size[k])[:6]
+    return np.array(sorted(chosen))
+
+
 def ordinal(n: int) -> str:
     """first, second, ..., tenth, 11th, 12th, 21st."""
     if n <= len(ORDINALS):

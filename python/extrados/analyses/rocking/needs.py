@@ -9,7 +9,7 @@ from extrados.analyses.needs import Need
 from extrados.analyses.rocking import tables
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.rockers.words import refuse_words
+from extrados.building.rockers.words import refuse_soft_base, refuse_words
 from extrados.building.structure import Structure
 
 
@@ -22,6 +22,9 @@ def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
     yield stones
     if structure.rocks_as == "stack" and isinstance(options, tables.Rocking):
         yield functools.partial(_refuse_stack, building, options)
+        return
+    if building.supports.stiffness is not None and isinstance(options, tables.Rocking):
+        yield functools.partial(refuse_soft_base, building)
         return
     yield functools.partial(refuse_words, building, options.form == "linear")
     if building.restraints:
@@ -58,6 +61,12 @@ def _refuse_stack(building: Building, options: tables.Rocking) -> None:
         raise Refused("rocking draws no film of a stack: dem does", ("analysis", "animation"))
     for key in building.special_keys.values():
         raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
+    if building.supports.stiffness is not None:
+        raise Refused(
+            "two stacked blocks rock on rigid ground here; leave it out, or ask `dem`, which follows a base that gives way "
+            "under any stones",
+            ("supports", "stiffness"),
+        )
     if options.form == "linear":
         raise Refused('form = "linear" is known of blocks and columns only', ("analysis", "form"))
     if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):

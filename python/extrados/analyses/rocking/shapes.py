@@ -66,19 +66,29 @@ class _Timed(NamedTuple):
     time: np.ndarray
 
 
+def pictures(time: np.ndarray) -> np.ndarray:
+    """Which output times are the pictures of a film."""
+    step = max(1.0 / RATE, (time[-1] - time[0]) / MOST)
+    return np.unique(np.searchsorted(time, np.arange(time[0], time[-1] + 0.5 * step, step)).clip(max=len(time) - 1))
+
+
+def film(time: np.ndarray, pose: np.ndarray) -> dict[str, Array]:
+    """What a film shows: times [s], and poses (times, blocks, 3) [m, m, rad] of the stones."""
+    return {
+        "film_time": Array(time, ("film",), "s", "times of the pictures of the animation"),
+        "film_pose": Array(pose, ("film", "block", "component"), "m, m, rad", "x, y, rotation of the stones"),
+    }
+
+
 def film_arrays(rocker: Rocker, result: Result) -> dict[str, Array]:
     """The shapes of a stored history at the pictures of a film."""
     get = {name: array.data for name, array in result.arrays.items()}
     time = get["time"]
     if not len(time):
         return {}
-    step = max(1.0 / RATE, (time[-1] - time[0]) / MOST)
-    index = np.unique(np.searchsorted(time, np.arange(time[0], time[-1] + 0.5 * step, step)).clip(max=len(time) - 1))
+    index = pictures(time)
     made = shapes(rocker, States(*(get[k][index] for k in ("rotation", "rate", "acceleration", "ground", "vertical"))))
-    arrays = {
-        "film_time": Array(time[index], ("film",), "s", "times of the pictures of the animation"),
-        "film_pose": Array(made.pose, ("film", "block", "component"), "m, m, rad", "x, y, rotation of the stones"),
-    }
+    arrays = film(time[index], made.pose)
     if made.line is not None:
         arrays["film_line"] = Array(
             made.line, ("film", "line_point", "axis"), "m", "line of thrust, or of the ground's force"

@@ -4,7 +4,9 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import geometry_arrays
-from extrados.analyses.rocking.history import LARGEST, count
+from extrados.analyses.rocking.doubts import NUDGE
+from extrados.analyses.rocking.history import LARGEST, count, drawn_times
+from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
 from extrados.building.rockers.stack import StackModel
 from extrados.core.stack import StackResponse, stack_history
@@ -14,8 +16,6 @@ from extrados.schema.constants import GRAVITY
 
 #: After the motion it rocks itself to rest within this many of its own time units
 SETTLE = 40.0
-#: A motion scaled by 1 plus and minus this is the same motion to every instrument
-NUDGE = 1e-6
 #: Modes by the states of both contacts
 MODES = ("at rest", "both in the same sense", "both against each other", "upper alone", "both as one")
 
@@ -96,7 +96,7 @@ def _result(context: Context, options: Rocking, model: StackModel, r: StackRespo
         result.warnings.append(
             f"from {r.time[flies.argmax()]:.3f} s on a joint would part as a whole for a while: rocking without flight is assumed"
         )
-    index = _drawn(r, options)
+    index = drawn_times(r.time, r.rotation.T, options)
     result.tables["rocking"] = TableData(
         {
             "time": r.time, "rotation": r.rotation[:, 0], "rotation_upper": r.rotation[:, 1], "ground_acceleration": r.ground,
@@ -127,6 +127,9 @@ def _result(context: Context, options: Rocking, model: StackModel, r: StackRespo
             model.pose(r.rotation[index], r.state[index]), ("snapshot", "block", "component"), "m, m, rad", "x, y, rotation"
         ),
     }  # fmt: skip
+    if options.animation != "none" and len(r.time):
+        shown = pictures(r.time)
+        result.arrays |= film(r.time[shown], model.pose(r.rotation[shown], r.state[shown]))
     how = {"collapse": "comes down", "recovery": "rocks and stays up", "no-hinging": "does not rock"}[r.outcome]
     shares = (
         sorted(((float((found[moving] == k).mean()), name) for k, name in enumerate(MODES) if k), reverse=True)
@@ -163,17 +166,3 @@ def _normal_and_shear(r: StackResponse) -> tuple[np.ndarray, np.ndarray]:
     c, s = np.cos(r.rotation[:, 0]), np.sin(r.rotation[:, 0])
     x, y = r.force[:, 1].T
     return np.column_stack([r.force[:, 0, 1], s * x + c * y]), np.column_stack([r.force[:, 0, 0], c * x - s * y])
-
-
-def _drawn(r: StackResponse, options: Rocking) -> np.ndarray:
-    """Output times at which the blocks are drawn: those asked for, or up to six crests of the rotations."""
-    if not len(r.time):
-        return np.zeros(0, dtype=int)
-    if options.thrust_line_times:
-        return np.unique(np.clip(np.searchsorted(r.time, options.thrust_line_times), 0, len(r.time) - 1))
-    crests = [
-        k for q in np.abs(r.rotation).T for k in np.flatnonzero((q[1:-1] >= q[:-2]) & (q[1:-1] > q[2:])) + 1
-    ]  # fmt: skip
-    size = np.abs(r.rotation).max(axis=1)
-    chosen = sorted(dict.fromkeys([*crests, int(size.argmax())]), key=lambda k: -size[k])[:6]
-    return np.array(sorted(chosen))

@@ -5,6 +5,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from extrados.analyses.table import Animated, BuildingAnalysis
+from extrados.building.building import Building
 from extrados.building.properties import NO_SLIDING
 from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Time
@@ -30,6 +31,7 @@ class Rocking(RockingTable, Animated):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]
+    bears: ClassVar = (*HOLDS, "[supports] foundation", "[supports] damping_ratio")
     needs_motion: ClassVar = True
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.005, "spacing of the history", gt=0)
@@ -37,6 +39,14 @@ class Rocking(RockingTable, Animated):
     thrust_line_times: list[Annotated[Time, Field(ge=0)]] = key(
         [], "draw the structure and its thrust line at these times", max_length=24
     )
+
+    def rests_on(self, building: Building) -> dict[str, str | None]:
+        """On a base that gives way the impact follows from it."""
+        found = super().rests_on(building)
+        if building.supports.stiffness is not None:
+            del found["joints.restitution"]
+            found |= {f"supports.{key}": None for key in ("stiffness", "foundation", "damping_ratio")}
+        return found
 
 
 class FailureDomain(RockingTable):

@@ -53,6 +53,8 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     beyond their friction slide; the solution is one of those that friction may leave. Where the rounds find none, all points stick and a warning says so.
     True where joints can slide.
     """
+    if not model.mesh.has_joints:
+        return False
     dry = dry_points(core_model, model)
     at = dry.number
     if not len(at):

@@ -135,6 +135,7 @@ def run_curves(
             sign = 1 if sense == "+" else -1
             if number or stage_a is not None:  # a new factor: a run that is resumed here has one too
                 core_model.set_damage(start)
+            _settled(core_model, model)
             core_model.loads(
                 model.constant, sign * model.reference, carried=stage_a is not None, events=events, ledger=ledger
             )
@@ -158,6 +159,13 @@ def run_curves(
             if curve.events.interrupted:
                 break
     return curves
+
+
+def _settled(core_model: core.Model, model: SlaModel, growing: bool = False) -> None:
+    """Supports that have settled with the constant loads, or settle as these grow."""
+    if len(model.settled):
+        still = np.zeros(len(model.settled))
+        core_model.supports(*((still, model.settled) if growing else (model.settled, still)))
 
 
 def _totals(stage: core.Events | None) -> tuple[tuple[float, float, float], int]:
@@ -187,6 +195,7 @@ def bring_on_constant_loads(
     if kept is not None and not len(kept["standing"]):  # they were on already
         core_model.set_damage(kept["damage"])
         return core.Events.join(way.parts), False
+    _settled(core_model, model, growing=True)
     core_model.loads(np.zeros_like(model.constant), model.constant)
     if kept is not None:
         core_model.renew(kept["damage"], kept["standing"])
@@ -258,13 +267,14 @@ def run_reference_loads(
         kept = chain.state[1]
         way = UnderWay.of(kept)
         core_model.renew(kept["damage"], kept["standing"])
-    before = way.seconds
+    before, begun = way.seconds, way.done
     variant = options.without_equilibrium
     release = variant == "force-release"
     floor = MECHANISM_OF_STONES if model.mesh.has_joints else MECHANISM
     batch, start = GRID, way.before_best
     while (done := way.done) < options.events:
-        if done % KEPT == 0 and done and not release:  # what is on its way from one point to others has no name
+        # What is on its way from one point to others has no name
+        if done % KEPT == 0 and done > begun and not release:
             damage, standing = core_model.damage(), core_model.standing()
             try:
                 core_model.renew(damage, standing)
@@ -388,6 +398,7 @@ def _replay(
 
     def begin() -> None:
         core_model.set_damage(damage)
+        _settled(core_model, model)
         core_model.loads(model.constant, sign * model.reference)
         if first:  # friction that slides looks on from the multiplier reached
             core_model.renew(damage, core_model.standing_at(float(events.load[first - 1])))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extrados.analyses.context import Refused
-from extrados.analyses.sla.tables import Load, Sla
+from extrados.analyses.sla.tables import CrackOptions, Load, Sla
 from extrados.building.errors import BadGeometry, Key
 from extrados.building.mesh.mesh import ElementGroup, Mesh, corner_count, element_areas
 from extrados.building.places import Placed
@@ -45,6 +45,9 @@ class SlaModel:
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
     moved: np.ndarray = field(default_factory=lambda: np.empty((0, 2)))  # supports, constant and per multiplier [m]
     already: float = 0.0  # reference load that stages before have left on [N]
+    settled: np.ndarray = field(
+        default_factory=lambda: np.empty(0)
+    )  # supports that go down with A, as of a building [m]
 
     @property
     def driven(self) -> bool:
@@ -247,20 +250,27 @@ def crack_bands(mesh: Mesh, group: ElementGroup, options: Sla) -> tuple[np.ndarr
     """h of each element [m], and (elements, 2) its least and greatest where it follows from the crack's direction.
 
     The thickness of a row along a joint; or given; or the width of a linear element across the crack
-    (fortran/sla/plane.f90), that of a mean direction for what crushes; or by the area: sqrt(2 A) of linear elements,
+    (fortran/sla/plane_points.f90), that of a mean direction for what crushes; or by the area: sqrt(2 A) of linear elements,
     sqrt(A) of quadratic ones, in which cracks keep to a part of the element.
     """
     if group.band is not None:
         return np.full(len(group.connect), group.band), None
+    return bands_of(mesh.xy, group.kind, group.connect, options)
+
+
+def bands_of(
+    xy: np.ndarray, kind: str, connect: np.ndarray, options: CrackOptions
+) -> tuple[np.ndarray, np.ndarray | None]:
+    """As crack_bands, of elements of a kind in a plane: nodes xy (nodes, 2) [m], connect (elements, nodes)."""
     if options.crack_band is not None:
-        return np.full(len(group.connect), options.crack_band), None
-    area = element_areas(mesh.xy, group.kind, group.connect)
-    if group.kind in ("T6", "Q8"):
+        return np.full(len(connect), options.crack_band), None
+    area = element_areas(xy, kind, connect)
+    if kind in ("T6", "Q8"):
         return np.sqrt(area), None
     if options.crack_band_rule == "area":
         return np.sqrt(2.0 * area), None
-    c = mesh.xy[group.connect[:, : corner_count(group.kind)]]
-    if group.kind == "T3":
+    c = xy[connect[:, : corner_count(kind)]]
+    if kind == "T3":
         longest = np.hypot(*np.moveaxis(np.roll(c, -1, axis=1) - c, 2, 0)).max(axis=1)
         return np.sqrt(2.0 * area), np.column_stack([2.0 * area / longest, longest])
     one, two = c[:, 2] - c[:, 0], c[:, 3] - c[:, 1]
@@ -268,7 +278,7 @@ def crack_bands(mesh: Mesh, group: ElementGroup, options: Sla) -> tuple[np.ndarr
     return np.sqrt(area), np.column_stack([2.0 * area / across, np.maximum(np.hypot(*one.T), np.hypot(*two.T))])
 
 
-def _softening(material: Material, options: Sla, factor: float = 1.0) -> core.Softening | None:
+def softening_of(material: Material, options: CrackOptions, factor: float = 1.0) -> core.Softening | None:
     if material.tensile_strength is None:
         return None
     return core.Softening(
@@ -277,7 +287,7 @@ def _softening(material: Material, options: Sla, factor: float = 1.0) -> core.So
     )  # fmt: skip
 
 
-def _bedding(material: Material) -> core.Bedding | None:
+def bedding_of(material: Material) -> core.Bedding | None:
     """Bed joints of masonry whose strength depends on the direction."""
     along, across = material.tensile_strength_parallel, material.tensile_strength
     if along is None or across is None or material.fracture_energy is None:
@@ -289,7 +299,7 @@ def _bedding(material: Material) -> core.Bedding | None:
     return core.Bedding(np.radians(material.bed_angle), along / across, energy / material.fracture_energy, shear)
 
 
-def _crushing(material: Material, options: Sla) -> core.Softening | None:
+def crushing_of(material: Material, options: CrackOptions) -> core.Softening | None:
     if material.crushing_energy is None:
         return None
     return core.Softening(
@@ -298,16 +308,16 @@ def _crushing(material: Material, options: Sla) -> core.Softening | None:
     )  # fmt: skip
 
 
-def _plane(
-    mesh: Mesh, group: ElementGroup, band: np.ndarray, reach: np.ndarray | None, factors: np.ndarray, options: Sla
-) -> core.Plane:
-    materials = [mesh.materials[m] for m in group.material]
-    crushing = [None if s else _crushing(m, options) for m, s in zip(materials, group.linear, strict=True)]
+def laws_of(
+    materials: Sequence[Material], linear: np.ndarray, factors: np.ndarray, band: np.ndarray, reach: np.ndarray | None,
+    options: CrackOptions,
+) -> tuple[list[core.Softening | None], list[core.Softening | None], list[core.Bedding | None]]:  # fmt: skip
+    """Tension and compression softening and bed joints of elements; BadGeometry where a crack band snaps back."""
+    crushing = [None if s else crushing_of(m, options) for m, s in zip(materials, linear, strict=True)]
     tension = [
-        None if s else _softening(m, options, float(f))
-        for m, s, f in zip(materials, group.linear, factors, strict=True)
+        None if s else softening_of(m, options, float(f)) for m, s, f in zip(materials, linear, factors, strict=True)
     ]
-    beds = [None if t is None else _bedding(m) for m, t in zip(materials, tension, strict=True)]
+    beds = [None if t is None else bedding_of(m) for m, t in zip(materials, tension, strict=True)]
     if options.cracking == "isotropic" and any(bed is not None for bed in beds):
         raise BadGeometry("tensile_strength_parallel needs cracks with a direction: isotropic cracking has none")
     # Across its weakest direction bedded masonry has the teeth of another band, see core.Bedding
@@ -321,6 +331,14 @@ def _plane(
                         f"{energy} is too small for the elements: a crack band of {widths[k]:.4g} m snaps back, the "
                         f"largest is {limit:.4g} m; use smaller elements"
                     )
+    return tension, crushing, beds
+
+
+def _plane(
+    mesh: Mesh, group: ElementGroup, band: np.ndarray, reach: np.ndarray | None, factors: np.ndarray, options: Sla
+) -> core.Plane:
+    materials = [mesh.materials[m] for m in group.material]
+    tension, crushing, beds = laws_of(materials, group.linear, factors, band, reach, options)
     return core.Plane(
         group.kind, group.connect, group.thickness,
         np.array([m.young for m in materials]), np.array([m.poisson for m in materials]), band,
@@ -389,7 +407,7 @@ def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
     length = float(np.hypot(*(mesh.xy[ends[1]] - mesh.xy[ends[0]])))
     return core.Bars(
         np.array([ends]), bar.area, material.young, options.crack_band or length,
-        _softening(material, options), _crushing(material, options),
+        softening_of(material, options), crushing_of(material, options),
     )  # fmt: skip
 
 

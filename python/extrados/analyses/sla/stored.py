@@ -40,9 +40,9 @@ def mesh_arrays(model: SlaModel) -> dict[str, Array]:
     return arrays
 
 
-def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> None:
-    """Events, envelope and kept states of a curve into `result`; names of the opposite sense begin with `prefix`."""
-    e, unit = curve.events, model.unit
+def events_of_curve(result: Result, unit: float, curve: Curve, prefix: str) -> None:
+    """Events and envelope of a curve into `result`; unit [N] of the multiplier 1."""
+    e = curve.events
     dim = (f"{prefix}events",)
     # Limits of a displacement are no loads
     limits = [_bounded(x) * (np.nan if curve.driven else unit) + curve.already for x in (e.limit_t, e.limit_c)]
@@ -83,6 +83,12 @@ def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> 
         {"load": "N", "displacement": "m", "external": "J", "stored": "J", "dissipated": "J"},
     )  # fmt: skip
     result.tables["envelope" + of] = TableData({"displacement": d, "load": p}, {"displacement": "m", "load": "N"})
+
+
+def curve_arrays(result: Result, model: SlaModel, curve: Curve, prefix: str) -> None:
+    """Events, envelope and kept states of a curve into `result`; names of the opposite sense begin with `prefix`."""
+    unit = model.unit
+    events_of_curve(result, unit, curve, prefix)
     if curve.states:
         states = curve.states
         dims = (f"{prefix}states",)

@@ -134,7 +134,36 @@ class Stage(Table):
         return any(load.kind == "displacement" for load in self.reference)
 
 
-class Sla(BuildingAnalysis, Animated):
+class CrackOptions(Table):
+    """How cracking masonry softens, and how cracks stand, in every analysis that is sequentially linear."""
+
+    teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
+    ripple: float = key(
+        0.05,
+        "half-width p of the teeth over the strength: the load is up to about p/2 too high; the thesis has 0.1 and 0.2",
+        source="thesis 4.2",
+        ge=0.005,
+        le=0.5,
+    )
+    overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
+    crack_band: Length | None = key(None, "crack band width h; default by crack_band_rule", gt=0)
+    crack_band_rule: Literal["projected", "area"] = key(
+        "projected",
+        "crack band from the element's width across its crack, or as in the thesis: sqrt(2 A) of linear and sqrt(A) of "
+        "quadratic elements",
+    )
+    cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
+        "rotating",
+        "cracks that turn with the principal strain, cracks fixed at their first tooth as in the thesis (they carry too "
+        "much: see docs/sla.md), or one damage for all directions",
+        source="Eq. 4.10",
+    )
+    shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
+        None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
+    )
+
+
+class Sla(CrackOptions, BuildingAnalysis, Animated):
     """Sequentially linear analysis: cracks event by event under constant loads A and growing loads lambda B."""
 
     kind: Literal["sla"]
@@ -176,6 +205,7 @@ class Sla(BuildingAnalysis, Animated):
         [],
         "stages one after the other, [[analysis.stages]], in place of `reference`: each has its supports, loads and end, and "
         "inherits the damage; `constant` comes first",
+        min_length=1,
         max_length=50,
     )
     main_stage: str | None = key(
@@ -191,35 +221,11 @@ class Sla(BuildingAnalysis, Animated):
     mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] | None = key(
         None, "stop where the compliance has grown by this factor; default 1e4, of stones 1e5"
     )
-    teeth: Literal["exact", "ripple"] = key("exact", "energy-exact teeth, or the thesis' ripple", source="thesis 4.2")
-    ripple: float = key(
-        0.05,
-        "half-width p of the teeth over the strength: the load is up to about p/2 too high; the thesis has 0.1 and 0.2",
-        source="thesis 4.2",
-        ge=0.005,
-        le=0.5,
-    )
     friction_ripple: float = key(
         0.02,
         "a quarter of the slip back after which a joint that slides sticks, over the elastic slip of its friction",
         ge=0.001,
         le=0.1,
-    )
-    overshoot: bool = key(True, "the first tooth reaches above the strength; without it, ends at the strength")
-    crack_band: Length | None = key(None, "crack band width h; default by crack_band_rule", gt=0)
-    crack_band_rule: Literal["projected", "area"] = key(
-        "projected",
-        "crack band from the element's width across its crack, or as in the thesis: sqrt(2 A) of linear and sqrt(A) of "
-        "quadratic elements",
-    )
-    cracking: Literal["rotating", "orthotropic", "isotropic"] = key(
-        "rotating",
-        "cracks that turn with the principal strain, cracks fixed at their first tooth as in the thesis (they carry too "
-        "much: see docs/sla.md), or one damage for all directions",
-        source="Eq. 4.10",
-    )
-    shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
-        None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
     )
     crack_closure: bool | None = key(
         None, "cracks that close regain their stiffness; default true for stones, whose joints must, false for walls"
@@ -268,8 +274,6 @@ class Sla(BuildingAnalysis, Animated):
         if any(load.kind == "displacement" for load in self.constant or []):
             raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
         reference = self.reference or []
-        if "stages" in self.model_fields_set and not self.stages:
-            raise ValueError("stages: holds none; expected one at least, or leave it out")
         if self.stages:
             self._consistent_stages()
         elif self.main_stage is not None:

@@ -13,7 +13,7 @@ from extrados.analyses.statistics import cloud
 from extrados.analyses.statistics.annual import hazard_curve
 from extrados.analyses.statistics.levels import INTENSITIES, arranged, describe
 from extrados.analyses.statistics.sensitivity import sensitivity, spoken
-from extrados.analyses.statistics.summaries import shares
+from extrados.analyses.statistics.summaries import median, shares, shares_of
 from extrados.analyses.statistics.tables import Fragility
 from extrados.analyses.statistics.uncertain import Bodies, bodies_at, sampled
 from extrados.building.rockers.rocker import Rocker
@@ -23,7 +23,7 @@ from extrados.core.rocking import FAILED, Body, Ground
 from extrados.motions.from_deck import is_set
 from extrados.motions.motion import Motion
 from extrados.results import statistics as out
-from extrados.results.model import Array, Result, TableData
+from extrados.results.model import Array, Result, StreamedTable, TableData
 from extrados.results.rocking import COLLAPSE
 from extrados.schema.constants import GRAVITY
 
@@ -118,7 +118,8 @@ def run(context: Context, options: Fragility) -> Result:
     result = Result("fragility")
     if options.durations is None:
         job, count, motions = _job(context, options, base, None)
-        swept = sweep(context, "fragility", job, count, "fragility")
+        large = options.levels is None and not options.cloud
+        swept = sweep(context, "fragility", job, count, "fragility", large=large)
         _describe(context, options, base, job, swept, motions, result)
     else:
         parts = []
@@ -166,14 +167,14 @@ def _describe(
     result: Result,
 ) -> None:
     _stopped(swept, result)
-    if not len(swept.members):
+    if not swept.finished:
         result.answer = "No member is finished."
         return
     initial = base.start_rotation / base.critical[0]
     per_motion = 1 if job.levels is None else len(job.levels)
-    ok = swept["outcome"] != FAILED
+    failed = sum(int((rows["outcome"] == FAILED).sum()) for _, rows in swept.pieces("outcome"))
     r: dict[str, Any] = {
-        "failed": int((~ok).sum()),
+        "failed": failed,
         "confidence": options.confidence,
         "restitution": base.restitution,
         "uplift_acceleration_g": base.uplift,
@@ -199,11 +200,16 @@ def _describe(
         )
         result.results = out.OverLevels(**r)
         return
-    r |= shares(swept["outcome"], swept["peak_ratio"], options.confidence, initial)
+    r |= shares_of(
+        lambda: ((rows["outcome"], rows["peak_ratio"]) for _, rows in swept.pieces("outcome", "peak_ratio")),
+        options.confidence, initial,
+    )  # fmt: skip
+    middle = {name: median(lambda name=name: (rows[name] for _, rows in swept.pieces(name)))
+              for name in ("pga", "pgv", "arias")}  # fmt: skip
     r |= {
-        "median_pga_g": float(np.nanmedian(swept["pga"])) / GRAVITY if ok.any() else None,
-        "median_pgv_m_s": float(np.nanmedian(swept["pgv"])) if ok.any() else None,
-        "median_arias_m_s": float(np.nanmedian(swept["arias"])) if ok.any() else None,
+        "median_pga_g": None if middle["pga"] is None else middle["pga"] / GRAVITY,
+        "median_pgv_m_s": middle["pgv"],
+        "median_arias_m_s": middle["arias"],
     }
     if isinstance(job.source, GeneratedSource):
         expected = job.source.made.expected()
@@ -215,12 +221,13 @@ def _describe(
                 f"at this intensity ({r['expected_pga_g']:.2f} g, Worden et al. 2012)"
             )
     edges = np.linspace(0.0, 1.0, options.bins + 1)
-    upright = ok & (swept["outcome"] != COLLAPSE)
+    counts = np.zeros(options.bins, int)
+    for _, rows in swept.pieces("outcome", "peak_ratio"):
+        upright = (rows["outcome"] != FAILED) & (rows["outcome"] != COLLAPSE)
+        counts += np.histogram(np.minimum(rows["peak_ratio"][upright], 1.0), edges)[0]
     result.arrays |= {
         "bin_edge": Array(edges, ("bin_edge",), "", "peak rotation over the critical one"),
-        "bin_count": Array(
-            np.histogram(np.minimum(swept["peak_ratio"][upright], 1.0), edges)[0], ("bin",), "", "members that stay up"
-        ),
+        "bin_count": Array(counts, ("bin",), "", "members that stay up"),
     }
     p, (low, high) = r["collapse_probability"], r["confidence_interval"]
     result.answer = (
@@ -278,21 +285,24 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
 
 def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Result) -> None:
     """Why members have no result; a motion that fails at one level fails at all and is told once."""
-    failures = swept.members[swept["outcome"] == FAILED]
     told: set[str] = set()
-    for k in failures:
-        name = (
-            job.source.names[k // per_motion % len(job.source.names)]
-            if isinstance(job.source, ListSource)
-            else f"motion {k // per_motion + 1}"
-        )
-        if name in told:
-            continue
-        told.add(name)
-        if len(told) <= 5:
-            result.warnings.append(f"{name} has no result: {swept['reason'][np.searchsorted(swept.members, k)]}")
+    count = 0
+    for members, rows in swept.pieces("outcome", "reason"):
+        failed = np.flatnonzero(rows["outcome"] == FAILED)
+        count += len(failed)
+        for k, why in zip(members[failed], rows["reason"][failed], strict=True):
+            name = (
+                job.source.names[k // per_motion % len(job.source.names)]
+                if isinstance(job.source, ListSource)
+                else f"motion {k // per_motion + 1}"
+            )
+            if name in told:
+                continue
+            told.add(name)
+            if len(told) <= 5:
+                result.warnings.append(f"{name} has no result: {why}")
     if len(told) > 5:
-        result.warnings.append(f"{len(failures)} members in all have no result, see ensemble.csv")
+        result.warnings.append(f"{count} members in all have no result, see ensemble.csv")
 
 
 def _stopped(swept: Swept, result: Result) -> None:
@@ -303,28 +313,50 @@ def _stopped(swept: Swept, result: Result) -> None:
 
 
 def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility, result: Result) -> None:
-    columns: dict[str, Any] = {"member": swept.members + 1, "motion": swept.members // per_motion + 1}
     units = {"pga": "g", "pgv": "m/s", "arias": "m/s", "peak_rotation": "rad", "stop_time": "s"}
     if options.cloud:
-        columns["intensity"] = swept["intensity"]
         units["intensity"] = INTENSITIES[options.intensity][2]
     if job.levels is not None:
-        columns["level"] = job.levels[swept.members % per_motion]
         units["level"] = INTENSITIES[options.intensity][2]
     words = np.array([*core_rocking.OUTCOMES, "failed"])
-    columns |= {
-        "scale": swept["scale"], "pga": swept["pga"] / GRAVITY, "pgv": swept["pgv"], "arias": swept["arias"],
-        "outcome": words[swept["outcome"]], "half_cycles": swept["half_cycles"], "peak_rotation": swept["peak"],
-        "peak_ratio": swept["peak_ratio"], "stop_time": swept["stop_time"],
-    }  # fmt: skip
-    if np.any(swept["reason"] != ""):
-        columns["reason"] = swept["reason"]
-    result.tables["ensemble"] = TableData(columns, units)
+    reasons = any((rows["reason"] != "").any() for _, rows in swept.pieces("reason"))
+    names = (
+        "scale",
+        "pga",
+        "pgv",
+        "arias",
+        "outcome",
+        "half_cycles",
+        "peak",
+        "peak_ratio",
+        "stop_time",
+        "reason",
+        "intensity",
+    )
+
+    def columns(members: np.ndarray, rows: dict[str, np.ndarray]) -> dict[str, Any]:
+        found: dict[str, Any] = {"member": members + 1, "motion": members // per_motion + 1}
+        if options.cloud:
+            found["intensity"] = rows["intensity"]
+        if job.levels is not None:
+            found["level"] = job.levels[members % per_motion]
+        found |= {
+            "scale": rows["scale"], "pga": rows["pga"] / GRAVITY, "pgv": rows["pgv"], "arias": rows["arias"],
+            "outcome": words[rows["outcome"]], "half_cycles": rows["half_cycles"], "peak_rotation": rows["peak"],
+            "peak_ratio": rows["peak_ratio"], "stop_time": rows["stop_time"],
+        }  # fmt: skip
+        return found | ({"reason": rows["reason"]} if reasons else {})
+
+    result.tables["ensemble"] = (
+        StreamedTable(lambda: (columns(*piece) for piece in swept.pieces(*names)), units)
+        if swept.on_disk
+        else TableData(columns(swept.members, swept.arrays), units)
+    )
     result.arrays |= {
-        "outcome": Array(swept["outcome"], ("member",), "", "-1 failed, 0 at rest, 1 recovery, 2 collapse"),
-        "peak_ratio": Array(swept["peak_ratio"], ("member",), "", "greatest rotation over the critical one"),
-        "pga": Array(swept["pga"] / GRAVITY, ("member",), "g"),
-        "pgv": Array(swept["pgv"], ("member",), "m/s"),
+        "outcome": Array(swept.column("outcome"), ("member",), "", "-1 failed, 0 at rest, 1 recovery, 2 collapse"),
+        "peak_ratio": Array(swept.column("peak_ratio"), ("member",), "", "greatest rotation over the critical one"),
+        "pga": Array(swept.column("pga", lambda rows: rows / GRAVITY), ("member",), "g"),
+        "pgv": Array(swept.column("pgv"), ("member",), "m/s"),
     }
 
 

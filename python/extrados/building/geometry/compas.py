@@ -29,10 +29,10 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     become ground along their faces. BadGeometry names the block that is no prism.
     """
     scale = UNITS[unit or "m"]
-    nodes = _nodes(value, name)
+    nodes = nodes_of(value, name)
     if len(nodes) > MOST_BLOCKS:
         raise BadGeometry(f"{name}: {len(nodes)} blocks, at most {MOST_BLOCKS}")
-    meshes = {key: _mesh(node, f"{name}: block {key}") for key, node in nodes.items()}
+    meshes = {key: mesh_of(node, f"{name}: block {key}") for key, node in nodes.items()}
     for axis in (1, 0, 2):
         sections = {key: _section(xyz, faces, axis) for key, (xyz, faces) in meshes.items()}
         if all(s is not None for s in sections.values()):
@@ -72,7 +72,7 @@ def _inner(value: Any) -> Any:
     return value
 
 
-def _nodes(value: Any, name: str) -> dict[str, dict[str, Any]]:
+def nodes_of(value: Any, name: str) -> dict[str, dict[str, Any]]:
     inner = _inner(value)
     if isinstance(inner, dict) and "graph" in inner:
         inner = _inner(inner["graph"])
@@ -82,7 +82,7 @@ def _nodes(value: Any, name: str) -> dict[str, dict[str, Any]]:
     return dict(sorted(nodes.items(), key=lambda item: (len(item[0]), item[0])))
 
 
-def _mesh(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int]]]:
+def mesh_of(node: dict[str, Any], where: str) -> tuple[np.ndarray, list[list[int]]]:
     """Vertices (n, 3) and the faces as indices of them."""
     mesh = _inner(node.get("block"))
     try:

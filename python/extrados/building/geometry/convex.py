@@ -149,12 +149,19 @@ def rounded(polygon: np.ndarray, radius: float, steps: int = 3) -> np.ndarray:
     return np.array(out)
 
 
-def overlap_depth(one: np.ndarray, other: np.ndarray) -> float:
-    """How deep two convex polygons overlap [m]; negative: the gap along the best separating edge."""
-    deepest = np.inf
-    for a, b in ((one, other), (other, one)):
+def overlap(one: np.ndarray, other: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """How deep two convex polygons overlap along the edge that separates them best [m], negative where they do not; the
+    direction from one to the other square to it, and a point midway between the two faces."""
+    found: list[tuple[float, np.ndarray, np.ndarray]] = []
+    for a, b, sense in ((one, other, 1.0), (other, one, -1.0)):
         edges = np.roll(a, -1, axis=0) - a
         normal = np.stack([edges[:, 1], -edges[:, 0]], axis=1) / np.hypot(*edges.T)[:, None]
         distance = (b @ normal.T - (a * normal).sum(axis=1)).min(axis=0)
-        deepest = min(deepest, -float(distance.max()))
-    return deepest
+        k = int(distance.argmax())
+        found.append((-float(distance[k]), sense * normal[k], a[k] + 0.5 * distance[k] * normal[k]))
+    return min(found, key=lambda item: item[0])
+
+
+def overlap_depth(one: np.ndarray, other: np.ndarray) -> float:
+    """How deep two convex polygons overlap [m]; negative: the gap along the best separating edge."""
+    return overlap(one, other)[0]

@@ -138,7 +138,14 @@ def _restrained(free: Rocker, building: "Building") -> Rocker:
     body = held.hold(free.body)
     critical, _ = limits(body)
     ratio = building.initial.rotation_ratio
+    told = free.warnings
+    if wall is not None and building.supports.rebound is None:
+        told += (
+            f"the wall throws it back with {rebound[0 if sides[0] else 1]:.3f} times the rate, by three impacts, which is an upper "
+            "bound: discrete elements leave less, nothing where they are well damped (docs/rocking.md); give [supports] rebound where "
+            "it matters",
+        )
     return replace(
-        free, body=body, restraints=held, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
+        free, body=body, restraints=held, warnings=told, critical=critical, start_rotation=ratio * critical[0 if ratio >= 0.0 else 1],
         uplift=float(uplift[list(sides)].min()),
     )  # fmt: skip

@@ -23,6 +23,12 @@ def refuse_words(building: "Building", linear: bool = False) -> None:
         raise NoView(
             "two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow", ("structure", "kind")
         )
+    if building.supports.stiffness is not None:
+        raise NoView(
+            "on a base that gives way a building moves in more than one coordinate, which `rocking` (under one block, column or "
+            "wall) and `dem` follow; leave it out, or give it to these analyses alone ([analysis.supports] below them)",
+            ("supports", "stiffness"),
+        )
     block = rocks_as_block(building)
     if linear and not block:
         raise NoView('form = "linear" is known of blocks and columns only', ("analysis", "form"))
@@ -33,3 +39,26 @@ def refuse_words(building: "Building", linear: bool = False) -> None:
         )
     if wall is not None and ratio and wall == ("right" if ratio > 0.0 else "left"):
         raise NoView(f"it cannot start turned to the {wall}, where the wall stands", ("initial", "rotation_ratio"))
+
+
+def refuse_soft_base(building: "Building") -> None:
+    """NoView, with the key, where the words of a deck alone say that `rocking` does not follow it on a base that gives way."""
+    key = ("supports", "stiffness")
+    if not rocks_as_block(building):
+        raise NoView(
+            "rocking follows a base that gives way under one block, column or wall; leave it out, or give it to the analysis "
+            "`dem` alone ([analysis.supports] below it), which follows it under any stones",
+            key,
+        )
+    if building.restraints or building.supports.abutting_wall is not None:
+        raise NoView(
+            "on a base that gives way nothing but the base holds a block: leave out ties, dampers, hinges and the wall",
+            key,
+        )
+    if building.joints.energy_ratio is not None or "restitution" in building.joints.model_fields_set:
+        name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
+        raise NoView(
+            "on a base that gives way impacts follow from its springs and dashpots: leave out restitution and energy_ratio, "
+            "give [supports] damping_ratio",
+            ("joints", name),
+        )

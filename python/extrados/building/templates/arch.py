@@ -2,16 +2,21 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from pydantic import model_validator
 
+from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.sectors import ring_sector, sector_outlines
 from extrados.building.structure import Structure
 from extrados.schema.quantities import Angle, Length
 from extrados.schema.table import key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+    from extrados.building.geometry.solids.assembly import SolidAssembly
 
 
 @dataclass(frozen=True, repr=False)
@@ -99,6 +104,13 @@ class Arch(Structure):
         1.0, "effective over real thickness; 0.8 for worn corners", source="thesis 5.3.3", gt=0, le=1
     )
     depth: Length = key(1.0, "depth out of plane", gt=0)
+    skew: Angle = key(
+        0.0, "in space: angle in plan of its faces to the square section; the coursing joints stay along the springings",
+        gt=-75, lt=75,
+    )  # fmt: skip
+    stones_across: int = key(
+        1, "in space: stones of a course across the depth, set off by half in every other course", ge=1, le=200
+    )
 
     @model_validator(mode="after")
     def _plausible(self) -> "Arch":
@@ -107,6 +119,16 @@ class Arch(Structure):
         return self
 
     def assembly(self, density: float, folder: Path) -> ArchAssembly:
+        if self.skew:
+            raise NoView("a skew arch is no plane section; `tilt` looks at its solids")
+        return self._section(density)
+
+    def solids(self, building: "Building") -> "SolidAssembly":
+        from extrados.building.geometry.solids.sections import barrel
+
+        return barrel(self._section(building.material.density), self.stones_across, np.radians(self.skew))
+
+    def _section(self, density: float) -> ArchAssembly:
         return make_arch(
             self.radius, self.thickness * self.thickness_factor, self.embrace, self.voussoirs, density, self.depth
         )

@@ -4,12 +4,12 @@ from collections import Counter
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
 from extrados.building.files import LARGEST_FILE, read
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import with_chains
@@ -23,6 +23,11 @@ from extrados.building.structure import Structure
 from extrados.schema.quantities import Density, Length
 from extrados.schema.table import Table, key
 
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+    from extrados.building.geometry.solids.assembly import SolidAssembly
+
+SOLID = (".obj", ".stl")  # files of solids, which have no plane section
 MARKS = 0.01  # m: how far a line that marks joints may lie from their middles
 
 
@@ -120,14 +125,18 @@ class LayerTable(Table):
 
 
 class Blocks(Structure):
-    """Any plane assembly of polygons; edges that lie on each other are the joints."""
+    """Any plane assembly of polygons, or solids of a file of meshes; edges or faces that lie on each other are the joints."""
 
     starter: ClassVar = {"block": '[{ name = "pier", points = [[0, 0], [1, 0], [1, 3], [0, 3]] }]'}
     word: ClassVar = "assembly of blocks"
     kind: Literal["blocks"]
-    file: str | None = key(None, "JSON, COMPAS JSON or DXF file with the blocks, beside the deck", max_length=500)
+    file: str | None = key(
+        None,
+        "JSON, COMPAS JSON or DXF file with the blocks, or solids as OBJ, STL or COMPAS JSON, beside the deck",
+        max_length=500,
+    )
     unit: Literal["m", "cm", "mm", "in", "ft"] | None = key(
-        None, "unit of a file that does not say (DXF without $INSUNITS, COMPAS)"
+        None, "unit of a file that does not say (DXF without $INSUNITS, COMPAS, OBJ, STL)"
     )
     layers: list[str] | None = key(None, "layers of the drawing to read as stones; default all", max_length=200)
     layer: list[LayerTable] = key(
@@ -184,8 +193,10 @@ class Blocks(Structure):
             fine = min(SAGITTA, max(0.5 * self.contact_tolerance, 1e-6))
             drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine)
             return drawing, None
+        if sort in SOLID:
+            raise NoView(f"{self.file} holds solids, which are no plane section; `tilt` looks at them in space")
         if sort != ".json":
-            raise BadGeometry(f"{self.file}: expected a .json or .dxf file")
+            raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")
         if self.layers is not None or self.layer:
             raise BadGeometry(f"{self.file}: has no layers; they belong to drawings (.dxf)")
         if is_compas(value := parsed(file)):
@@ -207,11 +218,37 @@ class Blocks(Structure):
         found = inspect(drawing, ground, self.contact_tolerance, self.foundation_levels, corner)
         return found, self.depth or depth or 1.0
 
-    def inspection(self, folder: Path) -> Inspection:
+    def solids(self, building: "Building") -> "SolidAssembly":
+        from extrados.building.geometry.solids.assembly import assemble as touch
+        from extrados.building.geometry.solids.meshes import read_obj, read_solids, read_stl, stones_of
+
+        value = None
+        file = None if self.file is None else read(self.file, LARGEST_FILE, building.folder)
+        sort = "" if file is None else file.path.suffix.lower()
+        if file is not None and sort == ".json":
+            value = parsed(file)
+        if file is None or not (sort in SOLID or is_compas(value)):
+            return super().solids(building)
+        name = file.path.name
+        if self.layers is not None or self.layer or self.ground is not None or self.origin is not None:
+            raise BadGeometry(
+                f"{name}: layers, ground and origin belong to plane drawings; solids stand on foundation_levels"
+            )
+        if sort == ".obj":
+            meshes = read_obj(file.text(), name)
+        else:
+            meshes = read_stl(file.content, name) if sort == ".stl" else read_solids(value, name)
+        stones = stones_of(meshes, building.material.density, self.unit, name)
+        return touch(stones, self.contact_tolerance, self.foundation_levels, name)
+
+    def inspection(self, folder: Path) -> Inspection | None:
+        if self.file is not None and self.file.lower().endswith(SOLID):
+            return None
         return self._inspected(folder)[0]
 
     def mended(self, folder: Path) -> "Blocks | None":
-        tolerance = self.inspection(folder).closing()
+        found = self.inspection(folder)
+        tolerance = None if found is None else found.closing()
         return None if tolerance is None else self.model_copy(update={"contact_tolerance": tolerance})
 
     def assembly(self, density: float, folder: Path) -> Assembly:

@@ -68,10 +68,10 @@ def make_brickwork(
         )
     small = min(bond.length, bond.height)
     holes = openings_within(length, height, openings, small)
-    beams = _lintels(bond, length, height, holes) if bond.lintels else {}
+    beams = lintels_of(bond, length, height, holes) if bond.lintels else {}
     taken = [*holes, *beams.values()]
     wall = _Units()
-    levels = _levels(bond, height, taken)
+    levels = levels_of(bond, height, taken)
     for course, (low, high) in enumerate(itertools.pairwise(levels)):
         for number, box in enumerate(_course(bond, length, course, low, high, taken), start=1):
             wall.add(box, f"unit {number} of course {course + 1}", course, number)
@@ -85,7 +85,7 @@ def make_brickwork(
     return stones_and_joints([outline(box) for box in wall.boxes], wall.names, joints, density, depth)
 
 
-def _lintels(bond: Bond, length: float, height: float, holes: list[Box]) -> dict[int, Box]:
+def lintels_of(bond: Bond, length: float, height: float, holes: list[Box]) -> dict[int, Box]:
     """The lintel over each opening that has masonry above it, by the number of the opening.
 
     It bears on the wall at both sides, on half a pier where the next opening has a lintel at its level, and ends at
@@ -119,7 +119,7 @@ def _lintels(bond: Bond, length: float, height: float, holes: list[Box]) -> dict
     return found
 
 
-def _levels(bond: Bond, height: float, holes: list[Box]) -> list[float]:
+def levels_of(bond: Bond, height: float, holes: list[Box]) -> list[float]:
     """Levels of the bed joints, ground and top included [m]."""
     least = bond.least_unit * bond.height
     full = int(np.floor(height / bond.height + SAME))
@@ -139,11 +139,22 @@ def _levels(bond: Bond, height: float, holes: list[Box]) -> list[float]:
 
 def _course(bond: Bond, length: float, course: int, low: float, high: float, holes: list[Box]) -> list[Box]:
     """Units of a course from left to right; those over and under an opening are as high as it leaves them."""
-    here = [h for h in holes if h[2] < high and h[3] > low]
-    cuts = sorted({0.0, length, *(x for h in here for x in h[:2])})
     whole = (course % 2 == 0) == (bond.begins == "whole")
     heads = (np.arange(int(length / bond.length) + 2) + (0.0 if whole else 0.5)) * bond.length
-    least = bond.least_unit * bond.length * (1.0 - SAME)
+    return laid(heads, (0.0, length), low, high, holes, bond.least_unit * bond.length)
+
+
+def laid(
+    heads: np.ndarray, ends: tuple[float, float], low: float, high: float, holes: Sequence[Box], least: float
+) -> list[Box]:
+    """Units of a course between its ends, divided at the head joints and cut by openings, from left to right.
+
+    Head joints nearer than `least` [m] to an end or an opening are left out.
+    """
+    here = [h for h in holes if h[2] < high and h[3] > low]
+    inside = (x for h in here for x in h[:2] if ends[0] < x < ends[1])
+    cuts = sorted({*ends, *inside})
+    least *= 1.0 - SAME
     found: list[Box] = []
     for left, right in itertools.pairwise(cuts):
         free, start = [], low

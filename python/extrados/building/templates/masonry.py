@@ -2,16 +2,21 @@
 
 from dataclasses import replace
 from pathlib import Path
-from typing import ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
+from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.polygons import properties
 from extrados.building.structure import RocksAs, Structure
-from extrados.schema.quantities import Length
+from extrados.schema.quantities import Force, Length
 from extrados.schema.table import key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+    from extrados.building.geometry.solids.assembly import SolidAssembly
 
 
 def stones_and_joints(
@@ -60,12 +65,18 @@ class Column(Structure):
     kind: Literal["column"]
     rocks_as: ClassVar[RocksAs] = "block"
     starter: ClassVar = {"height": "4.0"}
-    width: Length = key(about="width at the base", gt=0)
+    width: Length = key(about="width at the base; of round drums the diameter, over the corners or arrises", gt=0)
     height: Length | None = key(None, "total height, shared equally by the drums", gt=0)
     drums: int = key(1, "number of equal drums", ge=1, le=2000)
     heights: list[Length] = key([], "heights of the drums from below, instead of height and drums", max_length=2000)
     top_width: Length | None = key(None, "width at the top; default as at the base", gt=0)
     depth: Length = key(1.0, "depth out of plane", gt=0)
+    section: Literal["rectangle", "round"] = key("rectangle", "of the drums: rectangles of width and depth, or round")
+    sides: int = key(24, "round: flat facets, or flutes, around", ge=3, le=96)
+    flute_depth: Length = key(0.0, "round: how deep the flutes are cut at the base, each by two flat facets", ge=0)
+    dowels: Annotated[Force, Field(gt=0)] | Literal["unbroken"] | None = key(
+        None, 'dowels in the axis between the drums: the shear each bears, or "unbroken"'
+    )
 
     @model_validator(mode="after")
     def _one_height(self) -> "Column":
@@ -75,8 +86,35 @@ class Column(Structure):
             raise ValueError("heights already tells the number of drums")
         if any(h <= 0.0 for h in self.heights):
             raise ValueError("every one of heights must be above zero")
+        given = self.model_fields_set
+        if self.section == "rectangle" and (wrong := given & {"sides", "flute_depth"}):
+            raise ValueError(f'{min(wrong)} is of round drums: section = "round"')
+        if self.section == "round" and "depth" in given:
+            raise ValueError("depth is of rectangular drums; round ones have their width as a diameter")
+        if self.flute_depth >= 0.25 * self.width:
+            raise ValueError(f"flute_depth {self.flute_depth:g} m is not below a quarter of the width {self.width:g} m")
         return self
 
+    @property
+    def _heights(self) -> list[float]:
+        return [self.height / self.drums] * self.drums if self.height is not None else self.heights
+
     def assembly(self, density: float, folder: Path) -> Assembly:
-        heights = [self.height / self.drums] * self.drums if self.height is not None else self.heights
-        return make_column(self.width, heights, self.top_width, density, self.depth)
+        if self.section == "round":
+            raise NoView("a column of round drums is no plane section; `tilt` looks at its solids")
+        if self.dowels is not None:
+            raise NoView("dowels are known in space alone: ask `tilt` with a direction, or leave them out")
+        return make_column(self.width, self._heights, self.top_width, density, self.depth)
+
+    def solids(self, building: "Building") -> "SolidAssembly":
+        from extrados.building.geometry.solids.columns import doweled, drums
+        from extrados.building.geometry.solids.sections import drawn_out
+
+        density = building.material.density
+        if self.section == "round":
+            made = drums(self.width, self._heights, self.top_width, self.sides, self.flute_depth, density)
+        else:
+            made = drawn_out(make_column(self.width, self._heights, self.top_width, density, self.depth))
+        return (
+            made if self.dowels is None else doweled(made, np.inf if self.dowels == "unbroken" else float(self.dowels))
+        )

@@ -1,0 +1,317 @@
+!> The response of a structure of several coordinates whose equation changes from mode to mode: two stacked blocks,
+!> a block on a base that gives way.
+!>
+!> Within a mode the equation is smooth. A step ends where its mode does, found by bisection of the step itself, so that
+!> the order of the method holds; what comes then, another mode or an impact, the structure says. The integrator stops
+!> at every break of the ground motion and at every output time.
+module rocking_modes
+   use common_cancel, only : cancel_requested
+   use common_dopri5_system, only : dopri5_system_step, first_order_system
+   use common_kinds, only : wp
+   use common_lists, only : event_collapse => rocking_event_collapse, outcome_collapse => rocking_outcome_collapse, &
+      outcome_no_hinging => rocking_outcome_no_hinging, outcome_recovery => rocking_outcome_recovery
+   use common_signal, only : signal
+   use common_status, only : status_ok, status_cancelled, status_step_too_small, status_too_many_steps
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: mode_rocker, mode_history, respond_in_modes
+
+   integer, parameter :: poll_every = 500
+   integer, parameter :: max_attempts = 20000000
+   !> Places within a step at which its mode is looked at, besides its end
+   real(wp), parameter :: looks(3) = [0.25_wp, 0.5_wp, 0.75_wp]
+
+   !> A structure in one of its modes, under a ground motion
+   type, abstract, extends(first_order_system) :: mode_rocker
+      type(signal) :: motion
+      integer :: segment = 0       !! of the motion
+      real(wp) :: longest = 0.05_wp  !! step [s]
+      logical :: moved = .false.   !! something opened
+   contains
+      procedure :: ground
+      procedure(inside), deferred :: inside
+      procedure(leave), deferred :: leave
+      procedure(fallen), deferred :: fallen
+      procedure(row), deferred :: row
+      procedure :: renew
+      procedure :: trim_state
+      procedure :: resting
+   end type mode_rocker
+
+   !> In the caller's arrays
+   type :: mode_history
+      integer :: points = 0
+      real(wp), pointer, contiguous :: time(:) => null()      !! asked for, ascending [s]
+      real(wp), pointer, contiguous :: state(:, :) => null()  !! (rows of the structure, points)
+      integer :: events = 0
+      integer(c_int), pointer, contiguous :: event_kind(:) => null()
+      real(wp), pointer, contiguous :: event(:, :) => null()  !! (2, room): time [s], place: a contact or an edge
+      integer(c_int) :: outcome = outcome_no_hinging
+      integer(c_int) :: impacts(2) = 0   !! at each contact or edge
+      integer(c_int) :: steps = 0
+      logical :: settled = .false.       !! came down, or rests after the motion
+      real(wp) :: peak(2) = 0.0_wp       !! of the first two numbers of the state, with sign
+      real(wp) :: loss = 0.0_wp          !! energy lost at impacts [J]
+      real(wp) :: stop_time = 0.0_wp     !! [s]
+   contains
+      procedure :: note
+   end type mode_history
+
+   abstract interface
+      !> Above zero while the mode holds
+      function inside(body, t, y) result(margin)
+         import :: mode_rocker, wp
+         implicit none (type, external)
+         class(mode_rocker), intent(in) :: body
+         real(wp), intent(in) :: t     !! [s]
+         real(wp), intent(in) :: y(:)  !! state
+         real(wp) :: margin
+      end function inside
+
+      !> The mode has ended: into the next one, by an impact or not
+      subroutine leave(body, t, y, history)
+         import :: mode_rocker, mode_history, wp
+         implicit none (type, external)
+         class(mode_rocker), intent(inout) :: body
+         real(wp), intent(in) :: t
+         real(wp), intent(inout) :: y(:)
+         type(mode_history), intent(inout) :: history
+      end subroutine leave
+
+      !> The place about which it has turned past recall, 0 where it stands
+      pure function fallen(body, y) result(place)
+         import :: mode_rocker, wp
+         implicit none (type, external)
+         class(mode_rocker), intent(in) :: body
+         real(wp), intent(in) :: y(:)
+         integer :: place
+      end function fallen
+
+      !> What is stored of a state
+      function row(body, t, y, loss, rows) result(values)
+         import :: mode_rocker, wp
+         implicit none (type, external)
+         class(mode_rocker), intent(in) :: body
+         real(wp), intent(in) :: t
+         real(wp), intent(in) :: y(:)
+         real(wp), intent(in) :: loss     !! energy lost at impacts so far [J]
+         integer, intent(in) :: rows
+         real(wp) :: values(rows)
+      end function row
+   end interface
+
+contains
+
+   !> Acceleration of the ground, to +x and up [m/s^2]
+   function ground(body, t) result(a)
+      class(mode_rocker), intent(in) :: body
+      real(wp), intent(in) :: t  !! [s]
+      real(wp) :: a(2)
+      call body%motion%value_at(body%segment, t, a(1), a(2))
+   end function ground
+
+   !> The ground may have jumped: the mode that follows; the same, unless a structure says otherwise
+   subroutine renew(body, t, y, history)
+      class(mode_rocker), intent(inout) :: body
+      real(wp), intent(in) :: t
+      real(wp), intent(in) :: y(:)
+      type(mode_history), intent(inout) :: history
+      associate (unused => body%moved, unused_t => t, unused_y => y, unused_history => history%events)
+      end associate
+   end subroutine renew
+
+   !> Numbers that the mode fixes, without the error of the step; none, unless a structure says otherwise
+   subroutine trim_state(body, y)
+      class(mode_rocker), intent(in) :: body
+      real(wp), intent(inout) :: y(:)
+      associate (unused => body%moved, unused_y => y)
+      end associate
+   end subroutine trim_state
+
+   !> Does it stay as it is where the ground is quiet? Never, unless a structure says otherwise
+   pure function resting(body) result(answer)
+      class(mode_rocker), intent(in) :: body
+      logical :: answer
+      answer = .false.
+      associate (unused => body%moved)
+      end associate
+   end function resting
+
+   !> Keep an event, as far as there is room
+   subroutine note(history, kind, t, place)
+      class(mode_history), intent(inout) :: history
+      integer(c_int), intent(in) :: kind
+      real(wp), intent(in) :: t
+      integer, intent(in) :: place
+      history%events = history%events + 1
+      if (history%events > size(history%event_kind)) return
+      history%event_kind(history%events) = kind
+      history%event(:, history%events) = [t, real(place, wp)]
+   end subroutine note
+
+   !> From a state until the end time or collapse
+   subroutine respond_in_modes(body, y, end_time, atol, tolerance, history, status)
+      class(mode_rocker), intent(inout) :: body
+      real(wp), intent(inout) :: y(:)     !! state at time zero, and at the end
+      real(wp), intent(in) :: end_time    !! [s]
+      real(wp), intent(in) :: atol(:)     !! absolute tolerances of the state
+      real(wp), intent(in) :: tolerance   !! relative, per step
+      type(mode_history), intent(inout) :: history
+      integer(c_int), intent(out) :: status
+      real(wp) :: t, fresh(size(y)), rates(size(y), 2), h, h_next, error, t_next
+      integer :: attempts
+      logical :: quiet, ended
+
+      status = status_ok
+      t = 0.0_wp
+      body%segment = 0
+      do while (body%segment <= body%motion%segments)
+         if (body%motion%break_time(body%segment + 1) > t) exit
+         body%segment = body%segment + 1
+      end do
+      h_next = 1.0e-3_wp
+      attempts = 0
+      call body%renew(t, y, history)
+      do while (t < end_time)
+         attempts = attempts + 1
+         if (attempts > max_attempts) status = status_too_many_steps
+         if (mod(attempts, poll_every) == 0) then
+            if (cancel_requested()) status = status_cancelled
+         end if
+         if (status /= status_ok) exit
+         call write_out()
+         quiet = body%segment > body%motion%segments
+         t_next = end_time
+         if (.not. quiet) t_next = min(t_next, body%motion%break_time(body%segment + 1))
+         if (history%points < size(history%time)) t_next = min(t_next, max(history%time(history%points + 1), t))
+         if (quiet .and. body%resting()) then
+            t = t_next
+            if (history%points >= size(history%time)) t = end_time
+            cycle
+         end if
+         h = min(h_next, body%longest, 0.125_wp * body%motion%shortest_period(body%segment))
+         if (h >= t_next - t) then
+            h = t_next - t
+         else if (h > 0.5_wp * (t_next - t)) then
+            h = 0.5_wp * (t_next - t)
+         end if
+         if (h <= 4.0_wp * spacing(t)) then
+            t = t_next
+            call next_segment()
+            cycle
+         end if
+         call step(h)
+         if (.not. error <= 1.0_wp) then
+            h_next = h * merge(max(0.1_wp, 0.9_wp * error**(-0.2_wp)), 0.1_wp, error <= huge(error))
+            if (h_next <= 8.0_wp * spacing(max(t, 1.0e-3_wp))) status = status_step_too_small
+            cycle
+         end if
+         h_next = max(h_next, h) * min(5.0_wp, max(0.2_wp, 0.9_wp * max(error, 1.0e-10_wp)**(-0.2_wp)))
+         if (h_next > 4.0_wp * h) h_next = max(4.0_wp * h, 1.0e-4_wp)
+         history%steps = history%steps + 1
+         call end_of_mode()
+         t = merge(t_next, t + h, h >= t_next - t)
+         y = fresh
+         call note_peaks()
+         if (body%fallen(y) /= 0) then
+            call history%note(event_collapse, t, body%fallen(y))
+            history%outcome = outcome_collapse
+            exit
+         end if
+         if (ended) then
+            call body%leave(t, y, history)
+            h_next = min(h_next, 1.0e-3_wp)
+         end if
+         call next_segment()
+      end do
+      history%stop_time = t
+      call write_out()
+      if (history%outcome /= outcome_collapse) then
+         if (body%moved) history%outcome = outcome_recovery
+         history%settled = body%segment > body%motion%segments .and. body%resting() .and. status == status_ok
+      else
+         history%settled = .true.
+      end if
+
+   contains
+
+      !> One step from the present state
+      subroutine step(length)
+         real(wp), intent(in) :: length
+         call dopri5_system_step(body, t, length, y, atol, tolerance, fresh, rates, error)
+         call body%trim_state(fresh)
+      end subroutine step
+
+      !> Where the mode ends within the step, the step ends there
+      subroutine end_of_mode()
+         real(wp) :: low, high, middle, between(size(y))
+         integer :: i
+         low = 0.0_wp
+         do i = 1, size(looks)
+            between = within(looks(i))
+            call body%trim_state(between)
+            if (body%inside(t + looks(i) * h, between) <= 0.0_wp) exit
+            low = looks(i) * h
+         end do
+         if (i <= size(looks)) then
+            ! the step itself decides, not its polynomial
+            call step(looks(i) * h)
+            ended = body%inside(t + looks(i) * h, fresh) <= 0.0_wp
+            h = looks(i) * h
+            low = 0.0_wp
+         else
+            ended = body%inside(t + h, fresh) <= 0.0_wp
+         end if
+         if (.not. ended) return
+         high = h
+         do i = 1, 60
+            middle = 0.5_wp * (low + high)
+            if (high - low <= 4.0_wp * spacing(t + h)) exit
+            call step(middle)
+            if (body%inside(t + middle, fresh) <= 0.0_wp) then
+               high = middle
+            else
+               low = middle
+            end if
+         end do
+         h = high
+         call step(h)
+      end subroutine end_of_mode
+
+      !> The state at a fraction of the step, by the cubic through its ends
+      pure function within(s) result(z)
+         real(wp), intent(in) :: s
+         real(wp) :: z(size(y))
+         z = y + s**2 * (3.0_wp - 2.0_wp * s) * (fresh - y) &
+            + h * s * (1.0_wp - s) * ((1.0_wp - s) * rates(:, 1) - s * rates(:, 2))
+      end function within
+
+      !> To the next segment of the ground motion where its break is reached
+      subroutine next_segment()
+         if (body%segment > body%motion%segments) return
+         if (t < body%motion%break_time(body%segment + 1)) return
+         if (.not. body%motion%smooth_to_next(body%segment)) h_next = min(h_next, 1.0e-3_wp)
+         body%segment = body%segment + 1
+         call body%renew(t, y, history)
+      end subroutine next_segment
+
+      subroutine note_peaks()
+         integer :: k
+         do k = 1, 2
+            if (abs(y(k)) > abs(history%peak(k))) history%peak(k) = y(k)
+         end do
+      end subroutine note_peaks
+
+      !> The output time that has come
+      subroutine write_out()
+         do while (history%points < size(history%time))
+            if (history%time(history%points + 1) > t) exit
+            history%points = history%points + 1
+            history%state(:, history%points) = body%row(t, y, history%loss, size(history%state, 1))
+         end do
+      end subroutine write_out
+
+   end subroutine respond_in_modes
+
+end module rocking_modes

@@ -1,0 +1,194 @@
+"""Ask a strategy: the deck of one part, run by the driver of its kind, and the row of the table that it gives."""
+
+import copy
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import tomlkit
+
+from extrados import interrupts, kinds
+from extrados.analyses.assess.hazard import Demanded
+from extrados.analyses.assess.strategies import Strategy
+from extrados.analyses.conclude import MotionDemand, concluded
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.run import run_one
+from extrados.analyses.statistics.summaries import wilson
+from extrados.core.calls import within
+from extrados.decks.reader import DeckError, make_deck
+from extrados.results.assess import StrategyVerdict
+from extrados.results.limit import Tilt
+from extrados.results.model import Result
+from extrados.results.statistics import Ensemble, OverLevels
+from extrados.results.verdict import acceleration
+
+#: A strategy is stopped where it takes this many budgets
+STOPPED_AFTER = 2.0
+
+
+class Interrupted(Exception):
+    """The user has asked for the end."""
+
+
+class OutOfTime(Exception):
+    """The clock has stopped a strategy."""
+
+
+@dataclass
+class Asker:
+    """Runs parts of an assessment on the deck of `context`; left: seconds of the clock before it stops them.
+
+    motion: the table of the motion that single runs take.
+    """
+
+    context: Context
+    motion: dict[str, Any]
+    deadline: float
+    clock: Callable[[], float]
+
+    def cannot_bear(self, kind: str) -> tuple[str, ...]:
+        """What the deck has that an analysis of this kind does not reckon with, as decks call it."""
+        bears = kinds.load(kinds.ANALYSES[kind].table).bears
+        return tuple(what for what in self.context.building.special_keys if what not in bears)
+
+    def data(
+        self, kind: str, keys: dict[str, Any], motion: dict[str, Any], changes: dict[str, Any], without: tuple[str, ...]
+    ) -> dict[str, Any]:
+        """The deck of one part; `changes` gives dotted keys other values, `without` names what it leaves out."""
+        data = {k: copy.deepcopy(v) for k, v in self.context.deck.data.items() if k != "analysis"}
+        data["motion"] = motion
+        for what in without:
+            table, _, key = what.replace("[", "").replace("]", "").partition(" ")
+            if key:
+                data[table] = {k: v for k, v in data[table].items() if k not in (key, "rebound")}
+            else:
+                data.pop(table, None)
+        for dotted, value in changes.items():
+            *way, last = dotted.split(".")
+            place = data
+            for part in way:
+                place = place.setdefault(part, {})
+            place[last] = value
+        return {**data, "analysis": [{"kind": kind, **keys}]}
+
+    def ask(
+        self, kind: str, keys: dict[str, Any], motion: dict[str, Any] | None = None, changes: dict[str, Any] | None = None,
+        without: tuple[str, ...] = (),
+    ) -> tuple[Result, str]:  # fmt: skip
+        """The result of an analysis of the building, and its deck as text; Refused where the deck is wrong."""
+        data = self.data(kind, keys, self.motion if motion is None else motion, changes or {}, without)
+        whole = self.context
+        try:
+            deck = make_deck(data, whole.deck.folder)
+        except DeckError as error:
+            raise Refused("; ".join(c.removeprefix("deck: analysis: ") for c in error.complaints)) from None
+        deck = replace(deck, sha256=whole.deck.identity, path=whole.deck.path)
+        one = Context(deck, whole.threads, whole.progress, out=whole.out, resume=whole.resume,
+                      scheduler=whole.scheduler, motions=whole.motions)  # fmt: skip
+        one.checkpoint = whole.checkpoint  # the batches of a run lie in one folder
+        (options,), (building,) = deck.analyses, deck.buildings
+        if (
+            not changes
+            and not without
+            and not any(name in keys for name in ("material", "joints", "supports", "initial"))
+        ):
+            building = whole.building  # with the views that it has
+        signals = len(interrupts.asked)
+        with within(self.deadline - self.clock()) as time:
+            result = run_one(one, options, building)
+        if result.status == "interrupted":
+            if time.passed and len(interrupts.asked) == signals:
+                raise OutOfTime
+            raise Interrupted
+        found = concluded(result, options, one, building)
+        return replace(found, asked=options.model_dump(exclude_none=True)), tomlkit.dumps(data)
+
+    def demand(self, peak_g: float) -> Demanded:
+        """What the hazard asks, for the verdict of a part."""
+        asked = MotionDemand(self.context)
+        return Demanded(peak_g, asked.pulse, asked.duration_s, asked.amplitude_g)
+
+
+def row_of(
+    strategy: Strategy, result: Result, words: str, demand: Demanded, acceptable: float, wall: str | None = None
+) -> StrategyVerdict:
+    """The row of a strategy that has been asked; wall: the side of a wall that stands against it, towards which statics does
+    not push."""
+    if result.status != "ok":
+        status = "refused" if result.status == "refused" else "failed"
+        return no_row(strategy, status, result.reason, words)
+    r = result.results
+    outcome, margin, low, high = None, None, None, None
+    verdict = r.judged(demand)
+    wanted, borne, unit, statement = verdict.demand, verdict.capacity, verdict.unit, verdict.statement
+    if isinstance(r, Ensemble | OverLevels):
+        wanted, borne, unit, outcome, statement, low, high = _probability(r, acceptable)
+    elif isinstance(r, Tilt) and wall is not None:
+        away = r.collapse_acceleration_g if wall == "left" else r.collapse_acceleration_opposite_g
+        judged = acceleration(away, demand)
+        borne, outcome, margin = away, judged.outcome, judged.ratio
+        statement = f"Pushed away from the wall: {judged.statement[:1].lower()}{judged.statement[1:]}"
+    elif isinstance(r, Tilt) and (cracked := _cracked(r)) is not None and cracked < (borne or 0.0):
+        broken = acceleration(cracked, demand)
+        borne, outcome, margin = cracked, broken.outcome, broken.ratio
+        statement = f"With the leeward buttress cracked: {broken.statement[:1].lower()}{broken.statement[1:]}"
+    elif strategy.axis in ("acceleration", "pulse", "check"):
+        margin = verdict.ratio
+    return StrategyVerdict(
+        strategy=strategy.name, label=strategy.label, part=None, status="ok", reason="", axis=strategy.axis, demand=wanted,
+        capacity=borne, unit=unit, outcome=outcome or verdict.outcome, margin=margin, margin_at_least=low, margin_below=high,
+        parameters=words, assumes=strategy.assumes, statement=statement,
+    )  # fmt: skip
+
+
+def _cracked(r: Tilt) -> float | None:
+    """What it bears with its leeward buttress cracked [g], where the deck asks for that; 0 where it cannot stand so."""
+    if r.fracture is None:
+        return None
+    return r.fracture.collapse_acceleration_g if r.fracture.stands is not False else 0.0
+
+
+def no_row(strategy: Strategy, status: str, reason: str, words: str = "") -> StrategyVerdict:
+    """The row of a strategy without a result."""
+    return StrategyVerdict(
+        strategy=strategy.name, label=strategy.label, part=None, status=status, reason=reason, axis=strategy.axis, demand=None,
+        capacity=None, unit="", outcome="none", margin=None, margin_at_least=None, margin_below=None, parameters=words,
+        assumes=strategy.assumes, statement="",
+    )  # fmt: skip
+
+
+def _probability(r: Ensemble | OverLevels, acceptable: float) -> tuple:
+    """Demand, capacity, unit, outcome, statement and bracket of the margin of a share of collapses.
+
+    It stands where the share is acceptable, falls where it is above a half; between them it is open.
+    """
+    low = high = None
+    if isinstance(r, OverLevels):
+        k = min(range(len(r.levels)), key=lambda i: abs(r.levels[i] - 1.0))
+        count, collapsed = r.count[k], r.collapsed[k]
+        shares = list(zip(r.levels, r.collapse_probability, strict=True))
+        stands = [level for level, share in shares if share is not None and share <= acceptable]
+        falls = [level for level, share in shares if share is not None and share > acceptable]
+        high = min(falls, default=None)
+        low = max((level for level in stands if high is None or level < high), default=None)
+    else:
+        count, collapsed = r.count, r.collapsed
+    if not count:
+        return None, acceptable, "probability", "open", "No motion could be run.", low, high
+    share = collapsed / count
+    least, most = wilson(collapsed, count)
+    outcome = "stands" if share <= acceptable else "falls" if share > 0.5 else "open"
+    text = (
+        f"{collapsed} of {count} come down: {100 * share:.3g} %, between {100 * float(least):.3g} and {100 * float(most):.3g} % by the count; "
+        f"{100 * acceptable:g} % are acceptable."
+    )
+    return share, acceptable, "probability", outcome, text, low, high
+
+
+def scaled_margin(r: OverLevels) -> tuple[float | None, float | None]:
+    """Greatest factor below the first at which a single motion brings it down, and that first factor."""
+    down = [bool(c) for c in r.collapsed]
+    first = next((i for i, d in enumerate(down) if d), None)
+    if first is None:
+        return r.levels[-1], None
+    return (r.levels[first - 1] if first else None), r.levels[first]

@@ -1,0 +1,501 @@
+"""assess: every strategy that applies to a building under one hazard, cheap first, compared, with reasons."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from extrados import kinds
+from extrados.analyses.assess import hazard, sensitivity, strategies
+from extrados.analyses.assess.asking import STOPPED_AFTER, Asker, Interrupted, OutOfTime, no_row, row_of, scaled_margin
+from extrados.analyses.assess.reasons import SLID, Facts, Pair, explained
+from extrados.analyses.assess.strategies import Asked, Choice, LeftOut, Strategy
+from extrados.analyses.assess.tables import Assess
+from extrados.analyses.assess.words import answer, conclusion, table_of
+from extrados.analyses.batches import Unfinished
+from extrados.analyses.context import Context, Refused
+from extrados.building.errors import BadGeometry
+from extrados.motions.from_deck import is_set
+from extrados.results import assess as out
+from extrados.results.dem import DemRun
+from extrados.results.model import Array, Result, TableData
+from extrados.results.rocking import FailureDomain
+from extrados.results.rocking import Rocking as RockingResults
+from extrados.results.statistics import OverLevels
+from extrados.results.store import group_names
+
+#: Factors on the hazard at which discrete elements are tried, from 1 up while they stand, down while they fall
+UP, DOWN = (1.25, 1.5, 2.0, 3.0, 4.0), (0.8, 0.65, 0.5, 0.35, 0.25)
+#: Factors between two of the first ones, where the margin of rocking is thin
+FINE = 16
+
+
+def run(context: Context, options: Assess) -> Result:
+    """The table of verdicts, their agreement, the reasons, and one overall statement; its parts are analyses of the run."""
+    if sum(a.kind == "assess" for a in context.deck.analyses) > 1:
+        raise Refused("a deck holds one assess: give another hazard a deck of its own")
+    work = _Work(context, options)
+    result = Result("assess")
+    try:
+        work.cheap()
+        context.tell(f"First answers:\n{table_of(list(work.rows.values()))}")
+        work.costly()
+        work.refine()
+        if options.sensitivity or options.vary:
+            work.move()
+    except Interrupted:
+        result.status, result.reason = "interrupted", "interrupted; what was asked before is told"
+    work.conclude(result)
+    return result
+
+
+class _Work:
+    """An assessment while it is made: rows and results by strategy."""
+
+    def __init__(self, context: Context, options: Assess):
+        self.context, self.options = context, options
+        self.motions = hazard.motions_of(context, options.motions)
+        self.many = is_set(context.deck.motion)
+        self.rows: dict[str, out.StrategyVerdict] = {}
+        self.results: dict[str, Result] = {}
+        self.choices: dict[str, Choice] = {}
+        self.parts: list[tuple[str, str, Result]] = []  # strategy, in words, result
+        self.decks: list[str] = []
+        self.probes: list[out.Probe] = []
+        self.found: dict[str, Result] = {}
+        self.not_done: list[str] = []
+        self.chosen: dict[str, Any] = {}
+        self.bare: dict[str, tuple[str, ...]] = {}
+        self.moved: list[sensitivity.Moved] = []
+        self.asker = Asker(
+            context,
+            dict(context.deck.data["motion"]),
+            time.monotonic() + STOPPED_AFTER * options.budget,
+            time.monotonic,
+        )
+        self.peak, self.peak_told = hazard.peak_of(context)
+
+    # ----- asking
+
+    def one_motion(self) -> Context:
+        """The context as strategies of one motion see it."""
+        model = kinds.table("motion", self.asker.motion["kind"]).model_validate(self.asker.motion)
+        whole = self.context
+        return Context(replace(whole.deck, motion=model), whole.threads, building=whole.building, motions=whole.motions)
+
+    def asked(self) -> Asked:
+        return Asked(self.one_motion(), self.options, self.motions if self.many else 1, self.peak)
+
+    def ask(self, strategy: Strategy) -> Result | None:
+        """Ask a strategy and put its row into the table; None where it has no result."""
+        name = strategy.name
+        given = self.options.options.get(name, {})  # type: ignore[call-overload]
+        try:
+            choice = strategy.choose(self.asked())
+        except (LeftOut, BadGeometry) as error:
+            if not given:
+                status = "left out" if isinstance(error, LeftOut) else "refused"
+                self.rows[name] = no_row(strategy, status, str(error))
+                return None
+            choice = Choice({}, "")
+        words = "; ".join([w for w in (choice.words,) if w] + ([f"of the deck: {_told(given)}"] if given else []))
+        choice = replace(choice, keys=_merged(choice.keys, given), words=words)
+        self.choices[name] = choice
+        without = self.asker.cannot_bear(choice.kind or strategy.kind)
+        if without and name != "scaled":
+            self.bare[name] = without
+            words = f"{words}; without {' and '.join(without)}, with which it does not reckon"
+        whole = name == "scaled" or (name == "probability" and self.many)
+        motion = dict(self.context.deck.data["motion"]) if whole else None
+        try:
+            result, deck = self.asker.ask(choice.kind or strategy.kind, choice.keys, motion, None, without)
+        except OutOfTime:
+            self.rows[name] = no_row(strategy, "left out", f"was stopped after {STOPPED_AFTER:g} budgets", words)
+            self.not_done.append(f"{strategy.label}: stopped by the clock")
+            return None
+        except Refused as error:
+            self.rows[name] = no_row(strategy, "refused", str(error), words)
+            return None
+        if self.many and result.status == "ok" and not whole:
+            verdict = result.results.judged(self.asker.demand(self.peak))
+            result = replace(result, verdict=verdict)
+        self.rows[name] = row_of(
+            strategy, result, words, self.asker.demand(self.peak), self.options.acceptable_probability,
+            self.context.building.supports.abutting_wall,
+        )  # fmt: skip
+        if result.status != "ok":
+            return None
+        self.results[name] = result
+        self.parts.append((name, f"{strategy.label}: {words}", result))
+        self.decks.append(deck)
+        return result
+
+    def wants(self, name: str) -> bool:
+        return name in self.options.strategies
+
+    # ----- the three rounds
+
+    def cheap(self) -> None:
+        """What takes seconds at most; of a set first its motions, which choose the one that single runs take."""
+        if self.many:
+            self._scaled_set()
+        for name in ("tilt", "rocking", "assessment", "code-checks"):
+            if self.wants(name):
+                self.ask(strategies.of(name))
+                if name == "rocking" and "rocking" in self.results and not self.many:
+                    self._scaled()
+        self.context.progress(1.0, 3.0, "assess")
+
+    def costly(self) -> None:
+        for name in ("probability", "sla", "dem"):
+            if self.wants(name) and name not in self.rows:
+                self.ask(strategies.of(name))
+        self.context.progress(2.0, 3.0, "assess")
+
+    def _scaled(self) -> None:
+        """The factor on the one motion at which rocking brings it down: the margin of `rocking`."""
+        found = self.ask(strategies.SCALED)
+        row = self.rows.pop("scaled")
+        if found is not None:  # a curve of one motion is none: its factors stand at the row of rocking
+            self.parts.pop()
+            self.decks.pop()
+        if found is None:
+            self.context.warnings.append(f"the margin of rocking is not known: {row.reason}")
+            return
+        self._bracket("rocking", *scaled_margin(found.results))
+        words = f"{self.rows['rocking'].parameters}; its margin from {row.parameters}"
+        self.rows["rocking"] = self.rows["rocking"].model_copy(update={"parameters": words})
+        if found.results.resurrections:
+            self.context.warnings.append(
+                "at some factors above the first that brings it down it rocks and stays up: these are not to be relied on"
+            )
+
+    def _scaled_set(self) -> None:
+        """The share of a set that brings it down, and the motion that strategies of one motion take."""
+        found = self.ask(strategies.SCALED)
+        row = self.rows.pop("scaled")
+        member, how = 1, "the first, for nothing rocks that could choose"
+        if found is not None:
+            strategy = strategies.of("probability")
+            self.rows["probability"] = row.model_copy(
+                update={
+                    "strategy": "probability",
+                    "label": strategy.label,
+                    "axis": strategy.axis,
+                    "assumes": strategy.assumes,
+                }
+            )
+            self.results["probability"] = self.results.pop("scaled")
+            self.parts[-1] = ("probability", self.parts[-1][1], found)
+            member = _governing(found)
+            how = f"the motion of the set under which it turns farther than under {100 * hazard.GOVERNING:g} % of the others"
+        self.chosen = {"member": member, "chosen_by": how}
+        self.asker.motion = {**self.asker.motion, "member": member}
+        if not isinstance(self.context.deck.motion, kinds.table("motion", "compatible")):
+            self.peak, _ = hazard.peak_of(self.one_motion())
+            self.peak_told = f"the greatest horizontal acceleration of motion {member}"
+
+    def _bracket(self, name: str, low: float | None, high: float | None) -> None:
+        """Between which factors on the hazard the verdict of a strategy turns."""
+        self.rows[name] = self.rows[name].model_copy(update={"margin_at_least": low, "margin_below": high})
+
+    # ----- refining
+
+    def facts(self) -> Facts:
+        return Facts(
+            self.context.building, self.one_motion().motion, self.peak, self.rows, self.results, self.options.apart, self.found,
+            self._needed, self.bare,
+        )  # fmt: skip
+
+    def thin(self, name: str) -> bool:
+        """Whether the margin of a strategy may be near 1."""
+        low, high = self.facts().interval(name)
+        return high > 1.0 / self.options.thin and low < self.options.thin
+
+    def refine(self) -> None:
+        """Where strategies differ, or a margin is thin: what shows why, and how far the costly ones are from turning."""
+        facts = self.facts()
+        pairs = facts.pairs()
+        thin = [n for n in facts.judged() if facts.interval(n) != (0.0, np.inf) and self.thin(n)]
+        if not pairs and not thin:
+            return
+        if "rocking" in thin and not self.many:
+            self._finer()
+        self._cheap_probes(pairs)
+        self._elements(pairs)
+        self.context.progress(3.0, 3.0, "assess")
+
+    def _finer(self) -> None:
+        """The margin of rocking closer, between the factors that enclose it."""
+        row = self.rows["rocking"]
+        low, high = row.margin_at_least, row.margin_below
+        if low is None or high is None:
+            return
+        levels = [round(float(v), 5) for v in np.linspace(low, high, FINE + 2)]
+        found = self._probe("rocking", f"the motion at {FINE} factors between {low:g} and {high:g}", "fragility",
+                            {"intensity": "scale", "levels": levels, "bootstrap": 0}, tell=False)  # fmt: skip
+        if found is not None and isinstance(found.results, OverLevels):
+            lower, upper = scaled_margin(found.results)
+            self._bracket("rocking", lower or low, upper or high)
+
+    def _cheap_probes(self, pairs: list[Pair]) -> None:
+        names = {n for p in pairs for n in p}
+        results = self.results
+        if "assessment" in names and (a := results["assessment"].results).primary_impulse is not None:
+            impulse = a.primary_impulse
+            sine = {"kind": "sine-pulse", "amplitude": f"{impulse.amplitude_g!r} g", "period": impulse.period_s}
+            self._keep("sine", self._probe("rocking", "the primary impulse alone, one sine", "rocking", {}, sine))
+        if "sla" in names and "tilt" in results and not self.context.building.meshed_by_stones:
+            keys = {"joints": {"friction": "no-sliding"}}
+            self._keep("tilt-no-sliding", self._probe("tilt", "no joint slides", "tilt", keys))
+
+        if "[[ties]]" in self.bare.get("sla", ()) and {"sla", "tilt"} <= set(results):
+            self._keep("tilt-without", self._probe("tilt", "without what the elements leave out", "tilt", {},
+                                                   without=self.bare["sla"]))  # fmt: skip
+        if self.bare and "rocking" in results and any(n in names for n in self.bare):
+            every = tuple(sorted({w for there in self.bare.values() for w in there}))
+            told = f"without {' and '.join(every)}"
+            self._keep("without-restraints", self._probe("rocking", told, "rocking", {}, without=every))
+
+    def _elements(self, pairs: list[Pair]) -> None:
+        """Further runs of discrete elements, as many as the nominal budget still holds."""
+        if "dem" not in self.results:
+            return
+        choice, building = self.choices["dem"], self.context.building
+        each = max(choice.seconds, 1e-3)
+        left = int(strategies.REFINING * self.options.budget / each)
+        names = {n for p in pairs for n in p}
+        r = self.results["dem"].results
+        if not isinstance(r, DemRun):
+            return
+        structure = building.structure
+        if structure.kind == "column" and structure.height is not None and structure.drums > 1 and "dem" in names:
+            changes = {"structure.drums": 1}
+            self._keep("monolith", self._probe("dem", "one body instead of drums", "dem", choice.keys, None, changes))
+        slid = r.peak_slip_m > SLID * float(building.blocks().length.min())
+        if slid and "dem" in names and not any(t.friction is not None for t in building.joints.types):
+            if left < 1:
+                self.not_done.append("discrete elements without sliding")
+            else:
+                left -= 1
+                keys = _merged(choice.keys, {"joints": {"friction": "no-sliding"}})
+                self._keep("no-sliding", self._probe("dem", "no joint slides", "dem", keys))
+        self._turning(left, choice)
+
+    def _turning(self, left: int, choice: Choice) -> None:
+        """The factors on the hazard between which discrete elements turn to fall."""
+        motion, model = self.asker.motion, self.one_motion().deck.motion
+        stands = self.rows["dem"].outcome == "stands"
+        low, high = (1.0, None) if stands else (None, 1.0)
+        if self.rows["dem"].outcome == "open":
+            low = high = None
+        for factor in UP if stands else DOWN:
+            table = hazard.scaled(motion, model, factor)
+            if table is None:
+                self.not_done.append("discrete elements at other factors: the spectrum is not in proportion to them")
+                break
+            if left < 1:
+                self.not_done.append(f"discrete elements at {factor:g} times the motion and beyond")
+                break
+            left -= 1
+            found = self._probe("dem", f"the motion times {factor:g}", "dem", choice.keys, table)
+            if found is None:
+                break
+            if found.results.judged(self.asker.demand(self.peak)).outcome == "open":
+                self.not_done.append(f"discrete elements at {factor:g} times the motion still move in the end")
+                break
+            falls = found.results.outcome == "collapse"
+            low, high = (low, factor) if falls else (factor, high)
+            if falls == stands:
+                break
+        self._bracket("dem", low, high)
+
+    def _probe(
+        self, strategy: str, changed: str, kind: str, keys: dict[str, Any], motion: dict[str, Any] | None = None,
+        changes: dict[str, Any] | None = None, tell: bool = True, without: tuple[str, ...] | None = None,
+    ) -> Result | None:  # fmt: skip
+        """A further run; None where it has no result, which is told."""
+        without = self.asker.cannot_bear(kind) if without is None else without
+        try:
+            result, _ = self.asker.ask(kind, keys, motion, changes, without)
+        except OutOfTime:
+            self.not_done.append(f"{changed}: stopped by the clock")
+            return None
+        except Refused as error:
+            self.not_done.append(f"{changed}: {error}")
+            return None
+        if result.status != "ok":
+            self.not_done.append(f"{changed}: {result.reason}")
+            return None
+        if tell:
+            verdict = result.results.judged(self.asker.demand(self.peak))
+            value = verdict.demand / verdict.capacity if verdict.demand is not None and verdict.capacity else None
+            if isinstance(result.results, RockingResults):
+                value = result.results.peak_rotation_ratio
+            self.probes.append(out.Probe(strategy=strategy, changed=changed, outcome=verdict.outcome, value=value))
+        return result
+
+    def _keep(self, name: str, found: Result | None) -> None:
+        if found is not None:
+            self.found[name] = found
+
+    @property
+    def _needed(self) -> Callable[[float], float | None]:
+        """Shortest constant push of an amplitude [g] that brings it down [s]; None where no mechanism rocks."""
+        if not hasattr(self, "_pushes"):
+
+            @cache
+            def needed(amplitude: float) -> float | None:
+                if "rocking" not in self.results:
+                    return None
+                unit = self.context.building.rocker().time_unit
+                keys = {"pulse": "rectangular", "durations": [0.02 * unit, 20.0 * unit], "amplitudes": 2, "at_amplitudes": [f"{amplitude!r} g"],
+                        "max_amplitude": f"{2.0 * amplitude!r} g"}  # fmt: skip
+                found = self._probe(
+                    "rocking", f"a constant push of {amplitude:.3g} g, how long", "failure-domain", keys, tell=False
+                )
+                if found is None or not isinstance(found.results, FailureDomain) or found.results.at_amplitudes is None:
+                    return None
+                return found.results.at_amplitudes.mode_I_durations_s[0]
+
+            self._pushes = needed
+        return self._pushes
+
+    # ----- sensitivity
+
+    def move(self) -> None:
+        """Margins with values of the deck moved one by one."""
+        rocked = self.results.get("rocking")
+        restitution = rocked.results.restitution if rocked is not None else None
+        keys = sensitivity.varied(self.context.building, self.options.vary, restitution)
+        data = {k: v for k, v in self.context.deck.data.items() if k not in ("analysis", "title", "note")}
+        count = self.motions if self.many else None
+        margins = sensitivity.Margins(
+            self.context, data, strategies.LEVELS_OF_A_SET if self.many else strategies.LEVELS, count,
+            self.options.acceptable_probability, self.peak,
+        )  # fmt: skip
+        try:
+            self.moved = margins.moved(keys)
+        except Unfinished as stop:
+            if stop.interrupted:
+                raise Interrupted from None
+            self.not_done.append(f"sensitivity: {stop}")
+
+    def _sensitivity(self) -> list[out.Sensitivity]:
+        """Rows of the tornado, the widest first."""
+
+        def width(m: sensitivity.Moved) -> float:
+            spans = [abs(np.log(b / a)) for a, b in zip(m.at_low, m.at_high, strict=True) if a and b]
+            return max(spans, default=0.0)
+
+        return [
+            out.Sensitivity(
+                key=m.what.key, base=m.what.base, unit=m.what.unit, low=m.low, high=m.high, tilt_base=m.at_base[0], rocking_base=m.at_base[1], tilt_low=m.at_low[0], tilt_high=m.at_high[0],
+                rocking_low=m.at_low[1], rocking_high=m.at_high[1], tilt_turns=m.turns[0], rocking_turns=m.turns[1],
+            )
+            for m in sorted(self.moved, key=width, reverse=True)
+        ]  # fmt: skip
+
+    # ----- the answer
+
+    def conclude(self, result: Result) -> None:
+        """Rows, agreement, reasons, overall statement, arrays and files into `result`."""
+        facts = self.facts()
+        try:
+            reasons, unexplained = explained(facts)
+        except Interrupted:
+            reasons, unexplained = [], facts.pairs()
+        there = [a.kind for a in self.context.deck.analyses]
+        names = group_names(there + [r.kind for _, _, r in self.parts])[len(there) :]
+        rows = []
+        for row in self.rows.values():
+            part = next((n for n, (s, _, _) in zip(names, self.parts, strict=True) if s == row.strategy), None)
+            rows.append(row.model_copy(update={"part": part}))
+        judged = facts.judged()
+        agreement = {a: {b: facts.relation(a, b) for b in judged if b != a} for a in judged}
+        margins = [(low if row.margin is None else row.margin, row.strategy) for row in rows
+                   if (low := row.margin_at_least if row.outcome == "stands" else row.margin_below) is not None
+                   or row.margin is not None]  # fmt: skip
+        least = min(margins, default=(None, None), key=lambda m: m[0] if m[0] is not None else np.inf)
+        overall, statement = conclusion(facts, reasons, unexplained, self.context.building.structure.word, least, rows)
+        impulse = hazard.primary(facts.motion)
+        model = self.context.deck.motion
+        result.results = out.Assess(
+            overall=overall, statement=statement,
+            hazard=out.AssessHazard(
+                kind=model.kind, told=self._hazard_told(facts.motion), motions=self.motions, **self.chosen,
+                peak_ground_acceleration_g=self.peak, peak_told=self.peak_told,
+                pulse_amplitude_g=impulse and impulse[0], pulse_period_s=impulse and impulse[1],
+            ),
+            verdicts=rows, agreement=agreement, reasons=reasons, unexplained=[list(p) for p in unexplained],
+            parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
+            **({"sensitivity": self._sensitivity()} if self.moved else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
+        )  # fmt: skip
+        result.parts = [r for _, _, r in self.parts]
+        for name, deck in zip(names, self.decks, strict=True):
+            head = (
+                f"# {name}: one part of an assessment of {self.context.deck.path}; run it in the folder of that deck.\n"
+            )
+            result.files[f"assess/{name}.toml"] = (head + deck).encode()
+        self._arrays(facts, rows, result)
+        result.answer = answer(statement, rows, reasons, result.results.sensitivity or [])
+        result.warnings += [
+            f"{row.label}: {row.status}: {row.reason}" for row in rows if row.status in ("failed", "left out")
+        ]
+
+    def _hazard_told(self, motion: Any) -> str:
+        name = self.context.deck.motion.kind
+        if self.many:
+            return f"{self.motions} motions of kind {name}; single runs take motion {self.chosen['member']}, {self.chosen['chosen_by']}"
+        return f"{motion.name or name}, {motion.end:.3g} s"
+
+    def _arrays(self, facts: Facts, rows: list[out.StrategyVerdict], result: Result) -> None:
+        low, high = np.array([facts.interval(r.strategy) for r in rows]).reshape(-1, 2).T
+        result.arrays = {
+            "margin_low": Array(low, ("strategy",), "", "factors on the hazard between which each verdict turns"),
+            "margin_high": Array(np.where(np.isinf(high), np.nan, high), ("strategy",), "", "NaN: not known"),
+        }
+        time_s, ground = facts.motion.series()
+        thin = slice(None, None, max(1, len(time_s) // 4000))
+        result.arrays |= {
+            "time": Array(time_s[thin], ("time",), "s"), "ground": Array(ground[thin], ("time",), "m/s^2", "the motion"),
+        }  # fmt: skip
+        if self.moved:
+            flat = [(m.what.key, value, *margins) for m in self.moved for value, margins in m.tried]
+            names = ("key", "value", "margin_tilt", "margin_rocking")
+            result.tables["sensitivity"] = TableData({
+                n: [np.nan if row[k] is None else row[k] for row in flat] for k, n in enumerate(names)
+            })  # fmt: skip
+        columns = ("strategy", "part", "status", "axis", "demand", "capacity", "unit", "outcome", "margin", "margin_at_least",
+                   "margin_below", "parameters", "statement", "reason")  # fmt: skip
+        result.tables["assess"] = TableData({
+            c: [("" if c in ("part",) else np.nan) if row[c] is None else row[c] for row in rows] for c in columns
+        })  # fmt: skip
+
+
+def _merged(keys: dict[str, Any], given: dict[str, Any]) -> dict[str, Any]:
+    """Keys with those of another table over them, table by table."""
+    made = dict(keys)
+    for name, value in given.items():
+        below = made.get(name)
+        made[name] = _merged(below, value) if isinstance(below, dict) and isinstance(value, dict) else value
+    return made
+
+
+def _told(given: dict[str, Any]) -> str:
+    return ", ".join(f"{k} = {v}" for k, v in given.items())
+
+
+def _governing(found: Result) -> int:
+    """Which motion of a set, from 1, leaves so many with a smaller rotation; those that bring it down count as farthest."""
+    table = found.tables["ensemble"].columns
+    at_one = np.isclose(np.asarray(table["level"], dtype=float), 1.0)
+    motion = np.asarray(table["motion"])[at_one]
+    outcome = np.asarray(table["outcome"])[at_one]
+    ratio = np.asarray(table["peak_ratio"], dtype=float)[at_one]
+    ratio = np.where(outcome == "collapse", np.inf, np.where(np.isnan(ratio), -np.inf, ratio))
+    order = np.argsort(ratio, kind="stable")
+    return int(motion[order[min(len(order) - 1, int(np.ceil(hazard.GOVERNING * len(order))) - 1)]])

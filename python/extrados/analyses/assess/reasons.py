@@ -1,0 +1,454 @@
+"""Why strategies differ: rules, each of which compares numbers and speaks only where they show it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from extrados.analyses.assess.hazard import above
+from extrados.building.building import Building
+from extrados.motions.motion import Motion
+from extrados.results.assess import Reason, StrategyVerdict
+from extrados.results.codes import Checked
+from extrados.results.dem import DemRun
+from extrados.results.limit import Tilt
+from extrados.results.model import Result
+from extrados.results.rocking import Assessment, Rocking
+from extrados.results.verdict import KindResults
+
+#: Strategies that push for ever, and those that follow the motion or a part of it
+STATIC, DYNAMIC = ("tilt", "sla"), ("rocking", "assessment", "probability", "dem")
+#: A joint that slips by this part of its length has slid; a thrust line outside by this share of the time is elsewhere
+SLID, ELSEWHERE = 0.01, 0.1
+#: Of a collapse displacement: what moved less than this was far from it
+FAR = 0.5
+
+Pair = tuple[str, str]
+
+
+@dataclass
+class Facts:
+    """All that the rules may look at.
+
+    rows and results by strategy; probes: results of further runs by what was asked of them; needed_s: the shortest constant
+    push of an amplitude [g] that brings it down [s], None where none is known. bare: what of the deck a strategy left out.
+    """
+
+    building: Building
+    motion: Motion
+    peak_g: float
+    rows: dict[str, StrategyVerdict]
+    results: dict[str, Result]
+    apart: float
+    probes: dict[str, Result] = field(default_factory=dict)
+    needed_s: Callable[[float], float | None] = lambda amplitude: None
+    bare: dict[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def of(self, name: str) -> KindResults | None:
+        """The typed results of a strategy that has any."""
+        found = self.results.get(name)
+        return found.results if found is not None and found.status == "ok" else None
+
+    def outcome(self, name: str) -> str:
+        return self.rows[name].outcome
+
+    def judged(self) -> list[str]:
+        """The strategies with a verdict."""
+        return [n for n, r in self.rows.items() if r.status == "ok" and r.outcome in ("stands", "falls", "open")]
+
+    def relation(self, a: str, b: str) -> str:
+        """agree, apart, disagree or open (results.assess)."""
+        one, two = self.rows[a], self.rows[b]
+        if "open" in (one.outcome, two.outcome):
+            return "agree" if one.outcome == two.outcome else "open"
+        if one.outcome != two.outcome:
+            return "disagree"
+        low, high = sorted((self.interval(a), self.interval(b)))
+        if low[1] is not None and high[0] is not None and high[0] > self.apart * low[1]:
+            return "apart"
+        return "agree"
+
+    def interval(self, name: str) -> tuple[float, float]:
+        """Between which factors on the hazard its verdict turns."""
+        row = self.rows[name]
+        if row.margin is not None:
+            return row.margin, row.margin
+        return row.margin_at_least or 0.0, np.inf if row.margin_below is None else row.margin_below
+
+    def pairs(self) -> list[Pair]:
+        """Pairs that do not agree."""
+        names = self.judged()
+        return [(a, b) for i, a in enumerate(names) for b in names[i + 1 :] if self.relation(a, b) != "agree"]
+
+    def split(self, pair: Pair) -> tuple[str, str]:
+        """The pair with that first which says less is borne."""
+        a, b = pair
+        order = {"falls": 0, "open": 1, "stands": 2}
+        key_a, key_b = ((order[self.outcome(n)], self.interval(n)) for n in (a, b))
+        return (a, b) if key_a <= key_b else (b, a)
+
+
+#: Reasons in a few words
+HEADLINES = {
+    "static-peak": "how long the peak lasts", "impact-rule": "what an impact loses", "last-digits": "the last digits of the motion",
+    "sine-for-record": "what the motion holds beside its strongest sine", "sliding": "sliding of the stones",
+    "drums": "stones that move by themselves", "hinges-elsewhere": "hinges that form elsewhere",
+    "membrane-without-sliding": "elements that cannot slide", "tension": "tension that elements bear",
+    "mortar": "mortar", "code-factors": "the factors of codes", "crack": "a crack in the buttress", "left-out": "what holds the building", "chance": "sizes that nobody knows to 5 %",
+}  # fmt: skip
+
+
+def reason(rule: str, pairs: list[Pair], text: str, **numbers: float | None) -> Reason:
+    return Reason(rule=rule, headline=HEADLINES[rule], explains=[list(p) for p in pairs], text=text, numbers=numbers)
+
+
+def dynamic(pairs: list[Pair], *names: str) -> list[Pair]:
+    """The pairs of two strategies that both follow the motion, one of them of these names."""
+    return [p for p in pairs if set(p) <= set(DYNAMIC) and set(p) & set(names)]
+
+
+def static_peak(facts: Facts, pairs: list[Pair]) -> list[Reason]:
+    """Statics takes the peak for ever; the motion passes the capacity for too short a time to overturn it."""
+    mine = [p for p in pairs if (s := facts.split(p))[0] in STATIC and s[1] in DYNAMIC]
+    groups: list[list[str]] = []
+    for name in sorted({facts.split(p)[0] for p in mine}, key=STATIC.index):
+        group = next((g for g in groups if _alike(facts, g[0], name)), None)
+        if group is None:
+            groups.append([name])
+        else:
+            group.append(name)
+    return [r for g in groups if (r := _static_peak(facts, g, [p for p in mine if facts.split(p)[0] in g])) is not None]
+
+
+def _alike(facts: Facts, a: str, b: str) -> bool:
+    """Whether two strategies of statics say the same to 3 %."""
+    one, two = facts.rows[a].capacity, facts.rows[b].capacity
+    return one is not None and two is not None and abs(one - two) < 0.03 * max(one, two)
+
+
+def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | None:
+    weakest = min(names, key=lambda n: facts.rows[n].capacity or np.inf)
+    capacity = facts.rows[weakest].capacity
+    if capacity is None:
+        return None
+    # where both stand, the motion is looked at as strong as the dynamic answer still bears
+    factor = 1.0
+    if facts.outcome(weakest) == "stands":
+        factor = min(facts.interval(facts.split(p)[1])[0] for p in mine)
+    if factor <= 0.0:
+        return None
+    amplitude = factor * facts.peak_g
+    count, longest = above(facts.motion, capacity / factor)
+    needed = facts.needed_s(amplitude)
+    told = f"{amplitude:.3g} g" if factor == 1.0 else f"{amplitude:.3g} g (the motion times {factor:.3g})"
+    text = (
+        f"Statics takes the peak of {told} as if it lasted for ever; the motion passes the {capacity:.3g} g of "
+        f"{facts.rows[weakest].label} {count} time{'s' if count != 1 else ''}, for {longest:.3g} s at most"
+    )
+    numbers = {
+        "static_capacity": capacity,
+        "peak": amplitude,
+        "excursions": float(count),
+        "longest_s": longest,
+        "needed_s": needed,
+    }
+    if needed is not None:
+        if longest >= needed:
+            return None
+        return reason(
+            "static-peak",
+            mine,
+            f"{text}, while a constant push of that peak needs {needed:.3g} s to bring it down.",
+            **numbers,
+        )
+    dem = facts.of("dem")
+    if "rocking" in facts.results or not isinstance(dem, DemRun) or dem.outcome == "collapse":
+        return None
+    moved = dem.peak_displacement_m / dem.collapse_displacement_m
+    if not 0.0 < moved < FAR or longest <= 0.0:
+        return None
+    return reason(
+        "static-peak", [p for p in mine if "dem" in p],
+        f"{text}: in that time the stones move by {100 * moved:.2g} % of what counts as collapse.", displacement_ratio=moved,
+        **numbers,
+    )  # fmt: skip
+
+
+def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """A buttress that cracks bears less; nothing but limit analysis was asked to crack it."""
+    tilt = facts.of("tilt")
+    mine = [p for p in pairs if "tilt" in p and facts.split(p)[0] == "tilt"]
+    if not mine or not isinstance(tilt, Tilt) or tilt.fracture is None:
+        return None
+    whole = min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g)
+    cracked = 0.0 if tilt.fracture.stands is False else tilt.fracture.collapse_acceleration_g
+    if cracked is None or cracked >= whole or whole <= facts.peak_g:
+        return None
+    return reason(
+        "crack", mine,
+        f"Limit analysis lets the leeward buttress crack: {cracked:.3g} g instead of {whole:.3g} g with buttresses in one piece, which "
+        f"would bear the peak of {facts.peak_g:.3g} g. The other strategies know no such crack.",
+        cracked=cracked, whole=whole, peak=facts.peak_g,
+    )  # fmt: skip
+
+
+def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """One of them does not reckon with what holds the building; without it the other says the same."""
+    without = facts.probes.get("without-restraints")
+    mine = [
+        p for p in pairs if (p[0] in facts.bare and p[1] == "rocking") or (p[1] in facts.bare and p[0] == "rocking")
+    ]
+    r = facts.of("rocking")
+    if not mine or without is None or not isinstance(without.results, Rocking) or not isinstance(r, Rocking):
+        return None
+    other = without.results
+    if other.peak_rotation_ratio <= 1.2 * r.peak_rotation_ratio:
+        return None
+    return reason(
+        "left-out", mine,
+        f"{', '.join(sorted({w for p in mine for n in p for w in facts.bare.get(n, ())}))} hold what rocks; the others leave them "
+        f"out. Without them rocking turns by {100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them by "
+        f"{100 * r.peak_rotation_ratio:.3g} %.",
+        rotation_ratio_without=other.peak_rotation_ratio, rotation_ratio=r.peak_rotation_ratio,
+    )  # fmt: skip
+
+
+def ties_of_statics(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """One strategy of statics knows ties and the other does not; without them the first says as the second."""
+    mine = [p for p in pairs if set(p) == {"tilt", "sla"} and "sla" in facts.bare]
+    without, tilt, sla = facts.probes.get("tilt-without"), facts.rows.get("tilt"), facts.rows.get("sla")
+    if not mine or without is None or not isinstance(without.results, Tilt) or tilt is None or sla is None:
+        return None
+    r, wall = without.results, facts.building.supports.abutting_wall
+    senses = {"left": (r.collapse_acceleration_g,), "right": (r.collapse_acceleration_opposite_g,)}
+    bare = min(senses.get(wall or "", (r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)))
+    if sla.capacity is None or tilt.capacity is None or abs(bare - sla.capacity) > 0.1 * bare:
+        return None
+    return reason(
+        "left-out", mine, f"Limit analysis reckons with the ties, the elements do not: {tilt.capacity:.3g} g with them, {bare:.3g} g "
+        f"without, and the elements {sla.capacity:.3g} g.", with_ties=tilt.capacity, without_ties=bare, elements=sla.capacity,
+    )  # fmt: skip
+
+
+def impact_rule(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """The rule of impact decides whether it rocks on or falls."""
+    r = facts.of("rocking")
+    mine = dynamic(pairs, "rocking")
+    if not isinstance(r, Rocking) or not mine or not r.outcomes_by_rule:
+        return None
+    falls = [o for o in r.outcomes_by_rule if o.outcome == "collapse"]
+    stands = [o for o in r.outcomes_by_rule if o.outcome != "collapse"]
+    if not falls or not stands:
+        return None
+
+    def told(rows: list) -> str:
+        return " and ".join(f'"{o.rule}" (c_v {o.restitution:.3f})' for o in rows)
+
+    numbers = {f"restitution_{o.rule}".replace("-", "_"): o.restitution for o in r.outcomes_by_rule}
+    return reason(
+        "impact-rule", mine,
+        f"What an impact loses decides: rocking falls by {told(falls)} and stands by {told(stands)}. Discrete elements lose "
+        "what their damping takes, which is neither.", **numbers,
+    )  # fmt: skip
+
+
+def sine_for_record(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """One sine stands for the whole motion: rocked through that sine alone the building does as the criterion says."""
+    mine = dynamic(pairs, "assessment")
+    a, alone, whole = facts.of("assessment"), facts.probes.get("sine"), facts.of("rocking")
+    if not mine or not isinstance(a, Assessment) or alone is None or not isinstance(alone.results, Rocking):
+        return None
+    if not isinstance(whole, Rocking) or a.primary_impulse is None:
+        return None
+    sine = alone.results
+    if (sine.outcome == "collapse") != (a.verdict == "fails"):
+        return None
+    more = whole.peak_rotation_ratio > 1.2 * sine.peak_rotation_ratio or whole.outcome != sine.outcome
+    if not more:
+        return None
+    return reason(
+        "sine-for-record", mine,
+        f"The criterion replaces the motion by its strongest sine, {abs(a.primary_impulse.amplitude_g):.3g} g over "
+        f"{a.primary_impulse.period_s:.3g} s ({100 * a.primary_impulse.goodness_of_fit:.0f} % of the squared acceleration there): "
+        f"under that sine alone it turns by {100 * sine.peak_rotation_ratio:.0f} % of the critical rotation, under the whole "
+        f"motion by {100 * whole.peak_rotation_ratio:.0f} %.",
+        sine_rotation_ratio=sine.peak_rotation_ratio, motion_rotation_ratio=whole.peak_rotation_ratio,
+        goodness_of_fit=a.primary_impulse.goodness_of_fit,
+    )  # fmt: skip
+
+
+def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """The run is decided by its last digits."""
+    r = facts.of("rocking")
+    mine = dynamic(pairs, "rocking")
+    if not mine or not isinstance(r, Rocking) or not r.decided_by_last_digits:
+        return None
+    return reason(
+        "last-digits", mine, "Rocking under this motion is decided by its last digits: a motion stronger or weaker by a millionth "
+        f"ends in another outcome. It turned by {100 * r.peak_rotation_ratio:.0f} % of the critical rotation.",
+        rotation_ratio=r.peak_rotation_ratio,
+    )  # fmt: skip
+
+
+def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Buildings that differ as nobody can know end differently: a single run is one draw."""
+    row = facts.rows.get("probability")
+    mine = dynamic(pairs, "probability") or [p for p in pairs if "probability" in p]
+    if not mine or row is None or row.demand is None or not 0.05 < row.demand < 0.95:
+        return None
+    return reason(
+        "chance", mine,
+        f"With {row.parameters.split(' (coef')[0]} {100 * row.demand:.0f} % come down: a single run of one building under one "
+        "motion is one draw of these.", share=row.demand,
+    )  # fmt: skip
+
+
+def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Stones slide, which rocking and the criterion rule out."""
+    dem, without = facts.of("dem"), facts.probes.get("no-sliding")
+    mine = [
+        p for p in pairs if "dem" in p and ("rocking" in p or "assessment" in p or "probability" in p or "tilt" in p)
+    ]
+    if not mine or not isinstance(dem, DemRun):
+        return None
+    shortest = float(facts.building.blocks().length.min())
+    if dem.peak_slip_m < SLID * shortest:
+        return None
+    numbers: dict[str, float | None] = {"slip_m": dem.peak_slip_m, "slip_ratio": dem.peak_slip_m / shortest}
+    text = f"Stones slide by up to {1e3 * dem.peak_slip_m:.3g} mm, {100 * dem.peak_slip_m / shortest:.2g} % of the shortest joint"
+    if without is None or not isinstance(without.results, DemRun):
+        return None
+    other = without.results
+    if (other.outcome == "collapse") == (dem.outcome == "collapse"):
+        far, near = other.peak_displacement_m, dem.peak_displacement_m
+        if abs(far - near) < 0.2 * max(far, near):
+            return None
+    numbers["displacement_without_sliding_m"] = other.peak_displacement_m
+    numbers["displacement_m"] = dem.peak_displacement_m
+    return reason(
+        "sliding", mine, f"{text}, which a mechanism of rocking rules out: without sliding the elements "
+        f"{'come down' if other.outcome == 'collapse' else 'stay up'} and move by {other.peak_displacement_m:.3g} m, with it "
+        f"{'they come down' if dem.outcome == 'collapse' else f'by {dem.peak_displacement_m:.3g} m'}.", **numbers,
+    )  # fmt: skip
+
+
+def hinges_elsewhere(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """The dynamic thrust line leaves the stones: hinges form where the one mechanism has none."""
+    mine = dynamic(pairs, "dem")
+    found = facts.results.get("rocking")
+    if not mine or found is None or "thrust_position" not in found.arrays:
+        return None
+    position = found.arrays["thrust_position"].data
+    moving = np.isfinite(position).any(axis=1)
+    if not moving.any():
+        return None
+    out = np.nanmax(np.maximum(-position[moving], position[moving] - 1.0), axis=1)
+    share = float((out > 0.01).mean())
+    if share < ELSEWHERE:
+        return None
+    return reason(
+        "hinges-elsewhere", mine,
+        f"The thrust line of the assumed mechanism leaves the stones in {100 * share:.0f} % of the rocking time, by up to "
+        f"{100 * float(out.max()):.0f} % of their thickness: hinges form elsewhere too, which only discrete elements follow.",
+        share_of_time=share, farthest_ratio=float(out.max()),
+    )  # fmt: skip
+
+
+def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Rocking takes a stack of stones as one body; as one body the elements do as it says."""
+    mine = dynamic(pairs, "dem")
+    one, dem, whole = facts.probes.get("monolith"), facts.of("dem"), facts.of("rocking")
+    if not mine or one is None or not isinstance(one.results, DemRun) or not isinstance(dem, DemRun):
+        return None
+    if not isinstance(whole, Rocking) or (one.results.outcome == "collapse") != (whole.outcome == "collapse"):
+        return None
+    stones = len(facts.building.blocks().mass)
+    return reason(
+        "drums", mine,
+        f"Rocking takes the {stones} stones as one body. As one body the elements "
+        f"{'come down' if one.results.outcome == 'collapse' else 'stay up'} too, moving by "
+        f"{one.results.peak_displacement_m:.3g} m; apart the stones move by {dem.peak_displacement_m:.3g} m.",
+        displacement_of_one_body_m=one.results.peak_displacement_m, displacement_m=dem.peak_displacement_m,
+    )  # fmt: skip
+
+
+def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """A wall of finite elements does not slide along its joints, and bears tension; its stones do the one, not the other."""
+    sla, tilt = facts.rows.get("sla"), facts.of("tilt")
+    mine = [p for p in pairs if "sla" in p and ("tilt" in p or "dem" in p)]
+    if not mine or sla is None or sla.capacity is None or not isinstance(tilt, Tilt) or facts.building.meshed_by_stones:
+        return None
+    held = facts.probes.get("tilt-no-sliding")
+    strength = facts.building.material.tensile_strength
+    least = min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g)
+    if held is not None and isinstance(held.results, Tilt):
+        stuck = min(held.results.collapse_acceleration_g, held.results.collapse_acceleration_opposite_g)
+        if stuck > 1.05 * least and abs(sla.capacity - stuck) < abs(sla.capacity - least):
+            return reason(
+                "membrane-without-sliding", mine,
+                f"The wall of finite elements cannot slide along its joints: its stones bear {least:.3g} g with friction "
+                f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g.",
+                with_sliding=least, without_sliding=stuck, elements=sla.capacity,
+            )  # fmt: skip
+    if strength and sla.capacity > least:
+        return reason(
+            "tension", mine,
+            f"The elements bear tension up to {strength / 1e6:.3g} MPa before they crack, dry stones none: {sla.capacity:.3g} g "
+            f"against {least:.3g} g.", tensile_strength=strength, elements=sla.capacity, stones=least,
+        )  # fmt: skip
+    return None
+
+
+def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Joints with tension or cohesion: elements reckon with them, limit analysis and rocking do not."""
+    joints = facts.building.joints
+    with_mortar = ("dem", "sla") if facts.building.meshed_by_stones else ("dem",)
+    mine = [p for p in pairs if (facts.split(p)[1] in with_mortar and facts.split(p)[0] not in with_mortar)]
+    if not mine or not (joints.tension or joints.cohesion):
+        return None
+    return reason(
+        "mortar", mine, f"The mortar bears {joints.tension / 1e6:.3g} MPa of tension and {joints.cohesion / 1e6:.3g} MPa of cohesion "
+        "until it breaks, which limit analysis and rocking leave out.", tension=joints.tension, cohesion=joints.cohesion,
+    )  # fmt: skip
+
+
+def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Codes reduce the demand by q and the capacity by FC; without both the code would say as statics does."""
+    mine = [p for p in pairs if "code-checks" in p]
+    r = facts.of("code-checks")
+    if not mine or not isinstance(r, Checked):
+        return None
+    name = next((n for n in r.checks if n.startswith("NTC linear")), None)
+    tilt = facts.of("tilt")
+    if name is None or not isinstance(tilt, Tilt):
+        return None
+    check = r.checks[name]
+    least = min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g)
+    if check.demand is None or abs(check.capacity / least - 1.0) < 0.05:
+        return None
+    other = [p for p in mine if "tilt" in p or "sla" in p] or mine
+    return reason(
+        "code-factors", other,
+        f"The linear check of the code compares {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics over "
+        f"the confidence factor, times the behaviour factor q. q stands for what rocking bears beyond its uplift.",
+        code_capacity=check.capacity, static_capacity=least, demand=check.demand,
+    )  # fmt: skip
+
+
+Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
+RULES: tuple[Rule, ...] = (
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors,
+    chance,
+)  # fmt: skip
+
+
+def explained(facts: Facts) -> tuple[list[Reason], list[Pair]]:
+    """The reasons that the rules find for the pairs that do not agree, and the pairs for which there is none."""
+    pairs = facts.pairs()
+    said: list[Reason] = []
+    for rule in RULES:
+        given = rule(facts, pairs)
+        said += given if isinstance(given, list) else [] if given is None else [given]
+    found = [one for one in said if one.explains]
+    told = {tuple(p) for one in found for p in one.explains}
+    return found, [p for p in pairs if p not in told]

@@ -1,0 +1,248 @@
+"""The strategies that a building may be asked by, and how each is asked: parameters by stated rules."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.assess.hazard import STRONG, strong_end
+from extrados.analyses.assess.tables import Assess
+from extrados.analyses.context import Context
+from extrados.building.building import Building
+from extrados.motions.tables import Compatible
+from extrados.results.limits import LIMITS
+from extrados.schema.constants import GRAVITY
+
+#: Shares of the budget that a strategy may take
+SHARES = {"probability": 0.15, "sla": 0.2, "dem": 0.15}
+#: What of the budget is left to learn more where strategies differ or a margin is thin
+REFINING = 0.5
+#: Factors on the hazard that rocking is tried at, and those of a set, whose motions are many
+LEVELS = [round(float(v), 4) for v in np.geomspace(0.25, 4.0, 33)]
+LEVELS_OF_A_SET = [0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0]
+#: Nominal seconds of counted work on one core of 2024: a run of rocking by the kind of structure; a stone under SLA; a
+#: step of discrete elements, and what each of its joints adds
+RUN_SECONDS = {"block": 0.002, "column": 0.002, "arch": 0.012}
+RUN_SECONDS_ELSE = 0.15
+STONE_SECONDS, ELEMENT_SECONDS = 0.03, 0.02
+STEP_SECONDS, JOINT_SECONDS = 1.5e-6, 2.5e-7
+#: Of the greatest frequency of impact at an edge: what the critical step of discrete elements is at least
+STEP_RULE = 0.5
+#: Joints that settle by this part of their length under the whole weight are as stiff as need be
+STIFF_ENOUGH = 1e-4
+#: Coefficient of variation of sizes and restitution where the deck gives none, and of corners that stray
+SCATTER, STRAY = 0.05, 0.01
+#: Discrete elements come to rest, or down, within so many sqrt(size/g)
+AFTER = 12.0
+#: Elements along the longer side of a wall
+ELEMENTS = 24
+
+
+class LeftOut(Exception):
+    """The strategy is not asked; the text says why."""
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The table of a strategy without its kind, the rules it was made by, in words, its nominal seconds, and its kind where
+    that is not the strategy's own."""
+
+    keys: dict[str, Any]
+    words: str
+    seconds: float = 0.0
+    kind: str | None = None
+
+
+@dataclass(frozen=True)
+class Asked:
+    """The building, the deck's assess table, and how many motions the hazard has; context: of the one motion of a set."""
+
+    context: Context
+    options: Assess
+    motions: int
+    peak_g: float
+
+    @property
+    def building(self) -> Building:
+        return self.context.building
+
+    def share(self, name: str) -> float:
+        """Nominal seconds that a strategy may take."""
+        return SHARES[name] * self.options.budget
+
+
+@dataclass(frozen=True)
+class Strategy:
+    """name: as decks call it; kind: of its analysis; label: in words; axis: what it compares (results.assess); assumes:
+    what it takes for granted; choose: how it is asked."""
+
+    name: str
+    kind: str
+    label: str
+    axis: str
+    assumes: str
+    choose: Callable[[Asked], Choice]
+
+
+def _as_it_is(asked: Asked) -> Choice:
+    return Choice({}, "as the deck says")
+
+
+def _levels(asked: Asked) -> Choice:
+    if asked.motions > 1:
+        return Choice(
+            {"intensity": "scale", "levels": LEVELS_OF_A_SET, "count": asked.motions, "bootstrap": 100}
+            | ({"uncertain": asked.options.uncertain} if asked.options.uncertain else {}),
+            f"{asked.motions} motions, each at {len(LEVELS_OF_A_SET)} factors from 0.5 to 3",
+        )
+    return Choice(
+        {"intensity": "scale", "levels": LEVELS, "bootstrap": 0}, "the motion at 33 factors from 0.25 to 4, 9 % apart"
+    )
+
+
+def _scatter(asked: Asked) -> dict[str, float]:
+    """The uncertain values that a kind of structure knows."""
+    kind = asked.building.structure.kind
+    own = {
+        "arch": {"thickness": SCATTER, "restitution": SCATTER},
+        "block": {"width": SCATTER, "height": SCATTER, "restitution": SCATTER},
+        "column": {"width": SCATTER, "height": SCATTER, "restitution": SCATTER},
+    }.get(kind, {"density": SCATTER, "imperfection": STRAY, "restitution": SCATTER})
+    if kind == "block" and asked.building.structure.width is None:
+        own = {"centre_height": SCATTER, "toe_right": SCATTER, "restitution": SCATTER}
+    return own
+
+
+def _probability(asked: Asked) -> Choice:
+    if asked.motions > 1:
+        raise LeftOut("the motions of the set vary already: their share stands at the row of the set")
+    uncertain = asked.options.uncertain or _scatter(asked)
+    if asked.building.restraints or asked.building.supports.abutting_wall is not None:
+        raise LeftOut("sizes of a building that is held by more than its weight are not varied")
+    each = RUN_SECONDS.get(asked.building.structure.kind, RUN_SECONDS_ELSE)
+    count = int(2 ** np.floor(np.log2(np.clip(asked.share("probability") / each, 16, 1024))))
+    told = ", ".join(f"{name} {100 * v:g} %" for name, v in uncertain.items())
+    return Choice(
+        {"count": count, "seed": 1, "uncertain": uncertain},
+        f"{count} buildings of uncertain {told} (coefficients of variation), as many as fit into "
+        f"{100 * SHARES['probability']:g} % of the budget",
+    )
+
+
+def _codes(asked: Asked) -> Choice:
+    from extrados.analyses.codes.tables import CodeChecks
+
+    spectrum = asked.options.spectrum
+    if asked.building.structure.rocks_as == "piers":
+        raise LeftOut("the pier rules need axial_load: give options.code-checks")
+    own = asked.building.structure.kind in (CodeChecks.structures or ())
+    keys: dict[str, Any] = {} if own else {"mechanism": "building"}
+    words = "" if own else "the local mechanism that limit analysis finds; "
+    kind = None if own else "local-mechanism"
+    if spectrum is not None:
+        return Choice(
+            {**keys, "spectrum": spectrum.model_dump(exclude_none=True)}, f"{words}the spectrum of the deck", 0.0, kind
+        )
+    if isinstance(asked.context.deck.motion, Compatible):
+        return Choice(keys, f"{words}the spectrum that the motions match", 0.0, kind)
+    told = f"{words}a_g S is the peak of the motion; no spectrum is given"
+    return Choice({**keys, "peak_acceleration": f"{asked.peak_g!r} g"}, told, 0.0, kind)
+
+
+def _sla(asked: Asked) -> Choice:
+    building = asked.building
+    if building.meshed_by_stones:
+        stones = len(building.blocks().mass)
+        needed = 2.0 * STONE_SECONDS * stones
+        if needed > asked.share("sla"):
+            raise LeftOut(
+                f"{stones} stones take about {needed:.0f} s, its share of the budget is {asked.share('sla'):.0f} s"
+            )
+        wall = building.supports.abutting_wall
+        if wall is not None:
+            return Choice(
+                {"directions": ["+" if wall == "left" else "-"]}, "stones with joints, pushed away from the wall"
+            )
+        return Choice({"directions": ["+", "-"]}, "stones with joints that open and slide, pushed to both sides")
+    if building.material.tensile_strength is None:
+        raise LeftOut("the wall cracks only with [material] tensile_strength and fracture_energy, which the deck lacks")
+    size = getattr(building.structure, "size", None)
+    keys: dict[str, Any] = {"directions": ["+"], "events": int(asked.share("sla") / ELEMENT_SECONDS)}
+    if size is not None:
+        keys["mesh"] = {"size": max(size) / ELEMENTS}
+    return Choice(keys, f"{ELEMENTS} elements along the longer side, {keys['events']} events at most, pushed to +x")
+
+
+def _dem(asked: Asked) -> Choice:
+    from extrados.analyses.dem.model import joint_values
+
+    building = asked.building
+    assembly, values = building.blocks(), joint_values(building)
+    motion = asked.context.motion
+    end = strong_end(motion) + AFTER * float(np.sqrt(assembly.size / GRAVITY))
+    joints = len(assembly.a)
+    rate = STEP_SECONDS + JOINT_SECONDS * joints
+
+    def seconds(factor: float) -> float:
+        """Of a run with stiffnesses times a factor."""
+        frequency = float(values.scaled(factor).impact.of("edge").max())
+        damped = 0.5 * frequency * values.beta * (1.0 if building.joints.beta is not None else factor**-0.5)
+        critical = STEP_RULE * 2.0 / frequency * (np.sqrt(1.0 + damped**2) - damped)
+        return rate * end / (0.3 * critical)
+
+    words = f"until {100 * STRONG:g} % of the motion's Arias intensity are over and {AFTER:g} sqrt(size/g) after, {end:.3g} s"
+    keys: dict[str, Any] = {"end_time": round(end, 3), "output_step": max(0.01, end / 1500.0)}
+    share = asked.share("dem")
+    given = building.joints.normal_stiffness is not None or any(t.normal_stiffness for t in building.joints.types)
+    if seconds(1.0) <= share or given:
+        if seconds(1.0) > 2.0 * share:
+            raise LeftOut(_too_long(seconds(1.0), share, "with the joint stiffness of the deck"))
+        whose = "the deck says" if given else "E over the stones' length gives"
+        return Choice(keys, f"{words}; joints as stiff as {whose}", seconds(1.0))
+    # steps grow as the root of the stiffness
+    stiffness = float(np.median(values.stiffness)) * (share / seconds(1.0)) ** 2
+    grounded = (assembly.a < 0) | (assembly.b < 0)
+    weight = float(assembly.mass.sum()) * GRAVITY
+    pressure = weight / (float(assembly.length[grounded].sum()) * assembly.depth)
+    least = pressure / (STIFF_ENOUGH * float(assembly.length.min()))
+    factor = least / float(np.median(values.stiffness))
+    if stiffness < least and seconds(factor) <= 2.0 * share:
+        stiffness = least
+    elif stiffness < least:
+        raise LeftOut(
+            _too_long(seconds(factor), share, f"even with joints of {least:.2g} Pa/m, the least that is stiff enough")
+        )
+    taken = max(share, seconds(factor)) if stiffness == least else share
+    stiffness = float(f"{stiffness:.1e}")
+    keys["joints"] = {"normal_stiffness": stiffness}
+    return Choice(
+        keys, f"{words}; joints of {stiffness:.2g} Pa/m, the stiffest that fit into {100 * SHARES['dem']:g} % of the budget (E over "
+        f"the stones' length gives {float(np.median(values.stiffness)):.2g}; {least:.1g} would do)",
+        taken,
+    )  # fmt: skip
+
+
+def _too_long(seconds: float, share: float, how: str) -> str:
+    return f"{how} it takes about {seconds:.0f} s, its share of the budget is {share:.0f} s"
+
+
+ALL = tuple(
+    Strategy(name, kind, label, axis, LIMITS[kind][0], choose)
+    for name, kind, label, axis, choose in (
+        ("tilt", "tilt", "limit analysis", "acceleration", _as_it_is),
+        ("rocking", "rocking", "rocking", "displacement", _as_it_is),
+        ("assessment", "assessment", "primary impulse", "pulse", _as_it_is),
+        ("code-checks", "code-checks", "codes", "check", _codes),
+        ("probability", "fragility", "probability", "probability", _probability),
+        ("sla", "sla", "sequentially linear analysis", "acceleration", _sla),
+        ("dem", "dem", "discrete elements", "displacement", _dem),
+    )
+)
+#: Rocking at many factors on the hazard: the margin of `rocking`, and of a set the share of its motions
+SCALED = Strategy("scaled", "fragility", "rocking at factors on the hazard", "probability", "", _levels)
+
+
+def of(name: str) -> Strategy:
+    """The strategy that decks call so."""
+    return next(s for s in ALL if s.name == name)

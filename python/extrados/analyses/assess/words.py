@@ -1,0 +1,108 @@
+"""What an assessment says: the table of verdicts as text, and one overall statement."""
+
+from extrados.analyses.assess.reasons import Facts, Pair
+from extrados.results.assess import Overall, Reason, Sensitivity, StrategyVerdict
+
+_HEAD = ("strategy", "verdict", "demand", "capacity", "unit", "margin")
+
+
+def margin_of(row: StrategyVerdict) -> str:
+    """The margin in words: a factor, or what is known of it."""
+    if row.margin is not None:
+        return f"{row.margin:.3g}"
+    low, high = row.margin_at_least, row.margin_below
+    if low is not None and high is not None:
+        return f"{low:.3g} to {high:.3g}"
+    return f"above {low:.3g}" if low is not None else f"below {high:.3g}" if high is not None else "not known"
+
+
+def _cells(row: StrategyVerdict) -> tuple[str, ...]:
+    if row.status != "ok":
+        return row.label, row.status, "", "", "", ""
+
+    def number(value: float | None) -> str:
+        return "" if value is None else f"{value:.3g}"
+
+    unit = {"probability": "of all"}.get(row.unit, row.unit)
+    if not unit and row.axis == "displacement":
+        unit = "of the critical rotation"
+    return row.label, row.outcome, number(row.demand), number(row.capacity), unit, margin_of(row)
+
+
+def table_of(rows: list[StrategyVerdict]) -> str:
+    """The verdicts as lines of equal columns."""
+    cells = [_HEAD, *(_cells(row) for row in rows)]
+    widths = [max(len(c[i]) for c in cells) for i in range(len(_HEAD))]
+    return "\n".join("  " + "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in cells)
+
+
+def answer(statement: str, rows: list[StrategyVerdict], reasons: list[Reason], moved: list[Sensitivity]) -> str:
+    """All that is told on the terminal: the statement, the table, the reasons, where verdicts turn."""
+    return "\n".join([statement, table_of(rows), *(f"- {one.text}" for one in reasons), *turning(moved)])
+
+
+def turning(moved: list[Sensitivity]) -> list[str]:
+    """Where the verdicts turn, a line for each value that turns one."""
+    said = []
+    for one in moved:
+        unit = f" {one.unit}" if one.unit else ""
+        told = [f"{label} at {value:.3g}{unit}" for label, value in (("limit analysis", one.tilt_turns), ("rocking", one.rocking_turns))
+                if value is not None]  # fmt: skip
+        if told:
+            said.append(f"- {one.key} ({one.base:.3g}{unit} here) turns the verdict of {' and of '.join(told)}.")
+    return said
+
+
+def conclusion(
+    facts: Facts, reasons: list[Reason], unexplained: list[Pair], word: str, least: tuple, rows: list[StrategyVerdict]
+) -> tuple[Overall, str]:
+    """The overall answer, and its statement: which strategies say what, why they differ, and the least margin."""
+    groups = {
+        o: [facts.rows[n].label for n in facts.judged() if facts.outcome(n) == o] for o in ("stands", "falls", "open")
+    }
+    stands, falls, left = groups["stands"], groups["falls"], groups["open"]
+    said: list[str] = []
+    overall: Overall
+    if not stands and not falls and not left:
+        return "open", f"No strategy has a verdict on the {word} under this hazard."
+    if not falls and not left:
+        overall = "stands under all"
+        said.append(f"The {word} stands under {_count(stands)}.")
+    elif not stands and not left:
+        overall = "falls under all"
+        said.append(f"The {word} falls under {_count(falls)}.")
+    elif stands and falls:
+        overall = "depends"
+        said.append(f"It depends on the strategy: the {word} falls by {_list(falls)}, and stands by {_list(stands)}.")
+    else:
+        overall = "open"
+        said.append(
+            f"The {word} {'stands' if stands else 'falls'} by {_list(stands or falls)}." if stands or falls else ""
+        )
+    if left:
+        said.append(f"{_list(left).capitalize()} {'leave' if len(left) > 1 else 'leaves'} it open.")
+    decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]  # type: ignore[misc]
+    if decisive:
+        said.append(f"What decides is {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")
+    bare = [p for p in unexplained if facts.relation(*p) == "disagree"]
+    if bare:
+        told = "; ".join(f"{facts.rows[a].label} and {facts.rows[b].label}" for a, b in bare)
+        said.append(f"No rule finds a reason why these differ: {told}.")
+    if least[0] is not None:
+        label = facts.rows[least[1]].label
+        row = next(r for r in rows if r.strategy == least[1])
+        said.append(f"The least factor on the hazard at which a verdict turns is {margin_of(row)}, that of {label}.")
+    none = [row.label for row in rows if row.status != "ok" or row.outcome == "none"]
+    if none:
+        said.append(f"Without an answer: {_list(none)}.")
+    return overall, " ".join(s for s in said if s)
+
+
+def _count(words: list[str]) -> str:
+    if len(words) == 1:
+        return f"the one strategy that has a verdict, {words[0]}"
+    return f"all {len(words)} strategies that have a verdict"
+
+
+def _list(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

@@ -1,0 +1,89 @@
+"""The local mechanisms that engineers meet, as one body that turns about a hinge: from their table to weights and pushes."""
+
+import math
+
+from extrados.analyses.codes.kinematics import Overturning, Push, Weight
+from extrados.analyses.codes.tables import LocalMechanism
+from extrados.analyses.context import Refused
+from extrados.schema.constants import GRAVITY
+
+#: What each mechanism needs beyond density and height
+NEEDS = {
+    "facade": ("height", "thickness"), "corner": ("height", "thickness", "crack_angle"), "gable": ("height", "thickness", "width"),
+    "parapet": ("height", "thickness"), "wall": ("height", "thickness"), "tower": ("height", "thickness"),
+}  # fmt: skip
+
+
+def overturning(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
+    """The body above the hinge; lengths m, density kg/m^3, compressive strength Pa (None: the hinge is the outer edge).
+
+    The hinge lies within the wall where stone crushes, by 2 P/(3 f_d w): the resultant of a triangle of stress f_d.
+    """
+    missing = [name for name in NEEDS[options.mechanism] if getattr(options, name) is None]
+    if missing:
+        raise Refused(f"{options.mechanism} needs {' and '.join(missing)}")
+    if options.mechanism == "corner":
+        return _corner(options, density)
+    height, thickness = float(options.height or 0.0) - options.hinge_height, float(options.thickness or 0.0)
+    if height <= 0.0:
+        raise Refused(f"hinge_height {options.hinge_height:g} m is not below the top of the wall, {options.height:g} m")
+    width = options.width or (thickness if options.mechanism == "tower" else 1.0)
+    unit = density * GRAVITY * thickness
+    if options.mechanism == "gable":
+        wall = Weight(unit * width * height / 2.0, thickness / 2.0, height / 3.0)
+    else:
+        wall = Weight(unit * width * height, thickness / 2.0, height / 2.0)
+    weights, pushes = [wall], []
+    for floor in options.floors:
+        level = floor.height - options.hinge_height
+        if level < 0.0:
+            continue  # what lies below the hinge does not move
+        if floor.load > 0.0:
+            arm = thickness / 2.0 if floor.arm is None else floor.arm
+            weights.append(Weight(floor.load, arm, level, floor.sways))
+        if floor.thrust:
+            pushes.append(Push(floor.thrust, level))
+    for tie in options.ties:
+        if tie.height > options.hinge_height:
+            pushes.append(Push(-tie.force, tie.height - options.hinge_height))
+    if options.side_walls is not None:
+        weights, pushes = _with_side_walls(options, density, height, weights, pushes)
+    if strength is not None:
+        setback = 2.0 * sum(w.weight for w in weights) / (3.0 * strength * width)
+        if setback >= thickness / 2.0:
+            raise Refused("the weight alone crushes the wall at the hinge")
+        weights = [Weight(w.weight, w.arm - setback, w.height, w.sways) for w in weights]
+    return Overturning(tuple(weights), tuple(pushes))
+
+
+def _with_side_walls(
+    options: LocalMechanism, density: float, height: float, weights: list[Weight], pushes: list[Push]
+) -> tuple[list[Weight], list[Push]]:
+    """A wedge of each side wall goes with the facade, cut by a crack that rises at an angle from the hinge: a triangle of
+    height h and length h tan(angle), its centre of mass at two thirds of the height and a third of the length behind."""
+    side = options.side_walls
+    assert side is not None and options.thickness is not None
+    length = height * math.tan(math.radians(side.crack_angle))
+    weight = density * GRAVITY * side.thickness * 0.5 * height * length
+    wedge = Weight(side.count * weight, options.thickness + length / 3.0, 2.0 * height / 3.0)
+    return [*weights, wedge], pushes
+
+
+def _corner(options: LocalMechanism, density: float) -> Overturning:
+    """Two walls at right angles, each torn off by a crack that rises at an angle from the foot of the corner; they turn about
+    a level hinge across the outer edge, in the direction that halves the corner."""
+    height = float(options.height or 0.0) - options.hinge_height
+    thickness = float(options.thickness or 0.0)
+    length = height * math.tan(math.radians(float(options.crack_angle or 0.0)))
+    one = density * GRAVITY * thickness * 0.5 * height * length
+    arm = (length / 3.0 + thickness / 2.0) / math.sqrt(2.0)
+    weights = [Weight(2.0 * one, arm, 2.0 * height / 3.0)]
+    pushes = []
+    for floor in options.floors:
+        level = floor.height - options.hinge_height
+        if level >= 0.0 and floor.load > 0.0:
+            weights.append(Weight(floor.load, arm if floor.arm is None else floor.arm, level, floor.sways))
+        if level >= 0.0 and floor.thrust:
+            pushes.append(Push(floor.thrust, level))
+    pushes += [Push(-t.force, t.height - options.hinge_height) for t in options.ties if t.height > options.hinge_height]
+    return Overturning(tuple(weights), tuple(pushes))

@@ -1,0 +1,232 @@
+"""tilt of solids: the horizontal acceleration in any direction at which blocks in space become a mechanism."""
+
+import numpy as np
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.tables import Tilt
+from extrados.building.building import Building
+from extrados.building.geometry.assembly import GROUND
+from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.limit.errors import Immovable
+from extrados.limit.solids import Falls, Programme, SolidLimit
+from extrados.results import solids as out
+from extrados.results.model import Array, Result
+from extrados.results.solid_files import scene_files
+from extrados.schema.constants import GRAVITY
+
+FEW = 300  # stones: of more the rose is drawn on request alone
+DIRECTIONS = 16
+SHOWN = 0.08  # of the size: how far the fastest point goes in pictures of a mechanism
+STILL = 1e-3  # of the fastest: slower stones are said to stand
+SAME = 1e-7  # g: capacities that differ less are equal
+MOST_CONTACTS = 20
+MOST_NAMED = 4
+OPEN = 1e-6  # of the fastest: less is no opening
+
+
+def run(context: Context, options: Tilt) -> Result:
+    """Capacity along a direction and back, the mechanism, the rose of capacities, what certifies them."""
+    building = context.building
+    assembly = building.solids()
+    _refuse(building, options)
+    limit = SolidLimit(assembly, building.friction(assembly))
+    word = building.structure.word  # type: ignore[union-attr]
+    first = 0.0 if options.direction is None else options.direction
+    there, back = (_stands(limit.push(d), assembly, word) for d in (first, first + 180.0))
+    if there.gamma < 0.0 or back.gamma < 0.0:
+        low, high = sorted((there.gamma, -back.gamma))
+        raise Refused(
+            f"the {word} cannot stand under its own weight: it stands only when pushed along {first:g} degrees by {low:.4f} to "
+            f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work"
+        )
+    count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
+    angles, capacity = _rose(context, limit, assembly, word, first, count, there, back)
+    result = Result("tilt")
+    least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
+    opens = _openings(assembly, limit, there)
+    speed = np.linalg.norm(there.motion[:, :3], axis=1)
+    pose = _pose(assembly, there.motion)
+    found = out.SolidTilt(
+        collapse_acceleration_g=there.gamma, collapse_acceleration_opposite_g=back.gamma,
+        tilt_angle_deg=_degrees(there.gamma), tilt_angle_opposite_deg=_degrees(back.gamma), load_direction_deg=first,
+        least_acceleration_g=float(capacity[least]), least_direction_deg=float(angles[least]), blocks=len(assembly.mass),
+        contacts=len(assembly.a), moving_blocks=int((_fastest(assembly, there.motion) > STILL).sum()),
+        fastest_block=assembly.block_names[int(speed.argmax())], opening_contacts=opens[:MOST_CONTACTS],
+        weight_N=float(limit.weight.sum() + GRAVITY * assembly.fill[:, 1].sum()), upper_bound_g=there.upper,
+        duality_gap=max(there.gap, back.gap), equilibrium_residual=max(there.equilibrium, back.equilibrium),
+        friction_residual=max(there.cone, back.cone), overlap_residual=max(there.overlap, back.overlap),
+        **({} if options.pyramids is None else {"pyramids": _pyramids(limit, first, options.pyramids)}),
+    )  # fmt: skip
+    result.results = found
+    force, centre = _resultants(assembly, there)
+    result.arrays |= scene_arrays(assembly) | {
+        "contact_point": Array(assembly.corner, ("contact_corner", "axis3"), "m", "corners of the contact polygons"),
+        "contact_of": Array(assembly.corner_joint, ("contact_corner",), "", "contact of each corner"),
+        "contact_normal": Array(assembly.normal, ("contact", "axis3"), "", "normals of the contacts, into their first stone"),
+        "collapse_force": Array(there.force, ("contact_corner", "component"), "N", "compression and both shears at the corners at collapse"),
+        "contact_force": Array(force, ("contact", "axis3"), "N", "force on the first stone of each contact at collapse"),
+        "contact_centre": Array(centre, ("contact", "axis3"), "m", "where it acts: the centre of the compression"),
+        "velocity": Array(there.motion, ("block", "motion"), "m, m, m, rad, rad, rad", "mechanism: velocity of the centroid, spin"),
+        "mechanism_pose": Array(pose, ("block", "pose"), "m, m, m, rad, rad, rad", "the mechanism carried on: shift, rotation vector"),
+        "rose_direction": Array(angles, ("direction",), "deg", "directions of the rose"),
+        "rose_capacity": Array(capacity, ("direction",), "g", "capacity along them"),
+    }  # fmt: skip
+    result.files |= scene_files(assembly.parts, assembly.owner, assembly.centroid, assembly.block_names, pose)
+    result.answer = _words(word, found, count)
+    return result
+
+
+def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
+    """What pictures need of the solids: vertices, faces as numbers of them one after the other, and whose they are."""
+    start = np.cumsum([0, *(len(p.vertices) for p in assembly.parts)])
+    faces = [np.array(f) + k for p, k in zip(assembly.parts, start[:-1].tolist(), strict=True) for f in p.faces]
+    owner = np.repeat(assembly.owner, [len(p.faces) for p in assembly.parts])
+    return {
+        "solid_vertex": Array(np.concatenate([p.vertices for p in assembly.parts]), ("vertex", "axis3"), "m", "vertices of the solids"),
+        "solid_face": Array(np.concatenate(faces), ("face_vertex",), "", "vertices of each face, counter-clockwise from outside"),
+        "solid_face_start": Array(np.cumsum([0, *map(len, faces)]), ("face_edge",), "", "first vertex of each face, and the end"),
+        "solid_face_block": Array(owner, ("face",), "", "stone of each face"),
+        "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the stones"),
+    }  # fmt: skip
+
+
+def _refuse(building: Building, options: Tilt) -> None:
+    """Refused where the deck asks for what is known in a plane section alone."""
+    asked = {
+        "[[ties]]": bool(building.ties), "load": bool(options.load), "fracture": options.fracture,
+        'friction_rule = "non-associated"': options.friction_rule != "associated",
+        "compressive_strength": building.material.compressive_strength is not None,
+    }  # fmt: skip
+    for what, there in asked.items():
+        if there:
+            raise Refused(f"tilt of solids does not reckon with {what}: leave it out, or look at a plane section")
+
+
+def _stands(found: Programme | Falls, assembly: SolidAssembly, word: str) -> Programme:
+    if isinstance(found, Falls):
+        name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
+        raise Refused(
+            f"the {word} cannot stand under its own weight; proof: a motion, fastest at {name}, that no contact "
+            "hinders and by which the weights do work"
+        )
+    return found
+
+
+def _rose(
+    context: Context, limit: SolidLimit, assembly: SolidAssembly, word: str, first: float, count: int, there: Programme,
+    back: Programme,
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """Directions [deg] and capacities [g], infinite where no push brings it down: all around, or only there and back."""
+    if not count:
+        return np.array([first, first + 180.0]), np.array([there.gamma, back.gamma])
+    angles = first + 360.0 * np.arange(count) / count
+    known = {0.0: there.gamma, 180.0: back.gamma}
+    found = []
+    for k, angle in enumerate(angles.tolist()):
+        context.progress(k, count, "directions")
+        turn = round(angle - first, 9)
+        try:
+            found.append(known[turn] if turn in known else _stands(limit.push(angle), assembly, word).gamma)
+        except Immovable:
+            found.append(np.inf)
+    return angles, np.array(found)
+
+
+def _pyramids(limit: SolidLimit, direction: float, sides: int) -> out.Pyramids:
+    low, high = (None if not np.isfinite(g) else g for g in limit.pyramids(direction, sides))
+    return out.Pyramids(sides=sides, lower_g=low, upper_g=high)
+
+
+def _degrees(gamma: float) -> float:
+    """Tilt of the ground at which gravity has a part along it of gamma (thesis Eq. 3.1)."""
+    return float(np.degrees(np.arctan(gamma)))
+
+
+def _rates(assembly: SolidAssembly, motion: np.ndarray, points: np.ndarray, block: np.ndarray) -> np.ndarray:
+    """Velocities (n, 3) of points of stones, nought of those of the ground."""
+    found = np.zeros((len(points), 3))
+    on = block != GROUND
+    arm = points[on] - assembly.centroid[block[on]]
+    found[on] = motion[block[on], :3] + np.cross(motion[block[on], 3:], arm)
+    return found
+
+
+def _fastest(assembly: SolidAssembly, motion: np.ndarray) -> np.ndarray:
+    """Speed of the fastest vertex of each stone, over that of all."""
+    points = np.concatenate([p.vertices for p in assembly.parts])
+    owner = np.repeat(assembly.owner, [len(p.vertices) for p in assembly.parts])
+    speed = np.linalg.norm(_rates(assembly, motion, points, owner), axis=1)
+    found = np.zeros(len(assembly.mass))
+    np.maximum.at(found, owner, speed)
+    return found / found.max()
+
+
+def _pose(assembly: SolidAssembly, motion: np.ndarray) -> np.ndarray:
+    """The mechanism carried on until the fastest vertex has gone SHOWN of the size: shifts of the centroids and rotation
+    vectors (nb, 6)."""
+    points = np.concatenate([p.vertices for p in assembly.parts])
+    owner = np.repeat(assembly.owner, [len(p.vertices) for p in assembly.parts])
+    speed = np.linalg.norm(_rates(assembly, motion, points, owner), axis=1).max()
+    return motion * (SHOWN * assembly.size / speed)
+
+
+def _resultants(assembly: SolidAssembly, found: Programme) -> tuple[np.ndarray, np.ndarray]:
+    """Force on the first stone of each contact (nj, 3) [N], and the centre of its compression (nj, 3) [m], the middle of a
+    contact without any."""
+    joint, count = assembly.corner_joint, len(assembly.a)
+    frames = np.stack([assembly.normal, *assembly.tangents], axis=1)
+    at_corner = np.einsum("vk,vkx->vx", found.force, frames[joint])
+    pressure = np.maximum(found.force[:, 0], 0.0) + 1e-12 * max(float(found.force[:, 0].max()), 1e-300)
+    total = np.bincount(joint, pressure, count)
+    force, centre = (
+        np.stack([np.bincount(joint, values[:, k], count) for k in range(3)], axis=1)
+        for values in (at_corner, pressure[:, None] * assembly.corner)
+    )
+    return force, centre / total[:, None]
+
+
+def _openings(assembly: SolidAssembly, limit: SolidLimit, found: Programme) -> list[out.OpenContact]:
+    """Contacts that open or slide, the fastest first."""
+    joint = assembly.corner_joint
+    rate = _rates(assembly, found.motion, assembly.corner, assembly.a[joint]) - _rates(
+        assembly, found.motion, assembly.corner, assembly.b[joint]
+    )
+    opening = (rate * assembly.normal[joint]).sum(axis=1)
+    sliding = np.linalg.norm(rate - opening[:, None] * assembly.normal[joint], axis=1)
+    points = np.concatenate([p.vertices for p in assembly.parts])
+    owner = np.repeat(assembly.owner, [len(p.vertices) for p in assembly.parts])
+    fastest = np.linalg.norm(_rates(assembly, found.motion, points, owner), axis=1).max()
+    most = np.zeros((2, len(assembly.a)))
+    for row, values in zip(most, (opening, sliding), strict=True):
+        np.maximum.at(row, joint, values / fastest)
+    order = np.argsort(-most.max(axis=0), kind="stable")
+    rows = []
+    for j in order[most.max(axis=0)[order] > OPEN][:MOST_CONTACTS].tolist():
+        x, y, z = assembly.polygon[j].mean(axis=0)
+        rows.append(
+            out.OpenContact(
+                joint=j, name=assembly.joint_names[j], opening=most[0, j], sliding=most[1, j], x_m=x, y_m=y, z_m=z
+            )
+        )
+    return rows
+
+
+def _words(word: str, r: out.SolidTilt, count: int) -> str:
+    along = f"along {r.load_direction_deg:g} degrees in plan"
+    text = (
+        f"The {word} becomes a mechanism at a constant horizontal acceleration of {r.collapse_acceleration_g:.4f} g {along}, or when "
+        f"its base is tilted by {r.tilt_angle_deg:.2f} degrees; the opposite way it bears {r.collapse_acceleration_opposite_g:.4f} g. "
+    )
+    moving = (
+        "all of its stones move" if r.moving_blocks == r.blocks else f"{r.moving_blocks} of its {r.blocks} stones move"
+    )
+    names = [c.name for c in r.opening_contacts[:MOST_NAMED]]
+    opens = f"; it opens most at {', '.join(names)}" if names else ""
+    text += f"In the mechanism {moving}, {r.fastest_block} fastest{opens}. "
+    if count:
+        text += f"Of {count} directions it bears least along {r.least_direction_deg % 360.0:g} degrees: {r.least_acceleration_g:.4f} g. "
+    text += f"The bounds from equilibrium and from the mechanism differ by {r.duality_gap:.1e} g."
+    if r.pyramids is not None:
+        low, high = ("none" if g is None else f"{g:.4f} g" for g in (r.pyramids.lower_g, r.pyramids.upper_g))
+        text += f" Friction pyramids of {r.pyramids.sides} sides bound it by {low} and {high}."
+    return text

@@ -1,0 +1,1 @@
+"""Buildings of flat shells by sequentially linear analysis."""

@@ -1,0 +1,298 @@
+"""A building of shells and the options of its deck made into a model of the core: freedoms, groups, nodal forces."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.shell.tables import Pushover
+from extrados.analyses.sla.model import POINTS_PER_THREAD, bands_of, crushing_of, laws_of, softening_of
+from extrados.building.errors import BadGeometry
+from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellPart
+from extrados.core import sla as core
+from extrados.core.shell import node_frames
+from extrados.schema.constants import GRAVITY
+
+#: Iterations of the lowest modes; the vectors that go with them
+ROUNDS, VECTORS = 12, 4
+
+
+@dataclass
+class ShellModel:
+    """A building ready for the core. constant, reference: nodal forces (nodes, 6) [N]; unit: resultant of the reference
+    load, by which lambda becomes a force [N]; control: the displacement that is followed."""
+
+    mesh: ShellMesh
+    freedoms: core.Freedoms
+    groups: list
+    behaviour: core.Behaviour
+    constant: np.ndarray
+    reference: np.ndarray
+    unit: float
+    control: core.Monitor
+    along: np.ndarray  # (3) direction of the push
+    weight: float  # [N]
+    axes: list[np.ndarray]  # of the elements of each part, rows x, y, normal
+    mechanism_ratio: float
+    acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
+    slides = False
+    driven = False  # supports do not move
+    already = 0.0
+    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # of the supports that go down [m]
+    warnings: list[str] = field(default_factory=list)
+
+    def open(self, options: Pushover, threads: int) -> core.Model:
+        """The model in the core; Refused names a free node or a bad element."""
+        points = sum(len(g.connect) * g.points_each for g in self.groups if isinstance(g, core.Shells))
+        threads = max(1, min(threads, points // POINTS_PER_THREAD))
+        try:
+            return core.Model(
+                self.mesh.xyz, self.freedoms, self.groups, self.behaviour, algorithm=options.algorithm, threads=threads
+            )
+        except core.FreeNode as error:
+            x, y, z = self.mesh.xyz[error.node]
+            raise Refused(
+                f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
+                f"{error.direction}; what stands there hangs on nothing"
+            ) from None
+        except core.BadElement as error:
+            raise Refused(str(error)) from None
+
+    def places(self) -> list[tuple[ShellPart, slice, int]]:
+        """Parts that bend, the points of each, and the layers: its points are (elements, places, layers)."""
+        found, first = [], 0
+        for part, group in zip(self.mesh.parts, self.groups, strict=False):
+            count = len(group.connect) * group.points_each
+            if part.bends:
+                found.append((part, slice(first, first + count), group.layers))
+            first += count
+        return found
+
+
+def build(mesh: ShellMesh, options: Pushover) -> ShellModel:
+    """Model of a building; Refused says what does not fit."""
+    try:
+        return _build(mesh, options)
+    except BadGeometry as error:
+        raise Refused(str(error)) from None
+
+
+def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
+    frames, flat = node_frames(mesh.xyz, [part.connect for part in mesh.parts if part.bends])
+    held = set(mesh.held) | {(int(n), 5) for n in np.flatnonzero(flat)}
+    angle = np.radians(options.direction)
+    along = np.array([np.cos(angle), np.sin(angle), 0.0])
+    along[np.abs(along) < 1e-12] = 0.0
+    ties, groups, axes = [], [], []
+    if options.drives:
+        ties.append(_tie(mesh, options, along, held))
+    down, settled = _settlements(mesh, options, held)
+    freedoms = core.Freedoms.make(len(mesh.xyz), sorted(held), [*down, *ties], of_node=6)
+    if down:  # those of the supports that move come last
+        count, number = int(freedoms.equation.max()) + 1, freedoms.equation
+        freedoms = core.Freedoms(np.where(number < 0, -1, (number - len(down)) % count), freedoms.factor, len(down))
+    for part in mesh.parts:
+        own = core.shell_axes(mesh.xyz, part.connect)
+        axes.append(own)
+        groups.append(_shells(mesh, part, own, frames, flat, options))
+    for bar in mesh.bars:
+        groups.append(_bar(mesh, bar, options))
+    if mesh.springs:
+        node, direction, stiffness = (np.array(column) for column in zip(*mesh.springs, strict=True))
+        groups.append(
+            core.Springs(
+                np.column_stack([node, np.full(len(node), -1)]), np.column_stack([direction, direction]),
+                stiffness.astype(float),
+            )
+        )  # fmt: skip
+    mass = mesh.mass()
+    constant = np.zeros((len(mesh.xyz), 6))
+    constant[:, 2] = -GRAVITY * mass
+    constant[:, :3] += mesh.push
+    for bar in mesh.bars:
+        if bar.prestress:
+            way = mesh.xyz[bar.nodes[1]] - mesh.xyz[bar.nodes[0]]
+            pull = bar.prestress * way / np.linalg.norm(way)
+            constant[bar.nodes[0], :3] += pull
+            constant[bar.nodes[1], :3] -= pull
+    reference = np.zeros_like(constant)
+    weight, acceleration = float(GRAVITY * mass.sum()), None
+    if not weight > 0.0:
+        raise BadGeometry("a building without weight: give the material a density")
+    behaviour = core.Behaviour(options.cracking, options.shear_retention, options.crack_closure)
+    control = _control(mesh, options, along)
+    model = ShellModel(
+        mesh,
+        freedoms,
+        groups,
+        behaviour,
+        constant,
+        reference,
+        1.0,
+        control,
+        along,
+        weight,
+        axes,
+        options.mechanism_ratio,
+        settled=settled,
+    )
+    if options.drives:
+        node, direction, share = max(ties[0], key=lambda term: abs(term[2]))
+        reference[node, direction] = 1.0 / share  # a unit of force on the displacement they share
+    else:
+        reference[:, :3] = GRAVITY * (mass * _pattern(model, options, mass))[:, None] * along
+        if options.pattern == "mass":
+            acceleration = GRAVITY
+        model.unit = float(np.abs(reference[:, :3] @ along).sum())
+    model.acceleration = acceleration
+    model.warnings += mesh.warnings
+    return model
+
+
+def _level_of(mesh: ShellMesh, storey: int, what: str) -> float:
+    if storey >= len(mesh.levels):
+        raise BadGeometry(f"{what}: there is no storey {storey}, there are {len(mesh.levels) - 1}")
+    return float(mesh.levels[storey])
+
+
+def nodes_on(mesh: ShellMesh, wall: int, level: float) -> np.ndarray:
+    """The nodes of a wall at a height."""
+    nodes = mesh.wall_nodes(wall)
+    return nodes[np.abs(mesh.xyz[nodes, 2] - level) < 1e-6]
+
+
+def _place(mesh: ShellMesh, drive, what: str) -> np.ndarray:
+    names = [wall.name for wall in mesh.walls]
+    if drive.wall not in names:
+        raise BadGeometry(f"{what}: there is no wall '{drive.wall}'; there are {', '.join(names)}")
+    nodes = nodes_on(mesh, names.index(drive.wall), _level_of(mesh, drive.storey, what))
+    if not len(nodes):
+        raise BadGeometry(f"{what}: wall '{drive.wall}' does not reach the top of storey {drive.storey}")
+    return nodes
+
+
+def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> list[tuple[int, int, float]]:
+    """Freedoms that move by given parts of one displacement."""
+    if np.abs(along).max() < 1.0:
+        raise BadGeometry("drives: a prescribed displacement goes along x or y: direction is 0, 90, 180 or 270")
+    axis = int(np.abs(along).argmax())
+    tie: dict[int, float] = {}
+    for k, drive in enumerate(options.drives, 1):
+        for node in _place(mesh, drive, f"drives {k}").tolist():
+            share = drive.ratio * float(along[axis])
+            if tie.setdefault(node, share) != share:
+                raise BadGeometry(f"drives {k}: a node of wall '{drive.wall}' is driven with another ratio already")
+    if clash := [n for n in tie if (n, axis) in held]:
+        raise BadGeometry(f"drives: node {clash[0] + 1} is held")
+    return [(n, axis, share) for n, share in sorted(tie.items())]
+
+
+def _settlements(
+    mesh: ShellMesh, options: Pushover, held: set
+) -> tuple[list[list[tuple[int, int, float]]], np.ndarray]:
+    """Freedoms of the supports that go down, by settlement, and how far [m]; they are held no longer."""
+    ties, far = [], []
+    names = [wall.name for wall in mesh.walls]
+    for k, part in enumerate(options.settlements, 1):
+        if part.wall not in names:
+            raise BadGeometry(f"settlements {k}: there is no wall '{part.wall}'; there are {', '.join(names)}")
+        w = names.index(part.wall)
+        nodes = nodes_on(mesh, w, 0.0)
+        along = mesh.walls[w].unfolded(mesh.xyz[nodes])[:, 0]
+        low, high = part.x or (-np.inf, np.inf)
+        inside = nodes[(along >= low - 1e-6) & (along <= high + 1e-6)]
+        free = [(int(n), 2, 1.0) for n in inside if (int(n), 2) in held]
+        if not free:
+            raise BadGeometry(f"settlements {k}: no support of wall '{part.wall}' lies there that holds it upright")
+        held -= {(n, 2) for n, *_ in free}
+        ties.append(free)
+        far.append(-part.down)
+    return ties, np.array(far)
+
+
+def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray) -> core.Monitor:
+    """The mean displacement in the direction of the push."""
+    if options.control is not None:
+        nodes = _place(mesh, options.control, "control")
+    elif options.drives:
+        nodes = np.unique(np.concatenate([_place(mesh, d, "drives") for d in options.drives if d.ratio == 1.0]))
+    else:
+        nodes = np.unique(np.concatenate([nodes_on(mesh, w, mesh.levels[-1]) for w in range(len(mesh.walls))]))
+    if not len(nodes):
+        raise BadGeometry("control: no wall reaches the highest level; name a wall and a storey")
+    axis = np.flatnonzero(along)
+    return core.Monitor(
+        np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.tile(along[axis] / len(nodes), len(nodes))
+    )
+
+
+def _pattern(model: ShellModel, options: Pushover, mass: np.ndarray) -> np.ndarray:
+    """Factor on the mass of each node."""
+    z = model.mesh.xyz[:, 2]
+    if options.pattern == "triangular":
+        return z * mass.sum() / (mass @ z)
+    if options.pattern == "modal":
+        shape, *_ = first_mode(model, options, mass)
+        return shape * mass.sum() / (mass @ shape)
+    return np.ones(len(z))
+
+
+def first_mode(model: ShellModel, options: Pushover, mass: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Displacement in the push's direction of the mode with the most mass in it, among the lowest few of the uncracked
+    building; its frequency [Hz]; the part of the mass that takes part. By subspace iteration."""
+    nodes = len(mass)
+    rng = np.random.default_rng(1)
+    start = [np.tile(model.along, (nodes, 1)), model.mesh.xyz[:, 2:] * model.along]
+    start += [rng.standard_normal((nodes, 3)) for _ in range(VECTORS - len(start))]
+    vectors = np.stack(start)
+    zero = np.zeros((nodes, 6))
+    with model.open(options, 1) as core_model:
+        for _ in range(ROUNDS):
+            moved = []
+            for vector in vectors:
+                load = zero.copy()
+                load[:, :3] = mass[:, None] * vector
+                core_model.loads(zero, load)
+                moved.append(core_model.displacement(1.0)[:, :3])
+            moved = np.stack(moved)
+            stiff = np.einsum("inx,n,jnx->ij", moved, mass, vectors)
+            heavy = np.einsum("inx,n,jnx->ij", moved, mass, moved)
+            inverse = np.linalg.inv(np.linalg.cholesky(heavy))
+            values, turned = np.linalg.eigh(inverse @ (0.5 * (stiff + stiff.T)) @ inverse.T)
+            vectors = np.einsum("ik,inx->knx", inverse.T @ turned, moved)
+    part = np.array([(mass @ (v @ model.along)) ** 2 for v in vectors]) / mass.sum()  # of vectors with a unit of mass
+    best = int(part.argmax())
+    shape = vectors[best] @ model.along
+    return shape * np.sign(mass @ shape), float(np.sqrt(values[best]) / (2.0 * np.pi)), float(part[best])
+
+
+def _shells(
+    mesh: ShellMesh, part: ShellPart, axes: np.ndarray, frames: np.ndarray, flat: np.ndarray, options: Pushover
+) -> core.Shells:
+    materials = [mesh.materials[m] for m in part.material]
+    corners = mesh.xyz[part.connect]
+    local = np.einsum("eax,ecx->eca", axes[:, :2], corners - corners.mean(axis=1, keepdims=True)).reshape(-1, 2)
+    alone = np.arange(len(local)).reshape(part.connect.shape)
+    # Equal elements have equal bands: their tooth tables are made once
+    band, reach = (None if b is None else np.round(b, 9) for b in bands_of(local, part.kind, alone, options))
+    tension, crushing, beds = laws_of(materials, part.linear, part.strength, band, reach, options)
+    return core.Shells(
+        part.kind, part.connect, part.thickness, np.array([m.young for m in materials]),
+        np.array([m.poisson for m in materials]), band,
+        tension if any(t is not None for t in tension) else None,
+        crushing if any(c is not None for c in crushing) else None,
+        np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
+        selective=options.mesh.selective and part.kind == "Q4", reach=reach,
+        confinement=np.array([m.confinement for m in materials]),
+        bedding=beds if any(bed is not None for bed in beds) else None, frames=frames, flat=flat,
+        layers=options.mesh.layers if part.bends else 1, through=options.mesh.through if part.bends else "gauss",
+        bends=part.bends,
+    )  # fmt: skip
+
+
+def _bar(mesh: ShellMesh, bar: ShellBar, options: Pushover) -> core.Bars:
+    length = float(np.linalg.norm(mesh.xyz[bar.nodes[1]] - mesh.xyz[bar.nodes[0]]))
+    return core.Bars(
+        np.array([bar.nodes]), bar.area, bar.material.young, options.crack_band or length,
+        softening_of(bar.material, options), crushing_of(bar.material, options),
+    )  # fmt: skip

@@ -1,0 +1,394 @@
+"""pushover: a building of walls and floors under growing horizontal forces (thesis 4.4)."""
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.batches import Chain
+from extrados.analyses.context import Context
+from extrados.analyses.shell.model import ShellModel, build, first_mode
+from extrados.analyses.shell.sections import Section, cracks, drifts, point_places, sections
+from extrados.analyses.shell.tables import Pushover, Variant
+from extrados.analyses.sla.events import Curve, run_curves
+from extrados.analyses.sla.kept import State
+from extrados.analyses.sla.measures import numbers_of
+from extrados.analyses.sla.stored import events_of_curve
+from extrados.building.building import Building
+from extrados.core.calls import interruptible
+from extrados.core.sla import EVENT
+from extrados.results import shell as out
+from extrados.results.model import Array, Result, TableData
+from extrados.results.sla import PREFIXES
+from extrados.results.vtu import pvd, vtu
+
+#: Part of the weight that walls across the push must take up or down to count as working flanges
+WORKING = 0.05
+
+
+def run(context: Context, options: Pushover) -> Result:
+    """The curves of all senses, and of the variants."""
+    with interruptible():  # Ctrl-C between two batches only ends the events: what was found is kept
+        return _run(context, options)
+
+
+def _run(context: Context, options: Pushover) -> Result:
+    result = Result("pushover")
+    model = build(context.building.shell(options.mesh), options)
+    context.warnings += model.warnings
+    elastic = _elastic(model, options)
+    curves = _curves(context, model, options)
+    numbers: dict[str, Any] = {}
+    for curve, prefix in zip(curves, PREFIXES, strict=False):
+        own = _numbers(model, options, curve, elastic)
+        if prefix:
+            numbers["minus"] = own
+        else:
+            numbers |= own
+        result.warnings += [*curve.warnings, *_remarks(model, curve)]
+        events_of_curve(result, model.unit, curve, prefix)
+        _state_arrays(result, model, curve, prefix)
+    _mesh_arrays(result, model)
+    first = curves[0]
+    numbers |= {
+        "weight_N": model.weight, "reference_load_N": model.unit, "direction_deg": float(options.direction),
+        "pattern": "drives" if options.drives else options.pattern, "cracking": options.cracking,
+        "layers": options.mesh.layers, "nodes": len(model.mesh.xyz), "elements": model.mesh.elements(),
+        "equations": first.equations, "points": first.points, "factor_bytes": elastic["bytes"],
+    }  # fmt: skip
+    if options.pattern == "modal" and not options.drives:
+        _, numbers["frequency_Hz"], numbers["modal_mass_ratio"] = first_mode(model, options, model.mesh.mass())
+    interrupted = any(c.events.interrupted for c in curves)
+    if options.variants and not interrupted:
+        numbers |= _variants(context, options, result, numbers)
+    result.results = out.Pushover(**numbers)
+    result.answer = _answer(context.building, options, numbers)
+    if interrupted:
+        again = "; --resume goes on from them" if context.checkpoint is not None else ""
+        result.status, result.reason = "interrupted", f"interrupted; the events up to then are kept{again}"
+    return result
+
+
+def _curves(context: Context, model: ShellModel, options: Pushover) -> list[Curve]:
+    made = [
+        np.concatenate([p.connect.ravel() for p in model.mesh.parts]), model.mesh.xyz, model.constant, model.reference,
+    ]  # fmt: skip
+    materials = [m.model_dump_json() for m in model.mesh.materials]
+    thickness = [p.thickness for p in model.mesh.parts]
+
+    def chain(of: Any) -> Chain:
+        return Chain(context, "pushover", [options, of, model.freedoms, *made, materials, *thickness])
+
+    return run_curves(model, options, context.threads, _progress(context, model, options), None, chain)
+
+
+def _progress(context: Context, model: ShellModel, options: Pushover) -> Callable[[float, float, str], None]:
+    """Progress by base shear over the weight, and how long the events that are allowed would take."""
+    begin = time.perf_counter()
+
+    def tell(done: float, total: float, text: str) -> None:
+        left = (time.perf_counter() - begin) * max(total - done, 0.0) / max(done, 1.0)
+        hours = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
+        context.progress(done, total, f"{text}; {model.weight / 1e3:.4g} kN weight; at most {hours} more")
+
+    return tell
+
+
+def _elastic(model: ShellModel, options: Pushover) -> dict[str, Any]:
+    """Forces at the feet of the walls before anything cracks: under the constant loads, and of a unit of base shear."""
+    with model.open(options, 1) as core_model:
+        core_model.loads(model.constant, model.reference)
+        under, more = core_model.report(0.0), core_model.report(1.0)
+        bytes_of = 8 * core_model.factor_values
+    constant, both = sections(model, under), sections(model, more)
+    return {"constant": constant, "pushed": both, "bytes": bytes_of}
+
+
+def _by_wall(model: ShellModel, found: list[Section]) -> tuple[np.ndarray, np.ndarray]:
+    """Shear along each wall and normal force at the feet [N]."""
+    shear, normal = np.zeros(len(model.mesh.walls)), np.zeros(len(model.mesh.walls))
+    for section in found:
+        if section.storey == 1:
+            shear[section.wall] += section.shear
+            normal[section.wall] += section.normal
+    return shear, normal
+
+
+def _numbers(model: ShellModel, options: Pushover, curve: Curve, elastic: dict[str, Any]) -> dict[str, Any]:
+    """Results of one curve."""
+    numbers = numbers_of(model, options, curve)
+    state = next((s for s in curve.states if s.event == curve.peak), None)
+    force = curve.force(model.unit)
+    greatest = numbers["greatest_load_N"]
+    numbers |= {
+        "base_shear_coefficient": None if greatest is None else greatest / model.weight, "roof_drift": None,
+        "storey_drifts": [], "walls": [], "cracked_points_by_storey": [],
+    }  # fmt: skip
+    crack = _first_crack(model, curve)
+    if crack is not None:
+        numbers["first_crack"] = crack
+    if state is None:
+        return numbers
+    base = float(force[state.event])
+    height = float(model.mesh.xyz[model.control.node, 2].mean())
+    numbers["roof_drift"] = numbers["greatest_load_displacement_m"] / height
+    every, walls = drifts(model, state.displacement, curve.sign)
+    numbers["storey_drifts"] = every.tolist()
+    shear, normal = _by_wall(model, sections(model, state.report))
+    shear0, normal0 = _by_wall(model, elastic["constant"])
+    shear1, _ = _by_wall(model, elastic["pushed"])
+    # Forces of a section are those of what is above on what is below
+    facing = np.array([float(wall.along @ model.along[:2]) for wall in model.mesh.walls])
+    carried = curve.sign * shear * facing
+    numbers["walls"] = [
+        {
+            "wall": wall.name, "shear_N": float(carried[w]), "share": float(carried[w] / base) if base else 0.0,
+            "normal_N": float(normal[w]), "normal_change_N": float(normal[w] - normal0[w]),
+            "elastic_share": float((shear1[w] - shear0[w]) * facing[w] / model.unit), "drifts": walls[w].tolist(),
+        }
+        for w, wall in enumerate(model.mesh.walls)
+    ]  # fmt: skip
+    across = np.abs(facing) < 0.5
+    if across.any() and base:
+        change = (normal - normal0)[across]
+        up, down = float(change[change > 0].sum()), float(-change[change < 0].sum())
+        numbers["flanges"] = {
+            "share": float(1.0 - carried[~across].sum() / base), "uplift_N": up, "pressure_N": down,
+            "working": max(up, down) > WORKING * model.weight,
+        }  # fmt: skip
+    seen = cracks(model, state.report)["part"] > 0.0
+    storey = point_places(model)["storey"]
+    numbers["cracked_points_by_storey"] = np.bincount(storey[seen], minlength=len(model.mesh.levels))[1:].tolist()
+    return numbers
+
+
+def _first_crack(model: ShellModel, curve: Curve) -> dict[str, Any] | None:
+    """Where the first tooth of the push passes, or of the weight before it."""
+    for events, loads in (
+        (curve.stage_a, lambda e: np.zeros(len(e))), (curve.events, lambda _: curve.force(model.unit)),
+    ):  # fmt: skip
+        if events is None or not len(events):
+            continue
+        hits = np.flatnonzero(np.isin(events.code, [EVENT["tension"], EVENT["tension_s"]]) & (events.point >= 0))
+        for k in hits:
+            at = _place_of(model, int(events.point[k]))
+            if at is not None:
+                return at | {"base_shear_N": float(loads(events)[k])}
+    return None
+
+
+def _place_of(model: ShellModel, point: int) -> dict[str, Any] | None:
+    """The wall, storey and place of a point; None of floors and bars."""
+    place, places = 0, point_places(model)
+    for part, points, layers in model.places():
+        if points.start <= point < points.stop:
+            k = place + (point - points.start) // layers
+            if part.wall < 0:
+                return None
+            return {
+                "wall": part.name, "storey": int(places["storey"][k]), "along_m": float(places["s"][k]),
+                "height_m": float(places["z"][k]),
+            }  # fmt: skip
+        place += (points.stop - points.start) // layers
+    return None
+
+
+def _remarks(model: ShellModel, curve: Curve) -> list[str]:
+    events, sense = curve.events, f" (push to {curve.sense})"
+    if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
+        return [
+            f"the base shear{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; "
+            f"its greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
+        ]
+    return []
+
+
+def _variants(context: Context, options: Pushover, result: Result, numbers: dict[str, Any]) -> dict[str, Any]:
+    """The first sense again with other assumptions."""
+    rows, greatest = [], [numbers["greatest_load_N"]]
+    once = options.model_copy(update={"directions": options.directions[:1], "variants": [], "states": []})
+    for k, variant in enumerate(options.variants, 1):
+        model = build(_varied(context.building, variant).shell(options.mesh), once)
+        curve = _curves(context, model, once)[0]
+        d, p = curve.envelope(model.unit)
+        found = numbers_of(model, once, curve)["greatest_load_N"]
+        result.arrays[f"variant_{k}_displacement"] = Array(
+            d, (f"variant_{k}",), "m", f"control displacement, {variant.name}", "variant_displacement"
+        )
+        result.arrays[f"variant_{k}_load"] = Array(
+            p, (f"variant_{k}",), "N", f"base shear, {variant.name}", "variant_load"
+        )
+        factors = {name: value for name, value in variant.model_dump().items() if name != "name" and value != 1.0}
+        rows.append(
+            {
+                "name": variant.name, "factors": factors, "greatest_base_shear_N": found,
+                "passed": curve.passed(model.unit),
+                "base_shear_coefficient": None if found is None else found / model.weight,
+            }
+        )  # fmt: skip
+        greatest.append(found)
+        if curve.events.interrupted:
+            break
+    known = [value for value in greatest if value is not None]
+    return {"variants": rows} | ({"band_N": [min(known), max(known)]} if known else {})
+
+
+def _varied(building: Building, variant: Variant) -> Building:
+    """The building with other material, thicknesses, floors and forces."""
+
+    def material(of):
+        scaled = {
+            name: getattr(of, name) * factor
+            for names, factor in (
+                (("tensile_strength", "tensile_strength_parallel", "shear_strength"), variant.strength),
+                (("fracture_energy", "fracture_energy_parallel"), variant.energy),
+                (("young",), variant.young), (("density",), variant.density),
+            )
+            for name in names
+            if getattr(of, name) is not None
+        }  # fmt: skip
+        return of.model_copy(update=scaled)
+
+    plan = building.structure
+    walls = [
+        wall.model_copy(
+            update={
+                "thickness": None if wall.thickness is None else variant.thickness * wall.thickness,
+                "thicknesses": [variant.thickness * t for t in wall.thicknesses],
+            }
+        )
+        for wall in plan.walls
+    ]
+    floors = [f if f.young is None else f.model_copy(update={"young": f.young * variant.floors}) for f in plan.floors]
+    prestress = [
+        p.model_copy(update={"force": p.force * variant.prestress}) for p in plan.prestress if variant.prestress > 0.0
+    ]
+    return replace(
+        building, material=material(building.material),
+        materials={name: material(of) for name, of in building.materials.items()},
+        structure=plan.model_copy(update={"walls": walls, "floors": floors, "prestress": prestress}), _views={},
+    )  # fmt: skip
+
+
+def _mesh_arrays(result: Result, model: ShellModel) -> None:
+    """Nodes, elements of the walls and of the floors, and the places in the planes of the walls."""
+    mesh = model.mesh
+    result.arrays["node"] = Array(mesh.xyz, ("nodes", "axis"), "m", "nodes of the mesh")
+    for k, part in enumerate(mesh.parts):
+        corner = 3 if part.kind == "T3" else 4
+        result.arrays[f"elements_{k}"] = Array(
+            part.connect, (f"elements_of_{k}", f"corner_{corner}"), "", f"nodes of {part.name}, from 0", "elements"
+        )
+        result.arrays[f"wall_of_{k}"] = Array(
+            np.array([part.wall]), ("one",), "", f"the wall that {part.name} is of, from 0; -1 a floor", "wall_of"
+        )
+    walls = np.array([[*w.origin, *w.along, w.length] for w in mesh.walls])
+    result.arrays["wall"] = Array(walls, ("walls", "wall_row"), "m", "origin and direction on the plan, and length")
+    result.arrays["level"] = Array(mesh.levels, ("levels",), "m", "heights of the ground and the storeys")
+    for name, values in point_places(model).items():
+        unit = "m" if name in "sz" else ""
+        result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"of the places in the walls: {name}")
+
+
+def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) -> None:
+    """Displacements, cracks and the forces of the piers of the kept states, and their fields as VTU."""
+    if not curve.states:
+        return
+    states, dims = curve.states, (f"{prefix}states",)
+    force = curve.force(model.unit)
+    result.arrays[f"{prefix}state_event"] = Array(np.array([s.event + 1 for s in states]), dims, "", "event, from 1")
+    result.arrays[f"{prefix}state_load"] = Array(force[[s.event for s in states]], dims, "N", "base shear")
+    result.arrays[f"{prefix}state_displacement"] = Array(
+        np.stack([s.displacement[:, :3] for s in states]), (*dims, "nodes", "axis"), "m", "displacements of the nodes"
+    )
+    seen = [cracks(model, s.report) for s in states]
+    for name, unit, about in (
+        ("width", "m", "greatest width of a crack through the thickness"), ("angle", "rad", "of its normal to the wall"),
+        ("part", "", "part of the thickness that has cracked"),
+    ):  # fmt: skip
+        result.arrays[f"{prefix}state_{name}"] = Array(
+            np.stack([s[name] for s in seen]), (*dims, "places"), unit, about
+        )
+    _pier_table(result, model, curve, states, prefix)
+    _fields(result, model, states, seen, prefix)
+
+
+def _pier_table(result: Result, model: ShellModel, curve: Curve, states: list[State], prefix: str) -> None:
+    state = next((s for s in states if s.event == curve.peak), states[-1])
+    rows = sections(model, state.report)
+    result.tables[f"piers_{prefix}".rstrip("_")] = TableData(
+        {
+            "wall": [model.mesh.walls[r.wall].name for r in rows], "storey": [r.storey for r in rows],
+            "from": [r.start for r in rows], "to": [r.end for r in rows], "normal": [r.normal for r in rows],
+            "shear": [r.shear for r in rows], "moment": [r.moment for r in rows],
+        },
+        {"from": "m", "to": "m", "normal": "N", "shear": "N", "moment": "N m"},
+    )  # fmt: skip
+
+
+def _fields(
+    result: Result, model: ShellModel, states: list[State], seen: list[dict[str, np.ndarray]], prefix: str
+) -> None:
+    """The states for ParaView; floors have no cracks."""
+    name, series = f"fields_{prefix}".rstrip("_"), []
+    walls = [part for part in model.mesh.parts if part.bends]
+    cells = [(part.kind, part.connect) for part in [*walls, *(p for p in model.mesh.parts if not p.bends)]]
+    element = point_places(model)["element"]
+    count = sum(len(connect) for _, connect in cells)
+    for state, crack in zip(states, seen, strict=True):
+        width, part = np.zeros(count), np.zeros(count)
+        np.maximum.at(width, element, crack["width"])
+        np.maximum.at(part, element, crack["part"])
+        file = f"{name}/event_{state.event + 1:06d}.vtu"
+        result.files[file] = vtu(
+            model.mesh.xyz, cells, {"displacement": state.displacement[:, :3]},
+            {"crack_width": width, "cracked_part": part},
+        )  # fmt: skip
+        series.append((state.event + 1, file))
+    result.files[f"{name}.pvd"] = pvd(series)
+
+
+def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> str:
+    parts = []
+    for curve in [numbers, *([numbers["minus"]] if "minus" in numbers else [])]:
+        load = curve["greatest_load_N"]
+        sense = f"Pushed to {curve['sense']} ({options.direction:g} degrees on the plan)"
+        if load is None:
+            parts.append(f"{sense}: no state in equilibrium was found.")
+            continue
+        word = "bears" if curve["peak_load_N"] is not None else "has reached, without a peak,"
+        text = (
+            f"{sense} the building {word} a base shear of {load / 1e3:.4g} kN, "
+            f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
+        )
+        if curve["roof_drift"] is not None:
+            text += f", at a drift of {100 * curve['roof_drift']:.2g} %"
+        if "first_crack" in curve:
+            crack = curve["first_crack"]
+            text += (
+                f"; it cracks first in wall {crack['wall']}, storey {crack['storey']}, {crack['along_m']:.3g} m along and "
+                f"{crack['height_m']:.3g} m up, under {crack['base_shear_N'] / 1e3:.3g} kN"
+            )
+        if curve["walls"]:
+            most = sorted(curve["walls"], key=lambda row: -row["share"])[:4]
+            text += "; " + ", ".join(
+                f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02
+            )
+        if "flanges" in curve:
+            flanges = curve["flanges"]
+            text += (
+                f"; walls across the push {'work as flanges' if flanges['working'] else 'hardly work with them'} "
+                f"({flanges['uplift_N'] / 1e3:.3g} kN up, {flanges['pressure_N'] / 1e3:.3g} kN down)"
+            )
+        parts.append(text + ".")
+    if numbers.get("band_N"):
+        low, high = numbers["band_N"]
+        parts.append(
+            f"Under the other assumptions of {len(numbers['variants'])} variants it is {low / 1e3:.4g} to {high / 1e3:.4g} kN."
+        )
+    assumed = getattr(building.structure, "assumed", [])
+    if assumed:
+        parts.append("Assumed, since its sources do not say: " + "; ".join(assumed) + ".")
+    return " ".join(parts)

@@ -1,0 +1,154 @@
+"""What is read off a state of a pushed building: forces in sections of its walls, drifts, cracks."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.shell.model import ShellModel, nodes_on
+
+
+@dataclass(frozen=True)
+class Section:
+    """A horizontal section through a pier, or a whole wall: forces [N], moment about its middle [N m]."""
+
+    wall: int
+    storey: int  # from 1
+    start: float  # along the wall [m]
+    end: float
+    normal: float  # compression negative
+    shear: float  # in the wall's plane, along it
+    moment: float
+
+
+def plane_stresses(report: dict[str, np.ndarray]) -> np.ndarray:
+    """(3, points) stresses x, y, xy in the axes of the elements [Pa]."""
+    c, s = report["cos"], report["sin"]
+    n, t, g = report["stress_n"], report["stress_s"], report["stress_ns"]
+    return np.stack(
+        [c**2 * n + s**2 * t - 2 * c * s * g, s**2 * n + c**2 * t + 2 * c * s * g, c * s * (n - t) + (c**2 - s**2) * g]
+    )
+
+
+def sections(model: ShellModel, report: dict[str, np.ndarray]) -> list[Section]:
+    """Forces in all piers at the foot of each storey, from the lowest row of elements of the storey.
+
+    Exact for the forces at the nodes by virtual work: all above the row moves along the wall, or up, and strains the row
+    alone, evenly. The moment is that of the normal stresses about the middle of the pier.
+    """
+    mesh, found = model.mesh, []
+    stress = plane_stresses(report)
+    for part, points, layers in model.places():
+        if part.wall < 0:
+            continue
+        corner = mesh.walls[part.wall].unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        low, high = corner[..., 1].min(axis=1), corner[..., 1].max(axis=1)
+        left, right = corner[..., 0].min(axis=1), corner[..., 0].max(axis=1)
+        volume = report["volume"][points].reshape(len(left), -1)
+        own = stress[:, points].reshape(3, len(left), -1)
+        at = _along(corner, layers)
+        for storey, level in enumerate(mesh.levels[:-1], 1):
+            row = np.flatnonzero(np.abs(low - level) < 1e-6)
+            row = row[np.argsort(left[row], kind="stable")]
+            gaps = np.flatnonzero(left[row][1:] > right[row][:-1] + 1e-6) + 1
+            for pier in np.split(row, gaps):
+                if not len(pier):
+                    continue
+                height = (high - low)[pier, None]
+                up = own[1, pier] * volume[pier] / height
+                middle = 0.5 * (left[pier[0]] + right[pier[-1]])
+                found.append(
+                    Section(
+                        part.wall, storey, float(left[pier[0]]), float(right[pier[-1]]), float(up.sum()),
+                        float((own[2, pier] * volume[pier] / height).sum()), float((up * (middle - at[pier])).sum()),
+                    )
+                )  # fmt: skip
+    return found
+
+
+def _along(corner: np.ndarray, layers: int) -> np.ndarray:
+    """Place along the wall of all points (elements, points) [m]."""
+    if corner.shape[1] == 3:
+        share = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4]]) / 6.0
+    else:
+        g = np.sqrt(1.0 / 3.0)
+        r, s = np.array([-g, g, -g, g]), np.array([-g, -g, g, g])
+        share = 0.25 * np.column_stack([(1 - r) * (1 - s), (1 + r) * (1 - s), (1 + r) * (1 + s), (1 - r) * (1 + s)])
+    return np.repeat(np.einsum("pc,ec->ep", share, corner[..., 0]), layers, axis=1)
+
+
+def point_places(model: ShellModel) -> dict[str, np.ndarray]:
+    """Of each place in the plane of the walls: part, wall (-1 none), s and z on the wall [m], storey from 1."""
+    columns: dict[str, list[np.ndarray]] = {"part": [], "wall": [], "s": [], "z": [], "storey": [], "element": []}
+    first = 0
+    for number, (part, _, _) in enumerate(model.places()):
+        corner = model.mesh.xyz[part.connect]
+        if part.wall >= 0:
+            flat = model.mesh.walls[part.wall].unfolded(corner.reshape(-1, 3)).reshape(*part.connect.shape, 2)
+        else:
+            flat = corner[..., :2]
+        s, z = _along(flat, 1), _along(flat[..., ::-1], 1)
+        count = s.size
+        columns["part"].append(np.full(count, number))
+        columns["wall"].append(np.full(count, part.wall))
+        columns["s"].append(s.ravel())
+        columns["z"].append(z.ravel())
+        height = _along(corner[..., 2][..., None], 1).ravel()
+        columns["storey"].append(np.clip(np.searchsorted(model.mesh.levels, height), 1, len(model.mesh.levels) - 1))
+        columns["element"].append(first + np.repeat(np.arange(len(part.connect)), s.shape[1]))
+        first += len(part.connect)
+    return {name: np.concatenate(column) for name, column in columns.items()}
+
+
+def cracks(model: ShellModel, report: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Of each place in the plane of the walls: greatest width of a crack through the thickness [m], the angle of its
+    normal to the element's x axis [rad], and the part of the thickness that has cracked."""
+    young = []
+    for part, _, layers in model.places():
+        each = np.array([m.young for m in model.mesh.materials])[part.material]
+        young.append(np.repeat(each, (4 if part.kind == "Q4" else 3) * layers))
+    count = sum(len(y) for y in young)
+    r = {name: _of_walls(model, values) for name, values in report.items()}
+    modulus = np.concatenate(young)
+    assert len(modulus) == count == len(r["cos"])
+    widths = []
+    for k in "ns":
+        extra = np.maximum(r[f"strain_{k}"] - r[f"stress_{k}"] / modulus, 0.0) * r["band"]
+        widths.append(np.where(r[f"ratio_{k}"] < 1.0, extra, 0.0))
+    angle = np.arctan2(r["sin"], r["cos"])
+    width, turned = np.maximum(*widths), np.where(widths[1] > widths[0], angle + 0.5 * np.pi, angle)
+    cracked = (r["tooth_n"] > 1) | (r["tooth_s"] > 1)
+    out: dict[str, list[np.ndarray]] = {"width": [], "angle": [], "part": []}
+    first = 0
+    for part, _, layers in model.places():
+        n = len(part.connect) * (4 if part.kind == "Q4" else 3) * layers
+        rows = slice(first, first + n)
+        first += n
+        w = width[rows].reshape(-1, layers)
+        at = w.argmax(axis=1)
+        out["width"].append(w.max(axis=1))
+        out["angle"].append(turned[rows].reshape(-1, layers)[np.arange(len(w)), at])
+        volume = r["volume"][rows].reshape(-1, layers)
+        out["part"].append((cracked[rows].reshape(-1, layers) * volume).sum(axis=1) / volume.sum(axis=1))
+    return {name: np.concatenate(column) for name, column in out.items()}
+
+
+def _of_walls(model: ShellModel, values: np.ndarray) -> np.ndarray:
+    """The points of parts that bend."""
+    return np.concatenate([values[points] for _, points, _ in model.places()])
+
+
+def drifts(model: ShellModel, displacement: np.ndarray, sign: int) -> tuple[np.ndarray, np.ndarray]:
+    """Drift of each storey along the push, of the whole and (walls, storeys) of each wall: the difference of the mean
+    displacements of its top and foot over its height; NaN where a wall has none."""
+    mesh, along = model.mesh, model.along
+    moved = sign * (displacement[:, :3] @ along)
+    levels = mesh.levels
+    walls = np.full((len(mesh.walls), len(levels)), np.nan)
+    every = np.full(len(levels), np.nan)
+    for k, level in enumerate(levels):
+        found = [nodes_on(mesh, w, level) for w in range(len(mesh.walls))]
+        for w, nodes in enumerate(found):
+            if len(nodes):
+                walls[w, k] = moved[nodes].mean()
+        every[k] = moved[np.unique(np.concatenate(found))].mean()
+    return np.diff(every) / np.diff(levels), np.diff(walls, axis=1) / np.diff(levels)

@@ -1,0 +1,112 @@
+"""The deck table of the push of a building."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from extrados.analyses.sla.tables import CrackOptions
+from extrados.analyses.table import BuildingAnalysis
+from extrados.building.mesh.shells import ShellOptions
+from extrados.building.places import Range
+from extrados.schema.quantities import Angle, Length
+from extrados.schema.table import Table, key
+
+
+class Drive(Table):
+    """Nodes that are pushed by a given part of one displacement."""
+
+    wall: str = key(about="name of the wall", min_length=1, max_length=40)
+    storey: int = key(about="on top of this storey", ge=1)
+    ratio: float = key(1.0, "its part of the displacement", gt=0, le=1e3)
+
+
+class Settlement(Table):
+    """Ground that goes down under a wall, with the weight and before the push; the damage stays."""
+
+    wall: str = key(about="name of the wall", min_length=1, max_length=40)
+    x: Range | None = key(None, "[from, to] along the wall; default all of it")
+    down: Length = key(about="how far; negative is a heave")
+
+
+class Variant(Table):
+    """The same push of a building of which something else is assumed: factors on what the deck says."""
+
+    name: str = key(about="what figures and results call it", min_length=1, max_length=40)
+    strength: float = key(1.0, "on the tensile strength of all materials", gt=0, le=100)
+    energy: float = key(1.0, "on their fracture energy", gt=0, le=1000)
+    young: float = key(1.0, "on their modulus of elasticity", gt=0, le=100)
+    density: float = key(1.0, "on their density", gt=0, le=100)
+    thickness: float = key(1.0, "on the thickness of all walls", gt=0, le=10)
+    floors: float = key(1.0, "on the stiffness of flexible floors and joists", gt=0, le=1e6)
+    prestress: float = key(1.0, "on the forces on top of walls", ge=0, le=100)
+
+
+class Pushover(CrackOptions, BuildingAnalysis):
+    """The push of a building of walls and floors by growing horizontal forces, cracks event by event."""
+
+    kind: Literal["pushover"]
+    view: ClassVar = "shell"
+    structures: ClassVar = ("building",)
+    uses: ClassVar = (
+        "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
+        "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength",
+    )  # fmt: skip
+    starter_structure: ClassVar = "building"
+    starter: ClassVar = {"mesh": '{ size = "0.6 m", layers = 3 }', "ripple": "0.2", "events": "1500"}
+
+    direction: Angle = key(0.0, "of the push on the plan, counter-clockwise from x", ge=-360, le=360)
+    directions: list[Literal["+", "-"]] = key(
+        ["+"], "senses of the push, each from the same start", min_length=1, max_length=2
+    )
+    pattern: Literal["mass", "triangular", "modal"] = key(
+        "mass",
+        "forces in proportion to the masses, to the masses times their height, or to the masses times the first mode in "
+        "that direction",
+    )
+    drives: list[Drive] = key(
+        [],
+        "in place of the pattern: walls whose tops of storeys move by given parts of one displacement",
+        max_length=100,
+    )
+    control: Drive | None = key(
+        None, "whose mean displacement in the direction is followed; default that of all walls on the highest level"
+    )
+    settlements: list[Settlement] = key(
+        [], "ground that goes down as the weight comes on, [[analysis.settlements]]", max_length=100
+    )
+    mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
+    constant_damage: bool = key(True, "bring the weight on with damage before the push", source="thesis 4.3.1")
+    events: int = key(20_000, "most events", ge=1, le=100_000_000)
+    target_displacement: Length | None = key(None, "stop where the control displacement reaches it", gt=0)
+    stop_fraction: float = key(0.0, "stop where the load falls below this part of its peak", ge=0, lt=1)
+    mechanism_ratio: Annotated[float, Field(ge=10, le=1e12)] = key(
+        1e4, "stop where the compliance has grown by this factor"
+    )
+    crack_closure: bool = key(False, "cracks that close regain their stiffness")
+    without_equilibrium: Literal["load-unload", "proportional", "force-release"] = key(
+        "load-unload", "where no load suits all points, see sla", source="thesis 4.3.1"
+    )
+    states: list[Annotated[int, Field(ge=1)]] = key(
+        [], "events whose state is kept (the peak and the last are anyway)", max_length=200
+    )
+    probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
+    variants: list[Variant] = key(
+        [], "the first sense again with other assumptions: a band of curves, [[analysis.variants]]", max_length=50
+    )
+    #: What the events of sla ask for and a push does not offer
+    solution: ClassVar = "events"
+    algorithm: ClassVar = "update"
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Pushover":
+        if len(set(self.directions)) < len(self.directions):
+            raise ValueError(f"directions: each sense may stand once, not {self.directions}")
+        if self.settlements and not self.constant_damage:
+            raise ValueError("settlements come with the weight: they need constant_damage = true")
+        if self.drives and self.pattern != "mass":
+            raise ValueError("drives take the place of the pattern: leave pattern out")
+        if len({variant.name for variant in self.variants}) < len(self.variants):
+            raise ValueError("variants: a name stands twice")
+        if self.shear_retention is not None and self.cracking == "isotropic":
+            raise ValueError("isotropic cracking has no shear retention")
+        return self

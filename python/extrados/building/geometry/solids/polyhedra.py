@@ -1,0 +1,190 @@
+"""Convex polyhedra: makers, cutting, mass properties, overlap. x and y are level, z is up."""
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+FLAT = 1e-7  # facets of a hull whose normals and offsets (over its size) differ less are one face
+
+
+@dataclass(frozen=True)
+class Polyhedron:
+    """A convex body: vertices (n, 3) [m], and each face as the numbers of its vertices, counter-clockwise from outside."""
+
+    vertices: np.ndarray
+    faces: tuple[tuple[int, ...], ...]
+
+    def __repr__(self) -> str:
+        return f"<Polyhedron: {len(self.vertices)} vertices, {len(self.faces)} faces>"
+
+    @cached_property
+    def normals(self) -> np.ndarray:
+        """Outward unit normals of the faces (nf, 3) (Newell's, which a vertex off the plane hardly turns)."""
+        arm = self.vertices[self.triangles] - self.vertices[self.triangles[:, :1]]
+        x, y = arm[:, 1], arm[:, 2]
+        across = x[:, [1, 2, 0]] * y[:, [2, 0, 1]] - x[:, [2, 0, 1]] * y[:, [1, 2, 0]]
+        start = np.cumsum([0, *(len(face) - 2 for face in self.faces)])[:-1]
+        found = np.add.reduceat(across, start)
+        return found / np.sqrt((found * found).sum(axis=1))[:, None]
+
+    @cached_property
+    def offsets(self) -> np.ndarray:
+        """Distance of each face from the origin along its normal (nf) [m]."""
+        numbers = np.concatenate([np.array(face) for face in self.faces])
+        counts = np.array([len(face) for face in self.faces])
+        heights = (self.vertices[numbers] * np.repeat(self.normals, counts, axis=0)).sum(axis=1)
+        return np.add.reduceat(heights, np.cumsum([0, *counts[:-1]])) / counts
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """The faces as fans of triangles (nt, 3), numbers of vertices."""
+        return np.array([(f[0], b, c) for f in self.faces for b, c in itertools.pairwise(f[1:])], dtype=int)
+
+    @cached_property
+    def edges(self) -> np.ndarray:
+        """Each edge once (ne, 2), numbers of vertices."""
+        pairs = {(min(e), max(e)) for f in self.faces for e in zip(f, (*f[1:], f[0]), strict=True)}
+        return np.array(sorted(pairs))
+
+    @property
+    def low(self) -> np.ndarray:
+        """Least x, y, z [m]."""
+        return self.vertices.min(axis=0)
+
+    @property
+    def high(self) -> np.ndarray:
+        """Greatest x, y, z [m]."""
+        return self.vertices.max(axis=0)
+
+    def moved(self, matrix: np.ndarray, shift: np.ndarray | None = None) -> "Polyhedron":
+        """The body under x -> matrix x + shift; a matrix that mirrors turns the faces round."""
+        vertices = self.vertices @ np.asarray(matrix, dtype=float).T + (0.0 if shift is None else shift)
+        mirrors = np.linalg.det(matrix) < 0.0
+        return Polyhedron(vertices, tuple(f[::-1] for f in self.faces) if mirrors else self.faces)
+
+
+def prism(outline: np.ndarray, low: float, high: float) -> Polyhedron:
+    """The prism over a convex outline (k, 2) of x and y, either way round, from z = low to z = high [m]."""
+    outline = np.asarray(outline, dtype=float)
+    x, y = outline.T
+    turn = float(x[:-1] @ y[1:] - y[:-1] @ x[1:] + x[-1] * y[0] - y[-1] * x[0])
+    ring = outline if turn > 0.0 else outline[::-1]
+    k = len(ring)
+    vertices = np.concatenate([np.column_stack([ring, np.full(k, float(z))]) for z in (low, high)])
+    sides = tuple((i, (i + 1) % k, k + (i + 1) % k, k + i) for i in range(k))
+    return Polyhedron(vertices, (tuple(range(k - 1, -1, -1)), tuple(range(k, 2 * k)), *sides))
+
+
+def loft(below: np.ndarray, above: np.ndarray) -> Polyhedron:
+    """The body between two convex polygons (k, 3) of as many corners, counter-clockwise from the side of `above`.
+
+    Its sides must be plane: edges that belong together parallel, or meeting in one point.
+    """
+    k = len(below)
+    sides = tuple((i, (i + 1) % k, k + (i + 1) % k, k + i) for i in range(k))
+    return Polyhedron(np.concatenate([below, above]), (tuple(range(k - 1, -1, -1)), tuple(range(k, 2 * k)), *sides))
+
+
+def hull(points: np.ndarray, flat: float = FLAT) -> Polyhedron:
+    """The convex hull of points (n, 3); facets that turn by less than `flat` are one face. ValueError where it has no volume."""
+    points = np.asarray(points, dtype=float)
+    middle, size = points.mean(axis=0), float(np.ptp(points, axis=0).max())
+    try:
+        found = ConvexHull((points - middle) / (size or 1.0))
+    except QhullError:
+        raise ValueError("the points lie in one plane") from None
+    planes: np.ndarray = np.empty((0, 4))
+    groups: list[list[int]] = []  # facets that lie in one plane
+    for k, plane in enumerate(found.equations):
+        near = np.flatnonzero(np.abs(planes - plane).max(axis=1, initial=0.0) < flat)
+        if len(near):
+            groups[near[0]].append(k)
+        else:
+            planes, groups = np.vstack([planes, plane]), [*groups, [k]]
+    scaled = (points - middle) / (size or 1.0)
+    faces = []
+    for plane, facets in zip(planes, groups, strict=True):
+        corners = np.unique(found.simplices[facets])
+        normal = plane[:3]
+        u = np.linalg.svd(normal[None])[2][1]
+        arm = scaled[corners] - scaled[corners].mean(axis=0)
+        faces.append(corners[np.argsort(np.arctan2(arm @ np.cross(normal, u), arm @ u))])
+    used = np.unique(np.concatenate(faces))
+    number = np.full(len(points), -1)
+    number[used] = np.arange(len(used))
+    return Polyhedron(points[used], tuple(tuple(number[f].tolist()) for f in faces))
+
+
+def cut(body: Polyhedron, point: np.ndarray, normal: np.ndarray, slack: float = 1e-9) -> Polyhedron | None:
+    """What of a body lies on the side of the plane through `point` that `normal` points to; None where nothing does.
+
+    Vertices within `slack` of its size from the plane lie in it.
+    """
+    size = float(np.ptp(body.vertices, axis=0).max())
+    side = (body.vertices - point) @ normal / np.linalg.norm(normal)
+    side[np.abs(side) < slack * size] = 0.0
+    if (side >= 0.0).all():
+        return body
+    if (side <= 0.0).all():
+        return None
+    i, j = body.edges.T
+    crossed = side[i] * side[j] < 0.0
+    i, j = i[crossed], j[crossed]
+    new = body.vertices[i] + (side[i] / (side[i] - side[j]))[:, None] * (body.vertices[j] - body.vertices[i])
+    return hull(np.concatenate([body.vertices[side >= 0.0], new]))
+
+
+def box(low: Sequence[float], high: Sequence[float]) -> Polyhedron:
+    """The box between two corners [m]."""
+    (x0, y0, z0), (x1, y1, z1) = low, high
+    return prism(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]), z0, z1)
+
+
+def moments(vertices: np.ndarray, triangles: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Volume [m^3], centroid (3) [m] and second moments about the centroid (3, 3), integral of x_i x_j [m^5], of the body
+    within closed triangles, counter-clockwise from outside.
+
+    Tetrahedra from one point (Tonon 2004): the second moments of each are those of its corners and its centroid.
+    """
+    origin = vertices.mean(axis=0)
+    a, b, c = (vertices[triangles] - origin).transpose(1, 0, 2)
+    volume = np.einsum("ij,ij->i", a, np.cross(b, c)) / 6.0
+    total = float(volume.sum())
+    middle = 0.25 * (a + b + c)
+    centroid = (volume[:, None] * middle).sum(axis=0) / total
+    second = np.zeros((3, 3))
+    for p in (a, b, c, 4.0 * middle):
+        second += np.einsum("t,ti,tj->ij", volume / 20.0, p, p)
+    return total, centroid + origin, second - total * np.outer(centroid, centroid)
+
+
+def inertia_of(second: np.ndarray) -> np.ndarray:
+    """Inertia tensor from second moments, both (..., 3, 3): trace on the diagonal less the moments."""
+    trace = np.trace(second, axis1=-2, axis2=-1)
+    return trace[..., None, None] * np.eye(3) - second
+
+
+def overlap_depth(one: Polyhedron, other: Polyhedron) -> float:
+    """How deep two bodies overlap [m]; negative: the gap along the best separating direction.
+
+    Faces of both, then pairs of their edges (separating axes), which decide between bodies that pass edge over edge.
+    """
+
+    def depth(axes: np.ndarray) -> float:
+        p, q = one.vertices @ axes.T, other.vertices @ axes.T
+        return float(np.minimum(p.max(axis=0) - q.min(axis=0), q.max(axis=0) - p.min(axis=0)).min())
+
+    found = depth(np.concatenate([one.normals, other.normals]))
+    if found <= 0.0:
+        return found
+    u = one.vertices[one.edges[:, 1]] - one.vertices[one.edges[:, 0]]
+    v = other.vertices[other.edges[:, 1]] - other.vertices[other.edges[:, 0]]
+    u, v = u / np.linalg.norm(u, axis=1)[:, None], v / np.linalg.norm(v, axis=1)[:, None]
+    axes = np.cross(u[:, None], v[None]).reshape(-1, 3)
+    length = np.linalg.norm(axes, axis=1)
+    axes = axes[length > 1e-6] / length[length > 1e-6, None]
+    return min(found, depth(axes)) if len(axes) else found

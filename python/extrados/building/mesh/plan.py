@@ -1,0 +1,398 @@
+"""The mesher of buildings on a plan: walls as grids that meet at corners, openings and storeys, floors between them."""
+
+import itertools
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from extrados.building.errors import BadGeometry
+from extrados.building.mesh.options import LARGEST_MESH
+from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane
+from extrados.building.mesh.triangles import fill_ring
+from extrados.building.properties import Material
+from extrados.building.templates.plan import MEETS, Floor, Plan, PlanWall, meeting
+from extrados.schema.constants import GRAVITY
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+
+#: What a rigid floor is: a concrete slab
+RIGID_YOUNG, RIGID_THICKNESS = 30e9, 0.2
+#: Breaks of the grid nearer to each other than this part of the size are told
+SLIVER = 0.2
+
+
+class _Grid:
+    """One wall as a grid: its lines, and which cells are there."""
+
+    def __init__(self, wall: PlanWall, s: np.ndarray, z: np.ndarray):
+        self.wall, self.s, self.z = wall, s, z
+        self.there = np.ones((len(s) - 1, len(z) - 1), dtype=bool)
+        self.first = 0  # number of its first node, before walls are joined
+
+    def number(self, i: np.ndarray, k: np.ndarray) -> np.ndarray:
+        return self.first + i * len(self.z) + k
+
+    def cells(self, s: tuple[float, float], z: tuple[float, float]) -> np.ndarray:
+        """Cells (columns, rows) whose middles lie within two ranges."""
+        x, y = 0.5 * (self.s[1:] + self.s[:-1]), 0.5 * (self.z[1:] + self.z[:-1])
+        return ((x > s[0]) & (x < s[1]))[:, None] & ((y > z[0]) & (y < z[1]))
+
+    def points(self) -> np.ndarray:
+        place = np.asarray(self.wall.start) + self.s[:, None] * self.wall.direction
+        return np.column_stack(
+            [np.repeat(place, len(self.z), axis=0), np.tile(self.z, len(self.s))]
+        )  # fmt: skip
+
+
+def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellMesh:
+    """Mesh of a building; BadGeometry says what does not fit."""
+    size = options.size or min(0.1 * plan.storeys[0], min(wall.length for wall in plan.walls) / 8.0)
+    area = sum(wall.length for wall in plan.walls) * plan.levels[-1]
+    if area / size**2 > LARGEST_MESH:
+        raise BadGeometry(f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}")
+    warnings: list[str] = []
+    junctions = {
+        (a, b): at
+        for a, b in itertools.combinations(range(len(plan.walls)), 2)
+        if (at := meeting(plan.walls[a], plan.walls[b])) is not None
+    }
+    grids = _grids(plan, junctions, size, warnings)
+    xyz, number = _join(plan, grids, junctions)
+    materials, names = [building.material, *building.materials.values()], list(building.materials)
+    parts = [_wall_part(plan, w, grids, junctions, number, names) for w in range(len(grids))]
+    planes = [_plane(plan, grid) for grid in grids]
+    mass, push, bars = np.zeros(len(xyz)), np.zeros((len(xyz), 3)), []
+    grown = xyz
+    for floor in plan.floors:
+        grown, mass, push = _add_floor(
+            plan, floor, grids, number, grown, mass, push, parts, materials, bars, size, warnings
+        )
+    used = np.zeros(len(grown), dtype=bool)
+    for part in parts:
+        used[part.connect] = True
+    for load in plan.prestress:
+        _prestress(plan, load, grids, number, used, push)
+    bars += [_rod(rod, k, grown, used, building) for k, rod in enumerate(plan.rods, 1)]
+    held, springs = _supports(plan, parts, grown, used)
+    kept = np.cumsum(used) - 1
+    parts = [
+        ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts
+    ]  # nodes within openings are dropped
+    bars = [
+        ShellBar(b.name, (int(kept[b.nodes[0]]), int(kept[b.nodes[1]])), b.area, b.material, b.prestress) for b in bars
+    ]
+    return ShellMesh(
+        grown[used], parts, planes, plan.levels, materials, size, [(int(kept[n]), d) for n, d in held],
+        [(int(kept[n]), d, k) for n, d, k in springs], bars, mass[used], push[used], warnings,
+    )  # fmt: skip
+
+
+def _lines(breaks: Iterable[float], length: float, size: float, what: str, warnings: list[str]) -> np.ndarray:
+    """Grid lines through all breaks within 0 and `length`, evenly in between."""
+    kept = [0.0]
+    for value in sorted(b for b in breaks if MEETS < b <= length + MEETS):
+        if value - kept[-1] > MEETS:
+            kept.append(min(value, length))
+    kept[-1] = length
+    thin = min((b - a for a, b in itertools.pairwise(kept)), default=length)
+    if thin < SLIVER * size:
+        warnings.append(
+            f"{what}: two of its lines are only {1e3 * thin:.3g} mm apart, elements of {size:.3g} m were asked for"
+        )
+    parts = [np.zeros(1)]
+    for a, b in itertools.pairwise(kept):
+        count = max(1, round((b - a) / size))
+        parts.append(a + (b - a) * np.arange(1, count + 1) / count)
+    return np.concatenate(parts)
+
+
+def _holes(plan: Plan, wall: PlanWall) -> list[tuple[float, float, float, float]]:
+    """Openings of a wall: s from, to, z from, to [m]."""
+    return [
+        (*o.x, plan.levels[o.storey - 1] + o.z[0], plan.levels[o.storey - 1] + o.z[1]) for o in wall.openings
+    ]  # fmt: skip
+
+
+def _lintels(plan: Plan, wall: PlanWall) -> list[tuple[float, float, float, float, str | None]]:
+    """Lintels of a wall: s from, to, z from, to [m], material."""
+    found = []
+    for opening, hole in zip(wall.openings, _holes(plan, wall), strict=True):
+        if opening.lintel is not None:
+            beam = opening.lintel
+            low, high = max(0.0, hole[0] - beam.bearing), min(wall.length, hole[1] + beam.bearing)
+            found.append((low, high, hole[3], hole[3] + beam.depth, beam.material))
+    return found
+
+
+def _plane(plan: Plan, grid: _Grid) -> WallPlane:
+    wall = grid.wall
+    return WallPlane(wall.name, np.asarray(wall.start, dtype=float), wall.direction, wall.length, _holes(plan, wall))
+
+
+def _grids(plan: Plan, junctions: dict, size: float, warnings: list[str]) -> list[_Grid]:
+    heights = set(plan.levels.tolist())
+    for wall in plan.walls:
+        for beam in (*_holes(plan, wall), *(lintel[:4] for lintel in _lintels(plan, wall))):
+            heights.update(beam[2:4])
+    z = _lines(heights, float(plan.levels[-1]), size, "the heights of openings and storeys", warnings)
+    grids = []
+    for w, wall in enumerate(plan.walls):
+        breaks = {0.0, wall.length}
+        for beam in (*_holes(plan, wall), *(lintel[:4] for lintel in _lintels(plan, wall))):
+            breaks.update(beam[:2])
+        for (a, b), (s, t) in junctions.items():
+            breaks.update([s] if a == w else [t] if b == w else [])
+        grid = _Grid(wall, _lines(breaks, wall.length, size, f"wall '{wall.name}'", warnings), z)
+        first, last = plan.reach(wall)
+        grid.there &= grid.cells((-np.inf, np.inf), (plan.levels[first - 1], plan.levels[last]))
+        for hole in _holes(plan, wall):
+            grid.there &= ~grid.cells(hole[:2], hole[2:])
+        grid.first = grids[-1].first + len(grids[-1].s) * len(z) if grids else 0
+        grids.append(grid)
+    return grids
+
+
+def _join(plan: Plan, grids: list[_Grid], junctions: dict) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes of all walls, those of walls that hang together once; the number of each node of the grids."""
+    xyz = np.concatenate([grid.points() for grid in grids])
+    owner = np.arange(len(xyz))
+
+    def root(n: int) -> int:
+        while owner[n] != n:
+            owner[n] = owner[owner[n]]
+            n = int(owner[n])
+        return n
+
+    for (a, b), (s, t) in junctions.items():
+        corner = plan.bond(plan.walls[a].name, plan.walls[b].name)
+        if corner is not None and corner.bond == "open":
+            continue
+        one, two = grids[a], grids[b]
+        i, j = int(np.abs(one.s - s).argmin()), int(np.abs(two.s - t).argmin())
+        for k in range(len(one.z)):
+            p, q = root(int(one.number(i, k))), root(int(two.number(j, k)))
+            owner[max(p, q)] = min(p, q)
+    found = np.array([root(n) for n in range(len(xyz))])
+    alone, number = np.unique(found, return_inverse=True)
+    return xyz[alone], number
+
+
+def _wall_part(
+    plan: Plan, w: int, grids: list[_Grid], junctions: dict, number: np.ndarray, names: list[str]
+) -> ShellPart:
+    grid, wall = grids[w], plan.walls[w]
+    i, k = np.nonzero(grid.there)
+    if not len(i):
+        raise BadGeometry(f"wall '{wall.name}': its openings leave nothing of it")
+    corners = [(i, k), (i + 1, k), (i + 1, k + 1), (i, k + 1)]
+    connect = np.column_stack([number[grid.number(a, b)] for a, b in corners])
+    first, last = plan.reach(wall)
+    height = 0.5 * (grid.z[k] + grid.z[k + 1])
+    storey = np.searchsorted(plan.levels, height) - 1  # from 0
+    thick = wall.thicknesses or [wall.thickness] * (last - first + 1)
+    thickness = np.asarray(thick, dtype=float)[storey - (first - 1)]
+    material = np.full(len(i), 0 if wall.material is None else _named(wall.material, names, f"wall '{wall.name}'"))
+    linear, strength = np.zeros(len(i), dtype=bool), np.ones(len(i))
+    for *box, name in _lintels(plan, wall):
+        inside = grid.cells((box[0], box[1]), (box[2], box[3]))[i, k]
+        linear |= inside
+        if name is not None:
+            material[inside] = _named(name, names, f"a lintel of wall '{wall.name}'")
+    for (a, b), (s, t) in junctions.items():
+        corner = plan.bond(plan.walls[a].name, plan.walls[b].name) if w in (a, b) else None
+        if corner is None or corner.bond != "weak" or corner.walls[1] != wall.name:
+            continue
+        column = int(np.abs(grid.s - (s if a == w else t)).argmin())
+        strength[(i == column) | (i == column - 1)] *= corner.strength
+    return ShellPart(wall.name, "Q4", connect, thickness, material, linear, strength, wall=w)
+
+
+def _named(name: str, names: list[str], what: str) -> int:
+    if name not in names:
+        raise BadGeometry(f"{what}: there is no [materials.{name}]")
+    return 1 + names.index(name)
+
+
+def _level_nodes(plan: Plan, floor: Floor, grid: _Grid, number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The nodes of a wall at the height of a floor that are there, and their distances along it."""
+    k = int(np.abs(grid.z - plan.levels[floor.storey]).argmin())
+    there = np.zeros(len(grid.s), dtype=bool)
+    for row in (k - 1, k):
+        if 0 <= row < grid.there.shape[1]:
+            there[:-1] |= grid.there[:, row]
+            there[1:] |= grid.there[:, row]
+    i = np.flatnonzero(there)
+    return number[grid.number(i, np.full(len(i), k))], grid.s[i]
+
+
+def _ring(
+    plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
+) -> tuple[list[int], list[int]]:
+    """Walls around a floor and the nodes on them in order, counter-clockwise."""
+    what = f"floor on storey {floor.storey}"
+    reach = [plan.reach(wall) for wall in plan.walls]
+    names = floor.walls or [w.name for w, r in zip(plan.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
+    walls = [next(i for i, w in enumerate(plan.walls) if w.name == name) for name in names]
+    if floor.walls is None:
+        walls = _in_order(plan, walls, what)
+    corners = []
+    for a, b in zip(walls, walls[1:] + walls[:1], strict=True):
+        at = meeting(plan.walls[a], plan.walls[b])
+        if at is None:
+            raise BadGeometry(f"{what}: walls '{plan.walls[a].name}' and '{plan.walls[b].name}' do not meet")
+        corners.append(at)
+    nodes: list[int] = []
+    for k, w in enumerate(walls):
+        start, end = corners[k - 1][1], corners[k][0]
+        own, s = _level_nodes(plan, floor, grids[w], number)
+        inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
+        order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
+        nodes += own[inside][order].tolist()
+    ring = [
+        n
+        for n, before in zip(nodes, nodes[-1:] + nodes[:-1], strict=True)
+        if np.linalg.norm(xyz[n] - xyz[before]) > MEETS
+    ]
+    if len(ring) < 3 or len(set(ring)) < len(ring):
+        raise BadGeometry(f"{what}: its walls make no ring; name them in order by `walls`")
+    x, y = xyz[ring, 0], xyz[ring, 1]
+    if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
+        ring.reverse()
+    return walls, ring
+
+
+def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
+    """Walls that meet two others each, in the order of the ring they make."""
+    meets = {a: [b for b in walls if b != a and meeting(plan.walls[min(a, b)], plan.walls[max(a, b)])] for a in walls}
+    if any(len(others) != 2 for others in meets.values()):
+        raise BadGeometry(
+            f"{what}: the walls of the storey make no simple ring; name those around the floor by `walls`"
+        )
+    ring = [walls[0], meets[walls[0]][0]]
+    while len(ring) < len(walls):
+        after = [b for b in meets[ring[-1]] if b != ring[-2]]
+        if after[0] in ring:
+            raise BadGeometry(
+                f"{what}: the walls of the storey make more than one ring; name those around it by `walls`"
+            )
+        ring.append(after[0])
+    return ring
+
+
+def _add_floor(
+    plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, mass: np.ndarray, push: np.ndarray,
+    parts: list[ShellPart], materials: list[Material], bars: list[ShellBar], size: float, warnings: list[str],
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    """Elements, bars and masses of a floor; the nodes with those within it."""
+    walls, ring = _ring(plan, floor, grids, number, xyz)
+    level = float(plan.levels[floor.storey])
+    outline = xyz[ring, :2]
+    x, y = outline.T
+    area = 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    name = f"floor {floor.storey}"
+    if floor.load > 0.0:
+        bearing = [i for i, w in enumerate(plan.walls) if w.name in floor.bears_on] or walls
+        shares = np.zeros(len(xyz))
+        for w in bearing:
+            own, s = _level_nodes(plan, floor, grids[w], number)
+            on = np.isin(own, ring)
+            half = np.diff(s[on]) / 2.0
+            np.add.at(shares, own[on], np.append(half, 0.0) + np.append(0.0, half))
+        if not shares.sum() > 0.0:
+            raise BadGeometry(f"{name}: none of the walls that bear its load lies beside it")
+        mass = mass + floor.load * area / GRAVITY * shares / shares.sum()
+    if floor.kind in ("flexible", "rigid"):
+        thickness = floor.thickness if floor.kind == "flexible" else RIGID_THICKNESS
+        young = floor.young if floor.kind == "flexible" else RIGID_YOUNG
+        inner, triangles = fill_ring(outline, size)
+        new = inner[len(ring) :]
+        place = np.concatenate([ring, len(xyz) + np.arange(len(new))]).astype(int)
+        xyz = np.concatenate([xyz, np.column_stack([new, np.full(len(new), level)])])
+        mass = np.concatenate([mass, np.zeros(len(new))])
+        push = np.concatenate([push, np.zeros((len(new), 3))])
+        count = len(triangles)
+        parts.append(
+            ShellPart(
+                name, "T3", place[triangles], np.full(count, thickness), np.full(count, len(materials)),
+                np.ones(count, dtype=bool), np.ones(count), bends=False,
+            )
+        )  # fmt: skip
+        materials.append(Material(density=0.0, young=young, poisson=floor.poisson))
+    elif floor.kind == "joists":
+        bars += _joists(plan, floor, grids, number, xyz, name, ring)
+    return xyz, mass, push
+
+
+def _joists(
+    plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, name: str, ring: list[int]
+) -> list[ShellBar]:
+    """Joists as bars from each node of a wall across to the nearest of the other, of the area that stands for it."""
+    one, two = (next(i for i, w in enumerate(plan.walls) if w.name == word) for word in floor.bears_on)
+    own, s = _level_nodes(plan, floor, grids[one], number)
+    far, _ = _level_nodes(plan, floor, grids[two], number)
+    own, s = own[np.isin(own, ring)], s[np.isin(own, ring)]
+    across = np.array([-plan.walls[one].direction[1], plan.walls[one].direction[0]])
+    material = Material(density=0.0, young=floor.young)
+    half = np.diff(s) / 2.0
+    wide = np.append(half, 0.0) + np.append(0.0, half)
+    made = []
+    for n, width in zip(own.tolist(), wide.tolist(), strict=True):
+        gap = xyz[far, :2] - xyz[n, :2]
+        aside = np.abs(gap @ plan.walls[one].direction)
+        to = int(far[aside.argmin()])
+        if aside.min() > 0.25 * max(abs(float(gap[aside.argmin()] @ across)), MEETS) or to == n:
+            continue  # no wall opposite
+        made.append(ShellBar(f"{name}, joists", (n, to), floor.joist_area * width / floor.joist_spacing, material))
+    if not made:
+        raise BadGeometry(f"{name}: no joist reaches from wall '{floor.bears_on[0]}' to '{floor.bears_on[1]}'")
+    return made
+
+
+def _prestress(plan: Plan, load, grids: list[_Grid], number: np.ndarray, used: np.ndarray, push: np.ndarray) -> None:
+    """The force along the top of a wall as nodal forces."""
+    w = next(i for i, wall in enumerate(plan.walls) if wall.name == load.wall)
+    storey = load.level or plan.reach(plan.walls[w])[1]
+    nodes, s = _level_nodes(plan, Floor(storey=storey, kind="none"), grids[w], number)
+    if not len(nodes):
+        raise BadGeometry(f"prestress: wall '{load.wall}' has no masonry on top of storey {storey}")
+    half = np.diff(s) / 2.0
+    share = np.append(half, 0.0) + np.append(0.0, half)
+    push[nodes, 2] -= load.force * share / share.sum()
+
+
+def _rod(rod, k: int, xyz: np.ndarray, used: np.ndarray, building: "Building") -> ShellBar:
+    there = np.flatnonzero(used)
+    ends = [int(there[np.linalg.norm(xyz[there] - np.asarray(p), axis=1).argmin()]) for p in (rod.start, rod.end)]
+    if ends[0] == ends[1]:
+        raise BadGeometry(f"rod {k}: both of its ends are at one node")
+    if rod.material not in building.materials:
+        raise BadGeometry(f"rod {k}: there is no [materials.{rod.material}]")
+    return ShellBar(f"rod {k}", (ends[0], ends[1]), rod.area, building.materials[rod.material], rod.prestress)
+
+
+def _supports(
+    plan: Plan, parts: list[ShellPart], xyz: np.ndarray, used: np.ndarray
+) -> tuple[list[tuple[int, int]], list[tuple[int, int, float]]]:
+    """Nodes on the ground are held, or stand on springs; nodes of floors alone only move in their plane."""
+    held, springs = [], []
+    bends = np.zeros(len(xyz), dtype=bool)
+    for part in parts:
+        if part.bends:
+            bends[part.connect] = True
+    ground = np.flatnonzero((xyz[:, 2] <= MEETS) & used)
+    if not len(ground):
+        raise BadGeometry("no wall stands on the ground: give a wall storeys from 1")
+    rigid = plan.foundation_stiffness is None
+    held += [(int(n), d) for n in ground for d in range(6) if rigid or d != 2]
+    if not rigid:
+        sole = np.zeros(len(xyz))
+        for part in parts:
+            low = part.connect[:, :2]
+            on = part.bends & (xyz[low, 2] <= MEETS).all(axis=1)
+            half = 0.5 * np.linalg.norm(xyz[low[on, 0]] - xyz[low[on, 1]], axis=1) * part.thickness[on]
+            np.add.at(sole, low[on], half[:, None])
+        springs = [(int(n), 2, float(plan.foundation_stiffness * sole[n])) for n in ground]
+    held += [(int(n), d) for n in np.flatnonzero(used & ~bends) for d in (2, 3, 4, 5)]
+    return held, springs

@@ -1,0 +1,262 @@
+"""A building of walls on a plan: storeys, openings, flanges, floors, rods (`building`)."""
+
+from collections import Counter
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from extrados.building.errors import BadGeometry
+from extrados.building.places import Opening, Range
+from extrados.building.structure import Structure
+from extrados.schema.quantities import Force, Length, Stiffness, Stress
+from extrados.schema.table import Table, key
+
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
+
+#: Distance within which two walls meet [m]
+MEETS = 1e-6
+PlanPoint = Annotated[list[Length], Field(min_length=2, max_length=2)]
+Place = Annotated[list[Length], Field(min_length=3, max_length=3)]
+
+
+class Lintel(Table):
+    """A beam over an opening that stays elastic, of the wall's thickness."""
+
+    depth: Length = key(about="height of the beam", gt=0)
+    bearing: Length = key(0.0, "length on the wall at each side", ge=0)
+    material: str | None = key(None, "a name of [materials]; default [material], uncracked")
+
+
+class WallOpening(Table):
+    """A rectangular door or window."""
+
+    storey: int = key(1, "the storey it is in, from 1 at the ground", ge=1)
+    x: Range = key(about="[from, to] along the wall from its start")
+    z: Range = key(about="[from, to] above the floor of the storey")
+    lintel: Lintel | None = key(None, "beam over it")
+
+    @model_validator(mode="after")
+    def _area(self) -> "WallOpening":
+        Opening(x=self.x, y=self.z)
+        return self
+
+
+class PlanWall(Table):
+    """A plane wall: a line on the plan, of one thickness or one for each storey."""
+
+    name: str = key(about="what answers call it", min_length=1, max_length=40)
+    start: PlanPoint = key(about="[x, y] on the plan where its middle plane starts")
+    end: PlanPoint = key(about="[x, y] where it ends")
+    thickness: Length | None = key(None, "thickness; or give thicknesses", gt=0)
+    thicknesses: list[Length] = key([], "one for each of its storeys, from the lowest", max_length=50)
+    storeys: list[int] | None = key(None, "[first, last] storey; default all", min_length=2, max_length=2)
+    openings: list[WallOpening] = key([], "doors and windows", max_length=200)
+    material: str | None = key(None, "a name of [materials]; default [material]")
+
+    @model_validator(mode="after")
+    def _long(self) -> "PlanWall":
+        if not self.length > MEETS:
+            raise ValueError("start and end are the same point")
+        if (self.thickness is None) == (not self.thicknesses):
+            raise ValueError("expected either thickness or thicknesses")
+        if not all(t > 0.0 for t in self.thicknesses):
+            raise ValueError("thicknesses: each must be above 0")
+        return self
+
+    @property
+    def length(self) -> float:
+        return float(np.hypot(*np.subtract(self.end, self.start)))
+
+    @property
+    def direction(self) -> np.ndarray:
+        """Unit vector on the plan from start to end."""
+        return np.subtract(self.end, self.start) / self.length
+
+
+class Corner(Table):
+    """How two walls that meet hang together."""
+
+    walls: list[str] = key(about="names of the two walls; the second abuts on the first", min_length=2, max_length=2)
+    bond: Literal["bonded", "weak", "open"] = key(
+        about="bonded: one masonry; weak: the column of elements of the second wall beside the first has less strength; "
+        "open: nothing but floors holds them together"
+    )
+    strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
+
+
+class Floor(Table):
+    """A floor or roof on top of a storey: a membrane between walls, or joists, and what it carries."""
+
+    storey: int = key(about="the storey that it lies on", ge=1)
+    kind: Literal["rigid", "flexible", "joists", "none"] = key(
+        "flexible",
+        "flexible: a membrane of young times thickness; rigid: a concrete slab's, 30 GPa and 0.2 m, which is as good as "
+        "rigid; joists: bars across it in one direction; none: only its load",
+    )
+    walls: list[str] | None = key(
+        None,
+        "names of the walls around it, in order; default, where they make one ring, all of the storey",
+        min_length=3,
+    )
+    young: Stress | None = key(None, "of a flexible floor: its modulus; of joists: that of their wood", gt=0)
+    thickness: Length | None = key(None, "of a flexible floor", gt=0)
+    poisson: float = key(0.25, "of a flexible floor", ge=0, lt=0.5)
+    joist_area: Annotated[float, Field(gt=0)] | None = key(None, "of joists: cross-section of one in m^2")
+    joist_spacing: Length | None = key(None, "of joists: their distance", gt=0)
+    load: Stress = key(0.0, "weight of the floor with what lies on it, per area", ge=0)
+    bears_on: list[str] = key([], "walls that carry the load, by their length; default all around it", max_length=100)
+
+    @model_validator(mode="after")
+    def _whole(self) -> "Floor":
+        needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(
+            self.kind, ()
+        )
+        for name in ("young", "thickness", "joist_area", "joist_spacing"):
+            if (getattr(self, name) is None) == (name in needed):
+                raise ValueError(f"a floor of kind '{self.kind}' {'needs' if name in needed else 'takes no'} {name}")
+        if self.kind == "joists" and len(self.bears_on) != 2:
+            raise ValueError("joists: bears_on names the two walls that they reach from and to")
+        return self
+
+
+class Rod(Table):
+    """A tie rod between the nodes nearest to two places."""
+
+    start: Place = key(about="[x, y, z] of one end")
+    end: Place = key(about="[x, y, z] of the other end")
+    area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
+    material: str = key(about="a name of [materials]")
+    prestress: Force = key(0.0, "force before the building moves, tension", ge=0)
+
+
+class Prestress(Table):
+    """A vertical force along the top of a wall, of post-tensioning or of what stands on it."""
+
+    wall: str = key(about="name of the wall")
+    force: Force = key(about="downward, in all, spread evenly", gt=0)
+    level: Annotated[int, Field(ge=1)] | None = key(None, "on top of this storey; default the wall's last")
+
+
+class Plan(Structure):
+    """A building of plane walls on a plan, storey upon storey; z is up, the ground at 0."""
+
+    word: ClassVar = "building"
+    kind: Literal["building"]
+    starter_analysis: ClassVar = "pushover"
+    starter: ClassVar = {
+        "storeys": '["3.0 m", "2.8 m"]',
+        "walls": """[
+    { name = "front", start = [0, 0], end = [6, 0], thickness = 0.3, openings = [{ storey = 1, x = [1, 2], z = [0, 2.1] }, { storey = 2, x = [1, 2], z = [0.9, 2.1] }] },
+    { name = "right", start = [6, 0], end = [6, 5], thickness = 0.3 },
+    { name = "back", start = [6, 5], end = [0, 5], thickness = 0.3 },
+    { name = "left", start = [0, 5], end = [0, 0], thickness = 0.3 },
+]""",
+        "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
+    }
+    lacks: ClassVar = {
+        "blocks": "a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`",
+        "rocker": "a building on a plan does not rock as one body: draw one of its walls",
+        "mesh": "the walls of a building stand in space: its analysis is `pushover`; draw one of them as `panel`",
+    }
+    storeys: list[Length] = key(about="heights of the storeys, from the ground up", min_length=1, max_length=50)
+    walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
+    corners: list[Corner] = key([], "where walls meet and are not one masonry, [[structure.corners]]", max_length=1000)
+    floors: list[Floor] = key([], "[[structure.floors]]", max_length=200)
+    rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
+    prestress: list[Prestress] = key([], "[[structure.prestress]]", max_length=200)
+    assumed: list[str] = key(
+        [], "what the sources of the deck do not say and it assumes: every answer repeats it", max_length=100
+    )
+    foundation_stiffness: Stiffness | None = key(
+        None, "vertical stiffness of the ground per area of the walls' soles; default rigid", gt=0
+    )
+
+    @model_validator(mode="after")
+    def _sound(self) -> "Plan":
+        if not all(h > 0.0 for h in self.storeys):
+            raise ValueError("storeys: every height must be above 0")
+        names = Counter(wall.name for wall in self.walls)
+        if twice := [name for name, count in names.items() if count > 1]:
+            raise ValueError(f"walls: the name '{twice[0]}' stands twice")
+        for wall in self.walls:
+            self._check_wall(wall)
+        for what, named in (
+            *(("corners", corner.walls) for corner in self.corners),
+            *(("floors", [*(floor.walls or []), *floor.bears_on]) for floor in self.floors),
+            ("prestress", [part.wall for part in self.prestress]),
+        ):
+            if strange := [name for name in named if name not in names]:
+                raise ValueError(f"{what}: there is no wall '{strange[0]}'; there are {', '.join(names)}")
+        for floor in self.floors:
+            if floor.storey > len(self.storeys):
+                raise ValueError(f"floors: there is no storey {floor.storey}, there are {len(self.storeys)}")
+        return self
+
+    def _check_wall(self, wall: PlanWall) -> None:
+        first, last = self.reach(wall)
+        if not 1 <= first <= last <= len(self.storeys):
+            raise ValueError(f"wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}")
+        if wall.thicknesses and len(wall.thicknesses) != last - first + 1:
+            raise ValueError(
+                f"wall '{wall.name}': {len(wall.thicknesses)} thicknesses for {last - first + 1} storeys; expected one for each"
+            )
+        for i, opening in enumerate(wall.openings, 1):
+            at = f"wall '{wall.name}', opening {i}"
+            if not first <= opening.storey <= last:
+                raise ValueError(f"{at}: the wall has no storey {opening.storey}")
+            if opening.x[0] < 0.0 or opening.x[1] > wall.length:
+                raise ValueError(
+                    f"{at}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long"
+                )
+            if opening.z[0] < 0.0 or opening.z[1] >= self.storeys[opening.storey - 1]:
+                raise ValueError(
+                    f"{at}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of "
+                    f"{self.storeys[opening.storey - 1]:g} m"
+                )
+
+    def reach(self, wall: PlanWall) -> tuple[int, int]:
+        """First and last storey of a wall."""
+        return (wall.storeys[0], wall.storeys[1]) if wall.storeys is not None else (1, len(self.storeys))
+
+    @property
+    def levels(self) -> np.ndarray:
+        """Heights of the ground and of the top of each storey [m]."""
+        return np.concatenate([[0.0], np.cumsum(self.storeys)])
+
+    def wall(self, name: str) -> PlanWall:
+        return next(wall for wall in self.walls if wall.name == name)
+
+    def bond(self, one: str, two: str) -> Corner | None:
+        """What a deck says of the corner of two walls; None where they are one masonry."""
+        return next((c for c in self.corners if set(c.walls) == {one, two} and c.bond != "bonded"), None)
+
+    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
+        from extrados.building.mesh.plan import mesh_plan
+
+        return mesh_plan(self, building, options)
+
+
+def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
+    """Distances along two walls from their starts to where they meet [m]; None where they do not."""
+    a, b = np.asarray(one.start), np.asarray(two.start)
+    d, e = one.direction, two.direction
+    cross = d[0] * e[1] - d[1] * e[0]
+    if abs(cross) < 1e-9:  # in one line: end to end
+        for s, p in ((0.0, one.start), (one.length, one.end)):
+            for t, q in ((0.0, two.start), (two.length, two.end)):
+                if np.hypot(*np.subtract(p, q)) < MEETS:
+                    return s, t
+        overlap = [
+            s for s in (float((b - a) @ d), float((np.asarray(two.end) - a) @ d)) if MEETS < s < one.length - MEETS
+        ]
+        if overlap and abs((b - a)[0] * d[1] - (b - a)[1] * d[0]) < MEETS:
+            raise BadGeometry(f"walls '{one.name}' and '{two.name}' lie on each other on the plan")
+        return None
+    gap = b - a
+    s, t = (gap[0] * e[1] - gap[1] * e[0]) / cross, (gap[0] * d[1] - gap[1] * d[0]) / cross
+    if not (-MEETS <= s <= one.length + MEETS and -MEETS <= t <= two.length + MEETS):
+        return None
+    return float(np.clip(s, 0.0, one.length)), float(np.clip(t, 0.0, two.length))

@@ -1,0 +1,31 @@
+"""Flat shells in space: the axes of their nodes."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from extrados.core.sla import shell_axes
+
+#: Normals that differ by less than this angle are those of one plane [rad]
+FLAT = 1e-5
+
+
+def node_frames(xyz: np.ndarray, groups: Iterable[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """Axes of the rotations of each node (nodes, 3, 3), columns, and whether the shell is flat there (nodes).
+
+    groups: the nodes (elements, 3 or 4) of all shells that bend. Where they lie in one plane at a node, its axes are
+    those of the plane, the third its normal; elsewhere they are x, y, z.
+    """
+    frames, flat = np.tile(np.eye(3), (len(xyz), 1, 1)), np.ones(len(xyz), dtype=bool)
+    seen = np.zeros(len(xyz), dtype=bool)
+    for connect in groups:
+        axes = shell_axes(xyz, connect)
+        for corner in connect.T:
+            first = ~seen[corner]
+            # Of several elements at a node the last one written stands, whichever: the others are compared with it
+            frames[corner[first]] = np.transpose(axes[first], (0, 2, 1))
+            seen[corner] = True
+            away = np.linalg.norm(np.cross(frames[corner, :, 2], axes[:, 2]), axis=1)
+            flat[corner[away > FLAT]] = False
+    frames[~flat | ~seen] = np.eye(3)
+    return frames, flat & seen

@@ -1,0 +1,133 @@
+"""A block on a base that gives way, for the core."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from extrados import _core
+from extrados.core.calls import long_call, real, room_for
+from extrados.core.errors import check, status_code
+from extrados.core.ground import Ground, MotionSet
+from extrados.core.rocking import EVENTS, OUTCOMES
+
+
+@dataclass(frozen=True)
+class SoftBase:
+    """A block, mass [kg], inertia about its centre [kg m^2], height of the centre, distances of the left and the right edge
+    from its foot [m], on a base of stiffness [N/m^2] and damping [N s/m^2] per length, no tension: a bed, or with `edges`
+    half of both under each edge. linear: the form of slender blocks."""
+
+    mass: float
+    inertia: float
+    height: float
+    toe_left: float
+    toe_right: float
+    stiffness: float
+    damping: float
+    edges: bool = False
+    linear: bool = False
+
+    @property
+    def numbers(self) -> np.ndarray:
+        """The flat list of the core."""
+        return np.array(
+            [self.mass, self.inertia, self.height, self.toe_left, self.toe_right, self.stiffness, self.damping,
+             float(self.edges), float(self.linear)]
+        )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class BaseContact:
+    """What the base does: force up [N], its moment about the foot of the centre over the cosine of the rotation [N m], energy
+    stored [J], power taken up [W], range that pushes, from the foot [m], greatest pressure per length [N/m] or force of an
+    edge [N]."""
+
+    force: float
+    moment: float
+    stored: float
+    spent: float
+    range: tuple[float, float]
+    most: float
+
+
+@dataclass(frozen=True)
+class SoftBaseResponse:
+    """A response: at `time` (points) [s] rotation, positive to +x [rad], sinking [m], their rates, ground and vertical
+    acceleration [m/s^2], kinetic energy, potential energy with that of the springs, and the ledger, work of the ground less
+    what the base took up [J], force of the base (points, 2) to +x and up [N], range of the base that pushes (points, 2),
+    from the foot of the centre [m], greatest pressure per length [N/m] or force of an edge [N]. peak: of both coordinates;
+    end: rotation, sinking and their rates; landings of the left and the right edge; events: (kind, time [s], edge), -1 left,
+    1 right."""
+
+    outcome: str
+    landings: tuple[int, int]
+    peak: tuple[float, float]
+    stop_time: float
+    steps: int
+    end: np.ndarray
+    time: np.ndarray
+    rotation: np.ndarray
+    sinking: np.ndarray
+    rate: np.ndarray
+    sinking_rate: np.ndarray
+    ground: np.ndarray
+    vertical: np.ndarray
+    kinetic: np.ndarray
+    potential: np.ndarray
+    ledger: np.ndarray
+    force: np.ndarray
+    range: np.ndarray
+    most: np.ndarray
+    events: list[tuple[str, float, int]]
+    events_found: int
+    work: float
+    spent: float
+    interrupted: bool = False
+
+
+def base_contact(
+    base: SoftBase, rotation: float, sinking: float, rate: float = 0.0, sinking_rate: float = 0.0
+) -> BaseContact:
+    """What the base does in a state: rotation [rad], sinking [m] and their rates."""
+    values, status = _core.api_soft_base.contact(
+        real("base", base.numbers, (9,)), real("state", [rotation, sinking, rate, sinking_rate], (4,))
+    )
+    check(status, "contact of a soft base")
+    force, moment, stored, spent, low, high, most = (float(x) for x in values)
+    return BaseContact(force, moment, stored, spent, (low, high), most)
+
+
+def soft_base_history(
+    base: SoftBase, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
+    start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
+) -> SoftBaseResponse:  # fmt: skip
+    """Rock the block under `ground` times `scale` until collapse or `end_time` [s]; start: rotation [rad], sinking [m]
+    and their rates; output_step [s]; room: most events that are kept."""
+    if not (0.0 < end_time < np.inf and 0.0 < output_step < np.inf and 0.0 < tolerance < 1.0 and np.isfinite(scale)):
+        raise ValueError("end time, output step and tolerance must be positive, the scale a number")
+    if not 1 <= room <= 10**7:
+        raise ValueError(f"room is {room}, expected 1 to 10,000,000 events")
+    rows = int(_core.api_soft_base.rows())
+    room_for(rows, int(min(end_time / output_step, 1e12)))
+    times = np.arange(int(np.floor(end_time / output_step * (1 + 1e-12))) + 1) * output_step
+    with MotionSet([ground]) as motions:
+        counts, measures, state, kinds, event, status = long_call(
+            _core.api_soft_base.history, real("base", base.numbers, (9,)), motions.handle, 1,
+            np.array([scale, end_time, tolerance], dtype=float), real("start", start, (4,)), times, rows, int(room),
+        )  # fmt: skip
+    interrupted = status == status_code("cancelled")
+    if not interrupted:
+        check(status, "rocking on a soft base")
+    outcome, left, right, steps, points, events = (int(k) for k in counts)
+    s = state[:, :points].T
+    if not (np.isfinite(s).all() and np.isfinite(measures).all()):
+        check(status_code("not_finite"), "rocking on a soft base")
+    found = min(events, room)
+    turn, sunk, stop, *end = (float(x) for x in measures)
+    return SoftBaseResponse(
+        OUTCOMES[outcome], (left, right), (turn, sunk), stop, steps, np.array(end[:4]), times[:points], s[:, 0], s[:, 1],
+        s[:, 2], s[:, 3], s[:, 4], s[:, 5], s[:, 6], s[:, 7], s[:, 8], s[:, 9:11], s[:, 11:13], s[:, 13],
+        [(EVENTS[int(k)], float(t), int(e)) for k, (t, e) in zip(kinds[:found], event.T[:found], strict=True)], events,
+        end[4], end[5], interrupted,
+    )  # fmt: skip

@@ -1,0 +1,367 @@
+"""Limit analysis of solid blocks: the push at which they become a mechanism, by second-order cones, with both bounds.
+
+Unknown are the forces at the corners of the contact polygons, each within Coulomb's cone. Nothing is lost by that: a force
+(n, t) of a pressure at any place within a polygon, shared to its corners in the proportion that makes their centre that
+place, keeps force, moment and cone. The dual of the programme is a motion of rigid blocks whose contacts open at least mu
+times as fast as they slide (associated friction); its virtual work is the bound from above.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import clarabel
+import highspy
+import numpy as np
+from scipy import sparse
+
+from extrados.building.geometry.assembly import GROUND
+from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.limit.errors import Immovable, NoAnswer
+from extrados.schema.constants import GRAVITY
+
+ACCURACY = 1e-10  # of forces, powers and the gap between the programmes, over the scale of the weights
+LOOSE = 1e-6  # a solution that is no better than this is none
+PROOF = 1e-7  # of the fastest contact: what overlap a motion that proves something may have
+METHODS = ("qdldl", "faer")  # factorisations of the conic solver; the second pivots otherwise where the first gives up
+POWERLESS = 1e-7  # of the power of all weights falling: less is rounding
+
+
+@dataclass(frozen=True)
+class Programme:
+    """What one push of a structure gave.
+
+    gamma: the multiplier borne [g]; upper: the bound of the motion's virtual work [g]. force (nv, 3): compression and both
+    shears at the corners, key_force (nk, 2): shears of the dowels [N]; motion (nb, 6): velocity of the centroids and spin,
+    with a power of the push of one. equilibrium: greatest force or moment (over the size) left over at a block, over the
+    total weight; cone: greatest excess of shear over friction or of tension, over the same; overlap: greatest rate of
+    overlap (or of sliding without the dilatancy that goes with it) over the fastest rate of a contact.
+    """
+
+    gamma: float
+    upper: float
+    force: np.ndarray
+    key_force: np.ndarray
+    motion: np.ndarray
+    equilibrium: float
+    cone: float
+    overlap: float
+
+    @property
+    def gap(self) -> float:
+        """Difference between both bounds [g]."""
+        return abs(self.upper - self.gamma)
+
+
+@dataclass(frozen=True)
+class Falls:
+    """Proof that no forces hold the blocks at rest: a motion (nb, 6) that no contact hinders and in which the weights have
+    `power`, over that of all of them falling as fast as the fastest. overlap: what it violates, over the fastest contact."""
+
+    motion: np.ndarray
+    power: float
+    overlap: float
+
+
+class SolidLimit:
+    """The programmes of solid blocks with a coefficient of friction: one for all contacts, one each, or None, which
+    excludes sliding."""
+
+    def __init__(self, assembly: SolidAssembly, friction: float | np.ndarray | None):
+        self.assembly = assembly
+        joints = len(assembly.a)
+        mu = np.full(joints, np.inf if friction is None else friction, dtype=float)
+        self.mu = mu[assembly.corner_joint]
+        self.weight = assembly.mass * GRAVITY
+        #: Of the weight of a stone rather than of all: forces of the order of one
+        self.scale = float(self.weight.sum() + assembly.fill[:, 1].sum() * GRAVITY) / np.sqrt(len(self.weight))
+
+    @cached_property
+    def matrix(self) -> sparse.csc_array:
+        """Forces and moments about the centroids, over the size (6 nb), of unit forces at corners: columns n, t1, t2 of each
+        corner, then both shears of each key."""
+        one = self.assembly
+        t1, t2 = one.tangents
+        j = one.corner_joint
+        frames = np.stack([one.normal, t1, t2], axis=1)
+        places, vectors, joint = [one.corner] * 3, [frames[j, k] for k in range(3)], [j] * 3
+        columns = [3 * np.arange(len(j)) + k for k in range(3)]
+        if one.keys is not None:
+            count = len(one.keys.joint)
+            for k in (1, 2):
+                places.append(one.keys.point)
+                vectors.append(frames[one.keys.joint, k])
+                joint.append(one.keys.joint)
+                columns.append(3 * len(j) + 2 * np.arange(count) + k - 1)
+        point, vector = np.concatenate(places), np.concatenate(vectors)
+        contact, column = np.concatenate(joint), np.concatenate(columns)
+        rows, cols, values = [], [], []
+        for block, sense in ((one.a[contact], 1.0), (one.b[contact], -1.0)):
+            on = np.flatnonzero(block != GROUND)
+            arm = (point[on] - one.centroid[block[on]]) / one.size
+            wrench = sense * np.concatenate([vector[on], np.cross(arm, vector[on])], axis=1)
+            rows.append((6 * block[on][:, None] + np.arange(6)).ravel())
+            cols.append(np.repeat(column[on], 6))
+            values.append(wrench.ravel())
+        shape = (6 * len(one.mass), 3 * len(j) + (0 if one.keys is None else 2 * len(one.keys.joint)))
+        where = (np.concatenate(rows), np.concatenate(cols))
+        return sparse.csc_array((np.concatenate(values), where), shape=shape)
+
+    def loads(self, way: np.ndarray) -> np.ndarray:
+        """Forces and moments (6 nb), over the scale, of the weights turned into the direction `way` (3)."""
+        one = self.assembly
+        found = np.zeros((len(one.mass), 6))
+        found[:, :3] = self.weight[:, None] * way
+        for block, mass, *place in one.fill.tolist():
+            k = int(block)
+            force = mass * GRAVITY * way
+            found[k, :3] += force
+            found[k, 3:] += np.cross((np.array(place) - one.centroid[k]) / one.size, force)
+        return found.ravel() / self.scale
+
+    def push(self, direction: float) -> Programme | Falls:
+        """The greatest multiplier gamma of all weights, pushed along a direction [deg from +x to +y], or the proof that none is
+        borne. Immovable where no push brings it down, NoAnswer where the solver gives up."""
+        dead, live = self._ways(direction)
+        complaint = None
+        for method in METHODS:
+            try:
+                return self._pushed(dead, live, method)
+            except NoAnswer as error:
+                complaint = error
+        falls = self.falls()
+        if falls is None:
+            assert complaint is not None
+            raise complaint
+        return falls
+
+    def falls(self) -> Falls | None:
+        """The proof that it cannot stand without a push; None where no motion proves that."""
+        dead = self.loads(np.array([0.0, 0.0, -1.0]))
+        for method in METHODS:
+            solution, _ = self._solved(dead, None, method)
+            motion = np.array(solution.x)[: len(dead)]
+            if np.isfinite(motion).all():
+                try:
+                    return self._proven(motion, dead)
+                except NoAnswer:
+                    continue
+        return None
+
+    def _ways(self, direction: float) -> tuple[np.ndarray, np.ndarray]:
+        """The loads of the weights at rest and turned along a direction [deg]."""
+        turn = np.radians(direction)
+        return self.loads(np.array([0.0, 0.0, -1.0])), self.loads(np.array([np.cos(turn), np.sin(turn), 0.0]))
+
+    def _pushed(self, dead: np.ndarray, live: np.ndarray, method: str) -> Programme | Falls:
+        solution, lines = self._solved(dead, live, method)
+        status = str(solution.status)
+        x = np.array(solution.x)[: len(dead)]
+        if "DualInfeasible" in status:
+            return self._proven(x, dead)
+        if "PrimalInfeasible" in status:
+            raise Immovable("no push of its weight brings it down: its contacts hold it from all sides")
+        power = float(live @ x)
+        if not np.isfinite(x).all() or power <= 0.0:
+            raise NoAnswer(f"the conic solver gave up: {status}")
+        motion = x / power
+        z = np.array(solution.z)
+        gamma = -float(z[0])
+        forces, corners = np.zeros(self.matrix.shape[1]), len(self.mu)
+        forces[lines[lines >= 0]] = z[1:][lines >= 0]
+        force, keys = forces[: 3 * corners].reshape(-1, 3), forces[3 * corners :].reshape(-1, 2)
+        slides = (self.mu > 0.0) & np.isfinite(self.mu)
+        force[slides, 0] /= self.mu[slides]
+        rest = self.matrix @ forces + gamma * live + dead
+        overlap, spent = self._hindered(motion)
+        # the scale is a stone's weight times the root of their number: over the weight of all it is one over that root
+        part = 1.0 / np.sqrt(len(self.weight))
+        found = Programme(
+            gamma, float(-dead @ motion) + spent, force * self.scale, keys * self.scale, self._rates(motion),
+            float(np.abs(rest).max()) * part, self._excess(force, keys) * part, overlap,
+        )  # fmt: skip
+        if max(found.equilibrium, found.cone, found.overlap) > LOOSE or found.gap > LOOSE * max(1.0, abs(gamma)):
+            raise NoAnswer(
+                f"the conic solver gave up ({status}): forces are balanced to {found.equilibrium:.1e} of the weight, the bounds differ "
+                f"by {found.gap:.1e} g"
+            )
+        return found
+
+    def _solved(
+        self, dead: np.ndarray, live: np.ndarray | None, method: str
+    ) -> "tuple[clarabel.DefaultSolution, np.ndarray]":
+        """The programme of the motion: least power of the weights lifted, less what dowels take, with a power of the push of
+        one and contacts that open mu times as fast as they slide. Its multipliers are the forces.
+
+        Without a push the motion is bounded instead, each rate by one: then it is the one by which the weights fall most.
+        It has a sixth of the unknowns of the programme of the forces, whose dual it is. Returns the solution, and the column
+        of the matrix that each row after the first is the rate of, -1 for a bound; a sliding corner's opening is over mu.
+        """
+        corners, rates = len(self.mu), self.matrix.T.tocsr()
+        slides = np.flatnonzero((self.mu > 0.0) & np.isfinite(self.mu))
+        stuck = np.flatnonzero(~np.isfinite(self.mu))
+        smooth = np.flatnonzero(self.mu == 0.0)
+        strength = np.empty(0) if self.assembly.keys is None else self.assembly.keys.strength / self.scale
+        whole, weak = np.flatnonzero(~np.isfinite(strength)), np.flatnonzero(np.isfinite(strength))
+        zero = np.concatenate([3 * stuck + 1, 3 * stuck + 2, 3 * corners + 2 * whole, 3 * corners + 2 * whole + 1])
+        opening = np.concatenate([3 * stuck, 3 * smooth])
+        sliding = (3 * slides[:, None] + np.arange(3)).ravel()
+        over = np.ones((len(slides), 3))
+        over[:, 0] = 1.0 / self.mu[slides]
+        lines = np.concatenate([zero, opening, sliding])
+        factor = np.concatenate([np.ones(len(zero) + len(opening)), over.ravel()])
+        push = np.zeros_like(dead) if live is None else live
+        rows = [sparse.csr_array(push[None]), -(sparse.diags_array(factor) @ rates[lines])]
+        matrix = sparse.vstack(rows)
+        cones = [clarabel.ZeroConeT(1 + len(zero)), clarabel.NonnegativeConeT(len(opening))]
+        cones += [clarabel.SecondOrderConeT(3)] * len(slides)
+        cost = -dead
+        if len(weak):  # the rate of each dowel that may give way is bounded by an unknown that costs its strength
+            own = np.column_stack([3 * corners + 2 * weak, 3 * corners + 2 * weak + 1])
+            bound = sparse.csr_array(
+                (-np.ones(len(weak)), (3 * np.arange(len(weak)), np.arange(len(weak)))),
+                shape=(3 * len(weak), len(weak)),
+            )
+            rate = sparse.csr_array(
+                (
+                    np.ones(2 * len(weak)),
+                    ((3 * np.arange(len(weak))[:, None] + [1, 2]).ravel(), np.arange(2 * len(weak))),
+                ),
+                shape=(3 * len(weak), 2 * len(weak)),
+            )
+            below = sparse.hstack([-(rate @ rates[own.ravel()]), bound])
+            matrix = sparse.vstack([sparse.hstack([matrix, sparse.csr_array((matrix.shape[0], len(weak)))]), below])
+            cones += [clarabel.SecondOrderConeT(3)] * len(weak)
+            cost = np.concatenate([cost, strength[weak]])
+            lines = np.concatenate([lines, np.column_stack([np.full(len(weak), -1), own]).ravel()])
+        right = np.zeros(matrix.shape[0])
+        if live is None:
+            own = sparse.eye_array(len(dead), len(cost))
+            matrix = sparse.vstack([matrix, own, -own])
+            right = np.concatenate([right, np.ones(2 * len(dead))])
+            cones.append(clarabel.NonnegativeConeT(2 * len(dead)))
+            lines = np.concatenate([lines, np.full(2 * len(dead), -1)])
+        else:
+            right[0] = 1.0
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        settings.max_iter = 200
+        settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = ACCURACY
+        settings.tol_infeas_abs = settings.tol_infeas_rel = 1e-9
+        settings.max_threads = 1
+        settings.direct_solve_method = method
+        nothing = sparse.csc_array((len(cost), len(cost)))
+        return clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, settings).solve(), lines
+
+    def _rates(self, motion: np.ndarray) -> np.ndarray:
+        """Velocities and spins (nb, 6) of a motion of the programme, whose moments are over the size."""
+        rates = motion.reshape(-1, 6).copy()
+        rates[:, 3:] /= self.assembly.size
+        return rates
+
+    def _hindered(self, motion: np.ndarray) -> tuple[float, float]:
+        """By how much a motion violates the contacts, over the fastest rate of one, and the power that dowels take."""
+        rate = self.matrix.T @ motion
+        corners = len(self.mu)
+        at = rate[: 3 * corners].reshape(-1, 3)
+        keyed = np.hypot(*rate[3 * corners :].reshape(-1, 2).T)
+        slip = np.hypot(at[:, 1], at[:, 2])
+        with np.errstate(invalid="ignore"):
+            needed = np.where(np.isfinite(self.mu), self.mu * slip, 0.0)
+        stuck = np.where(np.isfinite(self.mu), 0.0, slip)
+        fastest = max(float(np.abs(at).max(initial=0.0)), float(np.abs(motion).max()))
+        wrong = max(float((needed - at[:, 0]).max(initial=0.0)), float(stuck.max(initial=0.0)))
+        spent = 0.0
+        if self.assembly.keys is not None:
+            strong = ~np.isfinite(self.assembly.keys.strength)
+            wrong = max(wrong, float(keyed[strong].max(initial=0.0)))
+            spent = float((self.assembly.keys.strength[~strong] / self.scale * keyed[~strong]).sum())
+        return wrong / fastest, spent
+
+    def _excess(self, force: np.ndarray, keys: np.ndarray) -> float:
+        """Greatest excess of shear over friction, of tension, or of a dowel's shear over its strength."""
+        shear = np.hypot(force[:, 1], force[:, 2])
+        with np.errstate(invalid="ignore"):
+            most = np.where(np.isfinite(self.mu), self.mu * force[:, 0], np.inf)
+        found = max(float((shear - most).max(initial=0.0)), float(-force[:, 0].min(initial=0.0)))
+        if self.assembly.keys is not None:
+            found = max(found, float((np.hypot(*keys.T) - self.assembly.keys.strength / self.scale).max(initial=0.0)))
+        return found
+
+    def _proven(self, motion: np.ndarray, dead: np.ndarray) -> Falls:
+        """A motion held to virtual work; NoAnswer where it proves nothing."""
+        falling = float(np.abs(dead).sum()) * max(float(np.abs(motion).max()), 1e-300)
+        overlap, spent = self._hindered(motion)
+        power = (float(dead @ motion) - spent) / falling
+        if power < POWERLESS or overlap > PROOF:
+            raise NoAnswer(
+                f"no forces were found, but no motion proves that there are none (power {power:.1e}, overlap {overlap:.1e})"
+            )
+        return Falls(self._rates(motion), power, overlap)
+
+    def pyramids(self, direction: float, sides: int) -> tuple[float, float]:
+        """Bounds of the multiplier from below and above [g]: Coulomb's cones as pyramids of so many sides, within and around
+        them, by HiGHS. A check by another method and another solver."""
+        dead, live = self._ways(direction)
+        inner = self._pyramid(dead, live, sides, 1.0)
+        return inner, self._pyramid(dead, live, sides, 1.0 / np.cos(np.pi / sides))
+
+    def _pyramid(self, dead: np.ndarray, live: np.ndarray, sides: int, wider: float) -> float:
+        """Most gamma with forces that are sums of the edges of a pyramid, whose friction is `wider` than the cone's."""
+        corners = len(self.mu)
+        normal, first, second = (self.matrix[:, k : 3 * corners : 3] for k in range(3))
+        slides = np.flatnonzero(np.isfinite(self.mu))
+        rigid = np.flatnonzero(~np.isfinite(self.mu))
+        columns, low, high = [], [], []
+        angles = 2.0 * np.pi * np.arange(sides) / sides
+        for angle in angles:
+            friction = sparse.diags_array(wider * self.mu[slides])
+            edge = np.cos(angle) * first[:, slides] + np.sin(angle) * second[:, slides]
+            columns.append(normal[:, slides] + edge @ friction)
+            low.append(np.zeros(len(slides)))
+            high.append(np.full(len(slides), np.inf))
+        columns += [normal[:, rigid], first[:, rigid], second[:, rigid]]
+        low += [np.zeros(len(rigid)), *[np.full(len(rigid), -np.inf)] * 2]
+        high += [np.full(len(rigid), np.inf)] * 3
+        if self.assembly.keys is not None:
+            strength = self.assembly.keys.strength / self.scale
+            keyed = self.matrix[:, 3 * corners :]
+            for angle in angles if np.isfinite(strength).any() else []:
+                give = np.flatnonzero(np.isfinite(strength))
+                columns.append(np.cos(angle) * keyed[:, 2 * give] + np.sin(angle) * keyed[:, 2 * give + 1])
+                low.append(np.zeros(len(give)))
+                high.append(np.full(len(give), np.inf))
+            hold = np.flatnonzero(~np.isfinite(strength))
+            columns += [keyed[:, 2 * hold], keyed[:, 2 * hold + 1]]
+            low += [np.full(len(hold), -np.inf)] * 2
+            high += [np.full(len(hold), np.inf)] * 2
+        matrix = sparse.hstack([*columns, sparse.csc_array(live[:, None])]).tocsc()
+        return _most(matrix, -dead, np.concatenate([*low, [-np.inf]]), np.concatenate([*high, [np.inf]]))
+
+
+def _most(matrix: sparse.csc_array, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:
+    """The most of the last unknown, by the interior-point method of HiGHS with its crossover to a vertex."""
+    solver = highspy.Highs()
+    solver.setOptionValue("output_flag", False)
+    solver.setOptionValue("solver", "ipm")
+    solver.setOptionValue("threads", 1)
+    solver.setOptionValue("primal_feasibility_tolerance", 1e-10)
+    solver.setOptionValue("dual_feasibility_tolerance", 1e-10)
+    programme = highspy.HighsLp()
+    programme.num_col_, programme.num_row_ = matrix.shape[1], matrix.shape[0]
+    cost = np.zeros(matrix.shape[1])
+    cost[-1] = -1.0
+    programme.col_cost_, programme.col_lower_, programme.col_upper_ = cost, low, high
+    programme.row_lower_ = programme.row_upper_ = right
+    programme.a_matrix_.format_ = highspy.MatrixFormat.kColwise
+    programme.a_matrix_.start_, programme.a_matrix_.index_ = matrix.indptr, matrix.indices
+    programme.a_matrix_.value_ = matrix.data
+    solver.passModel(programme)
+    solver.run()
+    status = solver.getModelStatus()
+    if status == highspy.HighsModelStatus.kOptimal:
+        return float(solver.getSolution().col_value[-1])
+    if status == highspy.HighsModelStatus.kInfeasible:
+        return -np.inf
+    if status in (highspy.HighsModelStatus.kUnbounded, highspy.HighsModelStatus.kUnboundedOrInfeasible):
+        return np.inf
+    raise NoAnswer(f"the linear solver gave up: {solver.modelStatusToString(status)}")

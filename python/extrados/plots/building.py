@@ -1,0 +1,101 @@
+"""The drawing of the building with the dimensions that an engineer uses."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from extrados.plots import style
+from extrados.plots.limit.section import outlines, stone
+from extrados.results.store import Stored
+
+NAME = "building"
+#: Colour of dimensions
+INK = "#1f4e79"
+#: Of the extent of the drawing: how far a dimension stands from what it measures
+OFF = 0.07
+
+
+def draw_building(run: Stored, folder: Path) -> tuple[str, str] | None:
+    """The stones with spans, rises, widths and height; None where no analysis of the run looked at stones."""
+    name = next((n for n, there in run.arrays.items() if {"outline", "outline_start"} <= set(there)), None)
+    rows = [d for d in run.summary["deck"].get("dimensions", []) if "start" in d]
+    if name is None or not rows:
+        return None
+    blocks = outlines(run, name)
+    points = np.concatenate(blocks)
+    extent = np.ptp(points, axis=0)
+    shape = float(extent[1] / max(extent[0], 1e-9))
+    width = float(np.clip(5.5 / max(shape, 0.35), 3.4, 7.2))
+    with style.figure(width, float(np.clip(width * shape + 1.2, 2.8, 6.5))) as (fig, (ax,)):
+        stone(ax, blocks)
+        ax.update_datalim(points)
+        ax.autoscale_view()
+        off = OFF * float(extent.max())
+        below = 0
+        for row in rows:
+            if row["aside"] == "below":
+                below += 1
+            _dimension(ax, row, off, below)
+        ax.set_aspect("equal")
+        ax.margins(0.12)
+        ax.grid(False)
+        ax.set_xlabel("x [m]")
+        ax.set_ylabel("y [m]")
+        ax.set_title(f"{len(blocks)} stone{'s' if len(blocks) != 1 else ''}")
+        if extent[0] < 0.5 * extent[1]:
+            ax.locator_params(axis="x", nbins=3)
+        saved = style.save(fig, folder, NAME)
+    told = "; ".join(f"{d['name']} {d['length_m']:.4g} m" for d in rows)
+    return saved, f"The building. {told[:1].upper()}{told[1:]}."
+
+
+def _dimension(ax: Axes, row: dict[str, Any], off: float, below: int) -> None:
+    """A line with ticks at its ends and its length beside it."""
+    start, end = np.array(row["start"]), np.array(row["end"])
+    shift = {"below": (0.0, -off * below), "left": (-off, 0.0), "right": (0.0, 0.0)}.get(row["aside"], (0.0, 0.0))
+    a, b = start + shift, end + shift
+    ax.plot(
+        *np.array([a, b]).T,
+        color=INK,
+        linewidth=0.8,
+        marker="|" if abs(b[0] - a[0]) > abs(b[1] - a[1]) else "_",
+        markersize=7,
+        zorder=6,
+    )
+    for here, there in ((start, a), (end, b)):
+        if np.hypot(*(there - here)) > 0.0:
+            ax.plot(*np.array([here, there]).T, color=INK, linewidth=0.4, linestyle=":", zorder=6)
+    middle = 0.5 * (a + b)
+    upright = abs(b[1] - a[1]) > abs(b[0] - a[0])
+    aside = "left" if row["aside"] in ("right",) or (upright and row["aside"] != "left") else "center"
+    text = f"{row['length_m']:.4g}"
+    if upright and row["aside"] == "left":
+        ax.annotate(
+            text,
+            middle,
+            textcoords="offset points",
+            xytext=(-4, 0),
+            ha="right",
+            va="center",
+            fontsize=8,
+            color=INK,
+            rotation=90,
+        )
+    elif upright or aside == "left":
+        ax.annotate(text, b if row["aside"] == "right" else middle, textcoords="offset points", xytext=(5, 3 if row["aside"] == "right" else 0),
+                    ha="left", va="bottom" if row["aside"] == "right" else "center", fontsize=8, color=INK, zorder=8)  # fmt: skip
+    else:
+        at = a + 0.25 * (b - a) if row["aside"] == "along" else middle
+        ax.annotate(
+            text,
+            at,
+            textcoords="offset points",
+            xytext=(0, 3),
+            ha="center",
+            va="bottom",
+            fontsize=8,
+            color=INK,
+            zorder=8,
+        )

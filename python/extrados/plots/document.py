@@ -1,0 +1,57 @@
+"""A document without a form: headings, words, tables, figures. From one such source come the HTML and the printed report."""
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Heading:
+    """fresh: it begins a page of its own."""
+
+    text: str
+    level: int = 1
+    fresh: bool = False
+
+
+@dataclass(frozen=True)
+class Words:
+    """A paragraph; look: "" plain, "answer", "bad" or "warn"; its lines are kept where it has several."""
+
+    text: str
+    look: str = ""
+
+
+@dataclass(frozen=True)
+class Table:
+    """Rows of text under a head; shares: relative widths of the columns, of a printed page; look: a word for each row."""
+
+    head: tuple[str, ...]
+    rows: list[tuple[str, ...]]
+    shares: tuple[float, ...] = ()
+    look: list[str] = field(default_factory=list)
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A picture by its place below the report's folder, without its ending; numbered in its order. width: of the page's."""
+
+    name: str
+    caption: str
+    width: float = 1.0
+
+
+@dataclass(frozen=True)
+class Code:
+    text: str
+
+
+Block = Heading | Words | Table | Figure | Code
+
+
+@dataclass(frozen=True)
+class Document:
+    """title; facts: what stands below it, label and text; blocks in order; foot: on every printed page."""
+
+    title: str
+    facts: list[tuple[str, str]]
+    blocks: list[Block]
+    foot: str

@@ -1,0 +1,108 @@
+"""Results of assess: verdicts of all strategies on one building under one hazard, and why they differ."""
+
+from typing import Literal
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, judge
+
+Axis = Literal["acceleration", "pulse", "displacement", "probability", "check"]
+Overall = Literal["stands under all", "falls under all", "depends", "open"]
+Agreement = Literal["agree", "apart", "disagree", "open"]
+
+
+class AssessHazard(ResultModel):
+    """What the ground does, as the strategies are asked."""
+
+    kind: str = fact("kind of [motion]")
+    told: str = fact("in words")
+    motions: int = fact("number of motions")
+    member: int = maybe("of a set: the motion that strategies of one motion take, from 1")
+    chosen_by: str = maybe("of a set: the rule by which it was taken")
+    peak_ground_acceleration_g: float = fact("demand of strategies that take a constant acceleration", "g")
+    peak_told: str = fact("where that peak comes from")
+    pulse_amplitude_g: float | None = fact("amplitude of the primary impulse; null: none", "g")
+    pulse_period_s: float | None = fact("its period; null: none", "s")
+
+
+class StrategyVerdict(ResultModel):
+    """What one strategy says."""
+
+    strategy: str = fact("kind of analysis; `probability` is `fragility` with uncertain sizes or many motions")
+    label: str = fact("its name in words")
+    part: str | None = fact("name of the analysis of this run that holds it; null where it has no result")
+    status: Literal["ok", "refused", "failed", "left out"] = fact("whether it has a result")
+    reason: str = fact("why it has none; empty where it has")
+    axis: Axis = fact("what is compared")
+    demand: float | None = fact("what is asked, in `unit`")
+    capacity: float | None = fact("what is borne, in `unit`")
+    unit: str = fact("unit of both")
+    outcome: Outcome = fact("stands, falls, open or none")
+    margin: float | None = fact("factor on the hazard at which the verdict turns; null: not known")
+    margin_at_least: float | None = fact("greatest factor at which it was seen to stand; null: none")
+    margin_below: float | None = fact("least factor at which it was seen to fall; null: none")
+    parameters: str = fact("how it was asked, and by which rule")
+    assumes: str = fact("what the strategy takes for granted")
+    statement: str = fact("its verdict in one sentence")
+
+
+class Reason(ResultModel):
+    """Why strategies differ, by a rule whose numbers show it."""
+
+    rule: str = fact("name of the rule")
+    headline: str = fact("the reason in a few words")
+    explains: list[list[str]] = fact("pairs of strategies whose difference it explains")
+    text: str = fact("the reason in words, with the numbers")
+    numbers: dict[str, float | None] = fact("the numbers that the rule has compared")
+
+
+class Probe(ResultModel):
+    """A further run that was asked to learn why, or how far."""
+
+    strategy: str = fact("kind of analysis")
+    changed: str = fact("what was other than in the deck")
+    outcome: Outcome = fact("its verdict")
+    value: float | None = fact("its demand over its capacity; null: not known")
+
+
+class Sensitivity(ResultModel):
+    """One value of the deck moved, all else as it is: margins of limit analysis and of rocking."""
+
+    key: str = fact("the key of the deck")
+    base: float = fact("its value, in `unit`")
+    unit: str = fact("unit of the value")
+    low: float = fact("a value below")
+    high: float = fact("a value above")
+    tilt_base: float | None = fact("margin of limit analysis at the value as it is; null: none")
+    rocking_base: float | None = fact("margin of rocking at the value as it is; null: none")
+    tilt_low: float | None = fact("margin of limit analysis at the value below; null: none")
+    tilt_high: float | None = fact("margin of limit analysis at the value above")
+    rocking_low: float | None = fact("margin of rocking at the value below")
+    rocking_high: float | None = fact("margin of rocking at the value above")
+    tilt_turns: float | None = fact("value at which the verdict of limit analysis turns; null: at none that was tried")
+    rocking_turns: float | None = fact("value at which the verdict of rocking turns; null: at none that was tried")
+
+
+class Assess(KindResults):
+    """assess: every strategy that applies, compared."""
+
+    overall: Overall = fact("one answer for all strategies")
+    statement: str = fact("the overall answer in words")
+    hazard: AssessHazard = fact("the hazard")
+    verdicts: list[StrategyVerdict] = fact("one row a strategy")
+    agreement: dict[str, dict[str, Agreement]] = fact(
+        "of each pair of strategies with a verdict: the same verdict, the same with margins far apart, another one, or open"
+    )
+    reasons: list[Reason] = fact("why strategies differ")
+    unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
+    parts: dict[str, str] = fact("analyses of this run that it has asked for: name -> what they are, in words")
+    probes: list[Probe] = fact("further runs")
+    sensitivity: list[Sensitivity] = maybe("what the verdicts hang on, the most decisive first")
+    not_done: list[str] = fact("what the budget did not allow")
+    least_margin: float | None = fact("least factor on the hazard at which a strategy turns to fall; null: none known")
+    least_margin_strategy: str | None = fact("whose it is")
+    budget_s: float = fact("time that it was given", "s")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The overall answer; the capacity is the least factor on the hazard."""
+        outcome: Outcome = {"stands under all": "stands", "falls under all": "falls"}.get(self.overall, "open")  # type: ignore[assignment]
+        return judge(self.statement, 1.0, self.least_margin, "hazard", outcome)

@@ -1,0 +1,95 @@
+"""Results of the push of a building of shells."""
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.sla import SlaCurve
+from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
+
+
+class WallShare(ResultModel):
+    """What one wall carries at its foot."""
+
+    wall: str = fact("its name")
+    shear_N: float = fact("in its plane, along the push", "N")
+    share: float = fact("part of the base shear")
+    normal_N: float = fact("compression is negative", "N")
+    normal_change_N: float = fact("beside what the constant loads bring; uplift is positive", "N")
+    elastic_share: float = fact("part of the base shear before it cracks")
+    drifts: list[float | None] = fact("drift of each storey; null where the wall has none")
+
+
+class FirstCrack(ResultModel):
+    """Where the building cracks first."""
+
+    wall: str = fact("the wall")
+    storey: int = fact("the storey, from 1")
+    along_m: float = fact("along the wall from its start", "m")
+    height_m: float = fact("over the ground", "m")
+    base_shear_N: float = fact("under this base shear", "N")
+
+
+class Flanges(ResultModel):
+    """Walls across the push, at the peak."""
+
+    share: float = fact("part of the base shear that is not carried by the walls in their own planes along the push")
+    uplift_N: float = fact("tension and relieved compression that walls across the push take at their feet", "N")
+    pressure_N: float = fact("compression added to them", "N")
+    working: bool = fact("whether they take more than a twentieth of the weight up or down")
+
+
+class PushCurve(SlaCurve):
+    """The events of one sense of the push; loads are base shears."""
+
+    base_shear_coefficient: float | None = fact("greatest base shear in equilibrium over the weight")
+    roof_drift: float | None = fact("control displacement there over its height")
+    storey_drifts: list[float | None] = fact("drift of each storey there")
+    walls: list[WallShare] = fact("what each wall carries there")
+    flanges: Flanges = maybe("whether walls across the push work with them")
+    first_crack: FirstCrack = maybe("where it cracks first; absent where it never does")
+    cracked_points_by_storey: list[int] = fact("places in the planes of the walls that have cracked there, by storey")
+
+
+class Variation(ResultModel):
+    """The same push with another assumption."""
+
+    name: str = fact("its name")
+    factors: dict[str, float] = fact("on what the deck says")
+    greatest_base_shear_N: float | None = fact("greatest base shear in equilibrium", "N")
+    passed: bool = fact("whether that was a peak")
+    base_shear_coefficient: float | None = fact("over the weight of that variant")
+
+
+class Pushover(PushCurve, KindResults):
+    """pushover: a building under growing horizontal forces; the curve of the first sense, and of both."""
+
+    weight_N: float = fact("weight of walls and floors", "N")
+    reference_load_N: float = fact("base shear to which the multiplier 1 belongs", "N")
+    pattern: str = fact("of the horizontal forces")
+    direction_deg: float = fact("of the push on the plan", "deg")
+    frequency_Hz: float = maybe("of the mode whose pattern pushes", "Hz")
+    modal_mass_ratio: float = maybe("part of the mass that takes part in that mode")
+    cracking: str = fact("how cracked material behaved")
+    layers: int = fact("points through the thickness of the walls")
+    nodes: int = fact("nodes of the mesh")
+    elements: int = fact("elements of the mesh")
+    equations: int = fact("equations")
+    points: int = fact("integration points, those of bars too")
+    factor_bytes: int = fact("memory of the factor", "B")
+    minus: PushCurve = maybe("the curve of the second sense")
+    variants: list[Variation] = maybe("the first sense with other assumptions")
+    band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The lesser capacity of the two senses: an acceleration [g] where the forces are those of the masses."""
+        curves = [c for c in (self, self.minus) if c is not None]
+        if any(c.greatest_load_N is None for c in curves):
+            return judge(f"No greatest base shear was found; the run ended by: {self.stop}.", None, None, "N")
+        least = min(curves, key=lambda c: c.greatest_load_N or 0.0)
+        load, reached = f"{(least.greatest_load_N or 0.0) / 1e3:.4g} kN", least.greatest_acceleration_g
+        if any(c.peak_load_N is None for c in curves):
+            text = f"The base shear has reached {load} without a peak; what the building bears is not known"
+            if reached is not None and demand.peak_g is not None and demand.peak_g < reached:
+                return acceleration(reached, demand)
+            return judge(f"{text}.", demand.peak_g, None, "N" if reached is None else "g", "open")
+        if reached is not None:
+            return acceleration(abs(reached), demand)
+        return judge(f"The building bears a base shear of {load}.", None, least.greatest_load_N, "N")

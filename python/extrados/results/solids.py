@@ -1,0 +1,68 @@
+"""Results of `tilt` on solid blocks; of a plane section they are those of results.limit."""
+
+from extrados.results.fields import ResultModel, fact, maybe
+from extrados.results.limit import Tilt as SectionTilt
+from extrados.results.verdict import Demand, KindResults, Verdict, acceleration
+
+
+class OpenContact(ResultModel):
+    """A contact that opens or slides in a mechanism."""
+
+    joint: int = fact("number of the contact")
+    name: str = fact("its name")
+    opening: float = fact("rate at which its fastest corner opens, over the fastest point of the mechanism")
+    sliding: float = fact("rate at which its fastest corner slides, over the same")
+    x_m: float = fact("x of its middle", "m")
+    y_m: float = fact("y of its middle", "m")
+    z_m: float = fact("z of its middle, upward", "m")
+
+
+class Pyramids(ResultModel):
+    """Bounds by friction pyramids, from a linear programme."""
+
+    sides: int = fact("sides of the pyramids")
+    lower_g: float | None = fact(
+        "with pyramids within the cones: a bound from below; null where nothing stands so", "g"
+    )
+    upper_g: float | None = fact(
+        "with pyramids around the cones: a bound from above; null where nothing brings it down", "g"
+    )
+
+
+class SolidTilt(KindResults):
+    """tilt of solids: the constant horizontal acceleration, in a direction in plan, at which they become a mechanism."""
+
+    collapse_acceleration_g: float = fact(
+        "greatest constant acceleration that is borne, pushed along the direction", "g"
+    )
+    collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
+    tilt_angle_deg: float = fact(
+        "tilt of the ground that pushes alike, along the direction", "deg", source="thesis Eq. 3.1"
+    )
+    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
+    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
+    least_acceleration_g: float = fact("least of the capacities in all directions sought", "g")
+    least_direction_deg: float = fact("direction of that", "deg")
+    blocks: int = fact("stones")
+    contacts: int = fact("polygons along which they touch")
+    moving_blocks: int = fact("stones that move in the mechanism, faster than a thousandth of the fastest")
+    fastest_block: str = fact("the stone with the fastest centroid")
+    opening_contacts: list[OpenContact] = fact("contacts that open or slide most, at most 20 of them")
+    weight_N: float = fact("weight of the structure with what rests on it", "N")
+    upper_bound_g: float = fact("bound from above by the virtual work of the mechanism", "g")
+    duality_gap: float = fact("greatest difference between the bounds from equilibrium and from the mechanism", "g")
+    equilibrium_residual: float = fact("greatest force, or moment over the size, left over at a stone, over the weight")
+    friction_residual: float = fact(
+        "greatest excess of shear over friction, or of tension, at a corner, over the weight"
+    )
+    overlap_residual: float = fact("greatest rate of overlap of the mechanism, over the fastest contact")
+    pyramids: Pyramids = maybe("bounds by another method and another solver")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The least capacity of all directions sought against the peak ground acceleration of the motion [g]."""
+        least = min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g, self.least_acceleration_g)
+        return acceleration(least, demand)
+
+
+#: What `tilt` gives: of a plane section, or of solids
+Tilt = SectionTilt | SolidTilt

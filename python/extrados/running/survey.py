@@ -1,0 +1,188 @@
+"""Many buildings at once: every deck of a folder assessed, and all of them in order, the worst first."""
+
+import csv
+import hashlib
+import io
+import os
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomlkit
+
+from extrados.analyses.batches import stacked, sweep
+from extrados.analyses.context import Context
+from extrados.building.building import Building
+from extrados.decks.reader import LARGEST, Deck, DeckError, make_deck
+from extrados.results import checkpoint, written
+from extrados.results.assess import Assess
+from extrados.results.store import Stored, StoreError, prepare, reason
+from extrados.running.run import Run, compute
+from extrados.schema import files
+
+#: A deck of this name gives all others of the folder the tables that they lack: the hazard, the budget
+COMMON = "common.toml"
+RANKING = "ranking.csv"
+COLUMNS = ("building", "overall", "least_margin", "strategy", "status", "statement")
+
+
+@dataclass(frozen=True)
+class Assessed:
+    """One building of the folder; least_margin: NaN where none is known; folder: its results."""
+
+    building: str
+    overall: str
+    least_margin: float
+    strategy: str
+    status: str
+    statement: str
+    folder: Path
+
+    @property
+    def order(self) -> tuple[int, float]:
+        """The worst first: what has no answer, then by the least margin."""
+        if self.status != "ok":
+            return 0, 0.0
+        return (1, self.least_margin) if np.isfinite(self.least_margin) else (2, 0.0)
+
+
+@dataclass(frozen=True)
+class SurveyJob:
+    """Member k: the deck texts[k], named names[k], assessed and written below `out`."""
+
+    names: list[str]
+    texts: list[str]
+    folder: str
+    out: str
+    figures: bool
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        return stacked(lambda k: self._one(k, threads), first, count)
+
+    def _one(self, k: int, threads: int) -> dict[str, np.ndarray]:
+        name = self.names[k]
+        row = {"overall": "", "strategy": "", "status": "failed", "statement": ""}
+        margin = np.nan
+        try:
+            deck = make_deck(tomllib.loads(self.texts[k]), Path(self.folder))
+            run = compute(Context(deck, threads))
+            run.write(Path(self.out) / name, self.figures)
+            result = next(r for r in run.results if r.kind == "assess")
+            row |= {"status": result.status, "statement": result.reason}
+            if result.results.keys():
+                r = run["assess"]
+                assert isinstance(r, Assess)
+                row |= {"overall": r.overall, "strategy": r.least_margin_strategy or "", "statement": r.statement}
+                margin = np.nan if r.least_margin is None else r.least_margin
+        except (DeckError, StoreError) as error:
+            row["statement"] = str(error)
+        return {"margin": np.array(margin), **{key: np.array(value, dtype="U2000") for key, value in row.items()}}
+
+
+def decks_of(folder: Path) -> dict[str, str]:
+    """Name -> text of the decks of a folder, with an assess where they have none, and what `common.toml` adds.
+
+    DeckError lists all that is wrong with any of them.
+    """
+    paths = sorted(p for p in folder.glob("*.toml") if not p.name.endswith(".expect.toml"))
+    common = _read(folder / COMMON) if (folder / COMMON).exists() else {}
+    found, complaints = {}, []
+    for path in (p for p in paths if p.name != COMMON):
+        try:
+            data = {**common, **_read(path)}
+            given = data.get("analysis", [])
+            tables = [
+                t
+                for t in (given if isinstance(given, list) else [given])
+                if isinstance(t, dict) and t.get("kind") == "assess"
+            ]
+            data["analysis"] = tables[:1] or [{"kind": "assess"}]
+            make_deck(data, folder)
+            found[path.stem] = tomlkit.dumps(data)
+        except DeckError as error:
+            complaints += [text.replace("deck:", f"{path}:", 1) for text in error.complaints]
+    if complaints:
+        raise DeckError(complaints)
+    if not found:
+        raise DeckError([f"{folder}: holds no decks"])
+    return found
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(files.read(path, LARGEST).text())
+    except (files.BadFile, ValueError, RecursionError) as error:
+        raise DeckError([f"{path}: {error}"]) from None
+
+
+def assess_folder(
+    folder: Path,
+    out: Path,
+    threads: int = 1,
+    progress: Callable[[float, float, str], None] = lambda done, total, text: None,
+    resume: bool = False,
+    scheduler: str = "",
+    figures: bool = True,
+) -> list[Assessed]:
+    """Assess every deck of a folder into folders below `out`, the worst first; writes ranking.csv and ranking.html.
+
+    An interrupted run goes on where it was with `resume`; on a cluster the workers must see the same folders.
+    """
+    texts = decks_of(folder)
+    names = list(texts)
+    out = Path(os.path.abspath(out))
+    prepare(out)
+    out.mkdir(exist_ok=True)
+    sha = hashlib.sha256("\0".join(f"{n}\0{t}" for n, t in texts.items()).encode()).hexdigest()
+    deck = Deck("", "", Building(None), None, [], [], path=str(folder), folder=folder.resolve(), sha256=sha)
+    context = Context(deck, threads, progress, out=out, resume=resume, scheduler=scheduler)
+    if resume:
+        checkpoint.refuse_other_deck(out, sha)
+    job = SurveyJob(names, list(texts.values()), str(folder.resolve()), str(out), figures)
+    found = sweep(context, "survey-folder", job, len(names), "buildings", slow=True)
+    rows = [
+        Assessed(names[k], str(found["overall"][i]), float(found["margin"][i]), str(found["strategy"][i]), str(found["status"][i]),
+                 str(found["statement"][i]), out / names[k])
+        for i, k in enumerate(found.members)
+    ]  # fmt: skip
+    rows.sort(key=lambda row: (*row.order, row.building))
+    _write(rows, out, figures)
+    if found.complete:
+        checkpoint.discard(out)
+    return rows
+
+
+def _write(rows: list[Assessed], out: Path, figures: bool) -> None:
+    """ranking.csv, and the ranking with a page for each building; what is there and was not written by us stays."""
+    from extrados.plots import html, typeset
+    from extrados.plots.ranking import document
+
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for row in rows:
+        writer.writerow([row.building, row.overall, f"{row.least_margin:.6g}", row.strategy, row.status, row.statement])
+    runs: list[tuple[str, Stored | None]] = [
+        (row.building, Run.read(row.folder) if (row.folder / "summary.json").exists() else None) for row in rows
+    ]
+    made = document(
+        out.name,
+        [(r.building, r.overall or r.status, r.least_margin, r.strategy, r.statement) for r in rows],
+        runs,
+        out,
+        figures,
+    )
+    try:
+        with written.alone(out.parent):
+            new = {RANKING: text.getvalue().encode(), "ranking.html": html.page(made, out).encode()}
+            if typeset.available():
+                new["ranking.pdf"] = typeset.pdf(made, out)
+            for name, content in new.items():
+                fresh = out / f".{name}.new"
+                fresh.write_bytes(content)
+                fresh.replace(out / name)
+    except OSError as error:
+        raise StoreError(f"{out}: the ranking could not be written: {reason(error)}") from None

@@ -1,0 +1,281 @@
+"""assess: every strategy by its own driver, one table, and reasons that speak only where their numbers show it."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_every_strategy import quick_save
+
+import extrados
+from extrados.analyses.assess import driver, hazard, sensitivity, strategies
+from extrados.analyses.assess.reasons import Facts, explained
+from extrados.analyses.assess.words import conclusion, margin_of, table_of
+from extrados.analyses.context import Context
+from extrados.building.building import Building
+from extrados.core.calls import within
+from extrados.decks.reader import make_deck
+from extrados.motions import pulses
+from extrados.motions.tables import Compatible, Record, SinePulse
+from extrados.plots import report, style
+from extrados.results.assess import StrategyVerdict
+from extrados.results.model import Result
+from extrados.results.rocking import Rocking
+from extrados.running.run import Run, compute
+from extrados.schema.constants import GRAVITY
+
+COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
+PULSE = {"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.6}
+TIE = {"start": [-0.6, 5.0], "ground": [-4.6, 5.0], "stiffness": "8 MN/m", "yield_force": "6 kN"}
+
+
+def deck(**more) -> dict:
+    keys = {"kind": "assess", "budget": 5, **more.pop("assess", {})}
+    return {"structure": COLUMN, "motion": PULSE, **more, "analysis": [keys]}
+
+
+@pytest.fixture(scope="module")
+def whole() -> Run:
+    return extrados.run(deck())
+
+
+def test_parts_are_what_the_analyses_give_by_themselves(whole: Run) -> None:
+    r = whole["assess"]
+    assert [v.strategy for v in r.verdicts] == list(strategies.ALL[k].name for k in range(len(strategies.ALL)))
+    alone = extrados.run({"structure": COLUMN, "motion": PULSE, "analysis": [{"kind": "tilt"}, {"kind": "rocking"}, {"kind": "assessment"}]})  # fmt: skip
+    for kind in ("tilt", "rocking", "assessment"):
+        assert whole[kind].as_json() == alone[kind].as_json()
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["tilt"].margin == pytest.approx(alone["tilt"].collapse_acceleration_g / 0.3)
+    assert rows["tilt"].part == "tilt" and rows["probability"].part == "fragility"
+    assert set(r.parts) == {a["name"] for a in whole.analyses[1:]}
+    assert {p["kind"] for p in whole.summary["deck"]["resolved"]["analysis"]} >= {"assess", "tilt", "dem"}
+
+
+def test_the_margin_of_rocking_encloses_the_factor_that_brings_it_down(whole: Run) -> None:
+    row = next(v for v in whole["assess"].verdicts if v.strategy == "rocking")
+    for factor, outcome in ((row.margin_at_least, "recovery"), (row.margin_below, "collapse")):
+        motion = {**PULSE, "amplitude": f"{0.3 * factor!r} g"}
+        found = extrados.run({"structure": COLUMN, "motion": motion, "analysis": {"kind": "rocking"}})
+        assert found["rocking"].outcome == outcome
+    assert row.margin_below / row.margin_at_least < 1.1
+
+
+def test_decks_of_the_parts_run_by_themselves(whole: Run, tmp_path: Path) -> None:
+    result = whole.results[0]
+    for name in ("tilt", "fragility"):
+        path = tmp_path / f"{name}.toml"
+        path.write_bytes(result.files[f"assess/{name}.toml"])
+        again = extrados.run(path)
+        assert again[again.analyses[0]["name"]].as_json() == whole[name].as_json()
+
+
+def test_written_and_drawn(whole: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(style, "save", quick_save)
+    whole.write(tmp_path / "out", figures=False)
+    assert (tmp_path / "out" / "assess" / "dem.toml").exists()
+    drawn = report.draw(Run.read(tmp_path / "out"), tmp_path)
+    assert [name for name, _ in drawn["assess"]] == ["assess-margins", "assess-agreement", "assess-hazard"]
+    told = json.loads((tmp_path / "out" / "summary.json").read_text())["analyses"][0]
+    assert told["verdict"]["outcome"] in ("stands", "falls", "open") and "limit analysis" in told["answer"]
+
+
+def test_first_table_comes_before_the_costly_strategies(monkeypatch: pytest.MonkeyPatch) -> None:
+    order: list[str] = []
+    asked = driver._Work.ask
+    monkeypatch.setattr(driver._Work, "ask", lambda work, s: (order.append(s.name), asked(work, s))[1])
+    compute(Context(make_deck(deck(assess={"strategies": ["tilt", "dem"]})), tell=lambda text: order.append("table")))
+    assert order == ["tilt", "table", "dem"]
+
+
+def test_what_a_strategy_does_not_reckon_with_is_left_out_and_told() -> None:
+    r = extrados.run(deck(ties=[TIE], assess={"strategies": ["tilt", "rocking", "sla", "dem"]}))["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert "without [[ties]]" in rows["dem"].parameters and "without" not in rows["tilt"].parameters
+    assert rows["dem"].status == "ok"
+
+
+def test_a_wrong_key_of_options_refuses_the_strategy_alone() -> None:
+    given = {"strategies": ["tilt", "rocking"], "options": {"tilt": {"fractured": True}}}
+    r = extrados.run(deck(assess=given))["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["tilt"].status == "refused" and "fracture" in rows["tilt"].reason and rows["rocking"].status == "ok"
+
+
+def test_a_second_assess_is_refused() -> None:
+    data = deck()
+    (first, _) = extrados.run({**data, "analysis": data["analysis"] * 2}).analyses
+    assert first["status"] == "refused" and "one assess" in first["reason"]
+
+
+def test_the_clock_stops_what_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(driver, "STOPPED_AFTER", 0.0)
+    r = extrados.run(deck(assess={"strategies": ["tilt", "dem"], "options": {"dem": {"time_step": 1e-6}}}))["assess"]
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["dem"].status == "left out" and "stopped" in rows["dem"].reason
+    assert any("stopped by the clock" in text for text in r.not_done)
+
+
+def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
+    from extrados.core.calls import cancel_requested
+
+    with within(0.0) as time:
+        assert time.over.wait(2.0)
+    assert time.passed and not cancel_requested()
+    with within(60.0) as time:
+        pass
+    assert not time.passed
+
+
+# ----- the hazard
+
+
+def test_of_a_set_the_84_percent_motion_is_taken() -> None:
+    motion = {"kind": "generated", "mmi": 9, "duration": 4.0}
+    given = {"strategies": ["rocking", "probability"], "motions": 12}
+    run = extrados.run(deck(motion=motion, assess=given))
+    r = run["assess"]
+    table = run.results[0].parts[0].tables["ensemble"].columns
+    ratio = np.asarray(table["peak_ratio"], dtype=float)[np.isclose(table["level"], 1.0)]
+    assert len(ratio) == 12
+    mine = ratio[r.hazard.member - 1]
+    assert (ratio <= mine).sum() >= 0.84 * 12 and (ratio < mine).sum() <= 0.84 * 12
+    assert r.verdicts[0].strategy == "probability" and "12 motions" in r.verdicts[0].parameters
+
+
+def test_the_code_spectrum_gives_the_peak() -> None:
+    motion = Compatible(kind="compatible", code="EN1998-1", ground="B", acceleration="0.25 g")
+    context = Context(replace(make_deck(deck()), motion=motion))
+    peak, told = hazard.peak_of(context)
+    assert peak == pytest.approx(0.3, rel=1e-12) and "a_g S" in told
+
+
+def test_motions_scaled() -> None:
+    record = {"kind": "record", "file": "extrados:el-centro-1940", "scale": 1.5}
+    assert hazard.scaled(record, Record(**record), 2.0)["scale"] == 3.0
+    sine = {"kind": "sine-pulse", "amplitude": "0.3 g", "period": 0.6}
+    again = SinePulse(**hazard.scaled(sine, SinePulse(**sine), 2.0))
+    assert again.amplitude == pytest.approx(0.6 * GRAVITY)
+    ntc = {"kind": "compatible", "code": "NTC", "ground": "B", "acceleration": "0.2 g"}
+    assert hazard.scaled(ntc, Compatible(**ntc), 2.0) is None
+
+
+def test_excursions_above_a_level() -> None:
+    count, longest = hazard.above(pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.2)
+    assert count == 2 and longest == pytest.approx(1.2 / 3.0, abs=0.01)  # above a half from T/12 to 5 T/12
+    assert hazard.above(pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.5) == (0, 0.0)
+
+
+# ----- the rules, each with numbers that show it and numbers that do not
+
+
+def verdict(
+    strategy: str, outcome: str, capacity: float | None = None, demand: float | None = None, **more
+) -> StrategyVerdict:
+    keys = {
+        "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "margin": None,
+        "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
+    }  # fmt: skip
+    return StrategyVerdict(strategy=strategy, outcome=outcome, capacity=capacity, demand=demand, **(keys | more))
+
+
+def rocked(**more) -> Result:
+    keys = {
+        "rotation_of": "block", "outcome": "recovery", "settled": True, "collapse_half_cycle": None, "collapse_time_s": None,
+        "half_cycles": 3, "impacts": 3, "impact_times_s": [], "peak_rotation_rad": 0.1, "peak_rotation_ratio": 0.5,
+        "peak_ground_acceleration_g": 0.4, "energy_supplied_J": 1.0, "energy_lost_at_impacts_J": 1.0, "energy_residual_ratio": 0.0,
+        "steps": 1, "rejected_steps": 0, "restitution": 0.9, "critical_rotation_rad": 0.2, "uplift_acceleration_g": 0.2,
+        "required_friction": 0.2, "decided_by_last_digits": False,
+    }  # fmt: skip
+    return Result("rocking", results=Rocking(**(keys | more)))
+
+
+def facts(rows: list[StrategyVerdict], results: dict | None = None, **more) -> Facts:
+    motion = pulses.sine_pulse(0.4 * GRAVITY, 1.2)
+    return Facts(Building(None), motion, 0.4, {r.strategy: r for r in rows}, results or {}, 1.5, **more)
+
+
+def rules(f: Facts) -> set[str]:
+    return {one.rule for one in explained(f)[0]}
+
+
+def test_static_peak_speaks_where_the_push_is_too_short() -> None:
+    rows = [verdict("tilt", "falls", 0.2, 0.4, margin=0.5), verdict("rocking", "stands")]
+    results = {"rocking": rocked()}
+    found, left = explained(facts(rows, results, needed_s=lambda a: 0.5))
+    assert [r.rule for r in found] == ["static-peak"] and not left
+    assert found[0].numbers["longest_s"] == pytest.approx(0.4, abs=0.01) and found[0].numbers["needed_s"] == 0.5
+    found, left = explained(facts(rows, results, needed_s=lambda a: 0.3))
+    assert not found and left == [("tilt", "rocking")]
+
+
+def test_impact_rule_speaks_where_rules_differ() -> None:
+    rows = [verdict("rocking", "stands"), verdict("dem", "falls")]
+    by_rule = [{"rule": "thesis", "restitution": 0.9, "outcome": "collapse"}, {"rule": "inelastic", "restitution": 0.6, "outcome": "recovery"}]  # fmt: skip
+    assert rules(facts(rows, {"rocking": rocked(outcomes_by_rule=by_rule)})) == {"impact-rule"}
+    same = [{**by_rule[0], "outcome": "recovery"}, by_rule[1]]
+    assert rules(facts(rows, {"rocking": rocked(outcomes_by_rule=same)})) == set()
+
+
+def test_last_digits_and_chance() -> None:
+    rows = [verdict("rocking", "stands"), verdict("dem", "falls")]
+    assert rules(facts(rows, {"rocking": rocked(decided_by_last_digits=True)})) == {"last-digits"}
+    rows = [verdict("rocking", "stands"), verdict("probability", "open", 0.05, 0.4)]
+    assert rules(facts(rows, {"rocking": rocked()})) == {"chance"}
+    rows = [verdict("rocking", "stands"), verdict("probability", "falls", 0.05, 0.99)]
+    assert rules(facts(rows, {"rocking": rocked()})) == set()
+
+
+def test_relations_and_overall_statement() -> None:
+    far = [verdict("tilt", "stands", 0.5, 0.4, margin=1.25), verdict("dem", "stands", margin_at_least=2.0)]
+    f = facts(far)
+    assert f.relation("tilt", "dem") == "apart"
+    near = facts([far[0], verdict("dem", "stands", margin_at_least=1.5)])
+    assert near.relation("tilt", "dem") == "agree"
+    overall, words = conclusion(f, [], [("tilt", "dem")], "block", (1.25, "tilt"), far)
+    assert overall == "stands under all" and "1.25" in words
+    split = facts([verdict("tilt", "falls"), verdict("dem", "stands")])
+    overall, words = conclusion(split, [], [("tilt", "dem")], "block", (None, None), list(split.rows.values()))
+    assert overall == "depends" and "No rule finds a reason" in words
+    assert margin_of(far[1]) == "above 2" and "tilt" in table_of(far)
+
+
+# ----- sensitivity
+
+
+def test_a_value_turns_the_verdict_where_the_closed_form_says() -> None:
+    """A block bears width over height; statics turns where that is the peak of the motion."""
+    block = {"kind": "block", "width": 1.0, "height": 5.0}
+    data = {"structure": block, "motion": PULSE}
+    given = {"strategies": ["tilt", "rocking"], "vary": {"structure.width": 0.1, "structure.height": 0.1}}
+    r = extrados.run({**data, "analysis": {"kind": "assess", "budget": 5, **given}})["assess"]
+    rows = {m.key: m for m in r.sensitivity}
+    width, height = rows["structure.width"], rows["structure.height"]
+    assert (width.low, width.high) == (0.9, 1.1) and width.unit == "m"
+    assert width.tilt_low == pytest.approx(0.9 / 5.0 / 0.3) and width.tilt_high == pytest.approx(1.1 / 5.0 / 0.3)
+    assert width.tilt_turns == pytest.approx(1.5, rel=0.01) and height.tilt_turns == pytest.approx(1.0 / 0.3, rel=0.01)
+    for factor, falls in ((0.97, True), (1.03, False)):
+        if width.rocking_turns is None:
+            break
+        found = extrados.run(
+            {**data, "structure": {**block, "width": factor * width.rocking_turns}, "analysis": {"kind": "rocking"}}
+        )
+        assert (found["rocking"].outcome == "collapse") == falls
+
+
+def test_what_is_moved_by_default() -> None:
+    arch = make_deck(
+        deck(structure={"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9})
+    ).building
+    keys = {v.key: v for v in sensitivity.varied(arch, None, 0.8)}
+    assert set(keys) == {
+        "structure.thickness",
+        "structure.thickness_factor",
+        "joints.friction",
+        "joints.restitution",
+        "material.density",
+    }
+    assert keys["joints.restitution"].base == 0.8 and keys["structure.thickness_factor"].bounded(1.1) == 1.0
+    block = make_deck(deck(structure={"kind": "block", "width": 1.0, "height": 4.0})).building
+    assert "structure.width" in {v.key for v in sensitivity.varied(block, None, None)}

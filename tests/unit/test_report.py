@@ -1,0 +1,85 @@
+"""The report: one source, as HTML and on paper; what it says stands in the stored results."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.building.dimensions import dimensions
+from extrados.decks.reader import DeckError, make_deck
+from extrados.plots import html, typeset
+from extrados.plots.document import Code, Document, Heading, Table, Words
+from extrados.plots.report import write_report
+from extrados.results.limits import LIMITS
+from extrados.results.store import StoreError
+
+ARCH = {"kind": "arch", "radius": 2.0, "thickness": 0.4, "embrace": 180.0, "voussoirs": 12}
+
+
+def test_dimensions_are_span_and_rise_not_the_outer_box() -> None:
+    deck = make_deck({"structure": ARCH, "analysis": {"kind": "tilt"}})
+    found = {d.name: d.length for d in dimensions(deck.building.blocks())}
+    assert found == pytest.approx({"clear span": 3.6, "rise": 1.8, "thickness at the crown": 0.4})
+    vault = make_deck({"structure": {"kind": "vault", "preset": "dejong-a"}, "analysis": {"kind": "tilt"}})
+    found = {d.name: d.length for d in dimensions(vault.building.blocks())}
+    assert found["width of the left buttress"] == pytest.approx(17.0 / 3.0)
+    assert found["clear span"] == pytest.approx(2.0 * 9.25 * np.sin(np.radians(60.0)))
+    column = make_deck({"structure": {"kind": "column", "width": 1.2, "top_width": 0.8, "height": 6.0}, "analysis": {"kind": "tilt"}})  # fmt: skip
+    assert {d.name: d.length for d in dimensions(column.building.blocks())} == pytest.approx(
+        {"width": 1.2, "height": 6.0}
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("report") / "out"
+    deck = {"title": "An <arch> \\ \"of\" #stone", "project": "St Martin", "author": "A. Mason", "date": "2026-05-04", "structure": ARCH,
+            "material": {"density": "2100 kg/m^3"}, "analysis": {"kind": "tilt"}}  # fmt: skip
+    extrados.run(deck).write(out)
+    return out
+
+
+def test_the_page_says_who_what_and_how_to_repeat(folder: Path) -> None:
+    page = (folder / "report.html").read_text()
+    for words in ("St Martin", "A. Mason", "2026-05-04", "Contents", "clear span", "3.6", "material.density", "2100", "kg/m^3",
+                  "Limits of validity", "To repeat it", "Figure 1. The building", LIMITS["tilt"][1][:40]):  # fmt: skip
+        assert words in page, words
+    assert "An &lt;arch&gt;" in page and "<details" not in page, "what is folded vanishes in print"
+    assert "analysis" in page and "http://" not in page.replace("http://www.w3.org", "")
+    sums = re.findall(r"<th>results.h5</th><td>([0-9a-f]{64})</td>", page)
+    assert sums == [extrados.load(folder).summary["files"]["results.h5"]]
+
+
+def test_paper_holds_what_the_page_holds(folder: Path) -> None:
+    pytest.importorskip("typst")
+    write_report(folder, printed=True)
+    content = (folder / "report.pdf").read_bytes()
+    assert content.startswith(b"%PDF-") and re.search(rb"/MediaBox ?\[0 0 595\.2\d* 841\.8\d*\]", content), "A4"
+    assert not list(folder.glob("report-2*"))
+
+
+def test_nothing_in_a_text_is_obeyed(tmp_path: Path) -> None:
+    typst = pytest.importorskip("typst")
+    words = 'a "quote" \\ #panic("no") $x$ *b* _c_ <d> @e // f'
+    blocks = [Heading(words), Words(words, "answer"), Table(("h",), [(words,)]), Code(words)]
+    document = Document(words, [("k", words)], blocks, words)
+    assert typst.compile(typeset.markup(document, tmp_path).encode(), root=str(tmp_path), format="pdf").startswith(
+        b"%PDF"
+    )
+    assert "<d>" not in html.page(document, tmp_path)
+
+
+def test_without_the_typesetter_the_page_is_written_and_pdf_is_refused(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(__import__("sys").modules, "typst", None)
+    assert write_report(folder)[0].exists()
+    with pytest.raises(StoreError, match="pip install typst"):
+        write_report(folder, printed=True)
+
+
+def test_project_author_and_date_are_words() -> None:
+    with pytest.raises(DeckError, match="author: expected text"):
+        make_deck({"author": 3, "structure": ARCH, "analysis": {"kind": "tilt"}})

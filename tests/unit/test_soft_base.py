@@ -1,0 +1,320 @@
+"""A block on a base that gives way: against an integration of its own, closed forms, the rigid block, and a deck's refusals."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import extrados
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry, NoView
+from extrados.building.properties import Initial, Supports
+from extrados.building.rockers.soft_base import soft_base_model
+from extrados.building.templates.block import Block
+from extrados.core.ground import Ground
+from extrados.core.rocking import history
+from extrados.core.soft_base import SoftBase, soft_base_history
+from extrados.schema.constants import GRAVITY
+
+WINKLER, SPRINGS = False, True
+
+
+def block(width: float, height: float, stiffness: float, damping_ratio: float = 0.0, **keys) -> SoftBase:
+    """A rectangle of 2000 kg/m^3 [m], on a base of a stiffness [N/m^3] and a damping ratio."""
+    mass = 2000.0 * width * height
+    damping = 2.0 * damping_ratio * np.sqrt(stiffness * mass / width)
+    inertia = mass * (width**2 + height**2) / 12.0
+    made = SoftBase(mass, inertia, 0.5 * height, 0.5 * width, 0.5 * width, stiffness, damping)
+    return replace(made, **keys)
+
+
+def sunk(base: SoftBase) -> float:
+    """Sinking at rest on equal edges [m]."""
+    return base.mass * GRAVITY / (base.stiffness * (base.toe_left + base.toe_right))
+
+
+def shaking(seed: int, size: float) -> Ground:
+    return Ground(samples=size * np.random.default_rng(seed).normal(size=(2, 40)) * [[1.0], [0.2]], step=0.1)
+
+
+def base_force(base: SoftBase, q: float, z: float, v: float, u: float) -> tuple[float, float]:
+    """Force up and its moment about the foot, from Gauss points between all places where something changes."""
+    left, right = -base.toe_left, base.toe_right
+    sine, cosine = np.sin(q), np.cos(q)
+
+    def pressure(s):
+        sinking, rate = z + s * sine, u + s * cosine * v
+        return np.where(sinking > 0.0, np.maximum(0.0, base.stiffness * sinking + base.damping * rate), 0.0)
+
+    if base.edges:
+        share = 0.5 * (right - left)
+        forces = share * pressure(np.array([left, right]))
+        return float(forces.sum()), float(forces @ [left, right])
+    cuts = [left, right]
+    for level, rise in (
+        (z, sine), (base.stiffness * z + base.damping * u, base.stiffness * sine + base.damping * cosine * v),
+    ):  # fmt: skip
+        if rise and left < -level / rise < right:
+            cuts.append(-level / rise)
+    cuts = np.sort(cuts)
+    low, high = cuts[:-1], cuts[1:]
+    force = moment = 0.0
+    for point in (-1.0 / np.sqrt(3.0), 1.0 / np.sqrt(3.0)):  # exact for cubics
+        s = 0.5 * (low + high) + 0.5 * (high - low) * point
+        part = 0.5 * (high - low) * pressure(s)
+        force, moment = force + part.sum(), moment + (part * s).sum()
+    return float(force), float(moment)
+
+
+def oracle(base: SoftBase, ground: Ground, end: float, times: np.ndarray, start) -> np.ndarray:
+    """Rotation and sinking at times by DOP853 over samples of the ground, with a mass matrix from the place of the centre."""
+
+    def rates(t, y):
+        q, z, v, u = y
+        edge = base.toe_right if q > 0.0 else -base.toe_left
+        place = np.array(
+            [[edge * np.sin(q) + base.height * np.cos(q), 0.0], [-base.height * np.sin(q), -1.0], [1.0, 0.0]]
+        )
+        spin = np.array([(edge * np.cos(q) - base.height * np.sin(q)) * v * v, -base.height * np.cos(q) * v * v, 0.0])
+        mass = np.diag([base.mass, base.mass, base.inertia])
+        force, moment = base_force(base, q, z, v, u)
+        k = t / ground.step
+        a = np.array(
+            [np.interp(k, np.arange(ground.samples.shape[1]), row, left=0.0, right=0.0) for row in ground.samples]
+        )
+        load = base.mass * np.array([-a[0], -a[1] - GRAVITY, 0.0]) - mass @ spin
+        pushed = np.array([-np.cos(q) * moment, -force])
+        return [v, u, *np.linalg.solve(place.T @ mass @ place, place.T @ load + pushed)]
+
+    found, y, t = [np.array(start[:2], dtype=float)[:, None]], np.array(start, dtype=float), 0.0
+    for stop in np.arange(1, round(end / ground.step) + 1) * ground.step:
+        here = times[(times > t + 1e-9) & (times < stop + 1e-9)]
+        here[-1] = stop
+        r = solve_ivp(rates, (t, stop), y, "DOP853", t_eval=here, rtol=1e-10, atol=1e-14, max_step=0.006)
+        found.append(r.y[:2])
+        y, t = r.y[:, -1], stop
+    return np.hstack(found)
+
+
+@pytest.mark.parametrize("edges", [WINKLER, SPRINGS])
+@pytest.mark.parametrize(("damping", "seed"), [(0.0, 3), (0.3, 4), (1.5, 5)])
+def test_rocks_as_an_integration_of_its_own(edges: bool, damping: float, seed: int) -> None:
+    base = replace(block(1.0, 3.0, 2e7, damping, edges=edges), toe_left=0.4, toe_right=0.6)
+    ground = shaking(seed, 2.6)
+    start = (0.0, sunk(base), 0.0, 0.0)
+    r = soft_base_history(base, ground, 2.0, 0.01, tolerance=1e-11, start=start)
+    expected = oracle(base, ground, 2.0, r.time, start)
+    assert sum(r.landings) >= 2
+    assert np.abs(r.rotation).max() > 0.015
+    assert r.rotation == pytest.approx(expected[0], abs=2e-7)
+    assert r.sinking == pytest.approx(expected[1], abs=1e-7)
+
+
+@pytest.mark.parametrize("edges", [WINKLER, SPRINGS])
+@pytest.mark.parametrize("linear", [False, True])
+def test_energy_is_kept(edges: bool, linear: bool) -> None:
+    base = block(1.0, 3.0, 5e7, 0.2, edges=edges, linear=linear)
+    r = soft_base_history(base, shaking(7, 2.5), 5.0, 0.01, tolerance=1e-10, start=(0.0, sunk(base), 0.0, 0.0))
+    energy = r.kinetic + r.potential
+    assert r.spent > 100.0
+    assert np.abs(energy - energy[0] - r.ledger).max() < 1e-6 * np.ptp(energy)
+    assert (np.diff(r.ledger)[r.time[1:] > 4.05] <= 1e-9 * np.ptp(energy)).all()  # nothing is supplied after the motion
+
+
+def test_full_contact_is_a_damped_oscillator() -> None:
+    """A constant acceleration from rest, below uplift: the linear form is (I + m h^2) q'' + c J2 q' + (k J2 - W h) q = m h a."""
+    base = block(1.0, 2.0, 5e7, 0.2, linear=True)
+    a = 0.05 * GRAVITY
+    r = soft_base_history(
+        base,
+        Ground(samples=np.full((1, 3), -a), step=1.0),
+        1.0,
+        0.002,
+        tolerance=1e-12,
+        start=(0.0, sunk(base), 0.0, 0.0),
+    )
+    around = 1.0 / 12.0  # second moment of the base over its depth
+    inertia = base.inertia + base.mass * base.height**2
+    stiffness = base.stiffness * around - base.mass * GRAVITY * base.height
+    w = np.sqrt(stiffness / inertia)
+    xi = base.damping * around / (2.0 * inertia * w)
+    wd = w * np.sqrt(1.0 - xi**2)
+    rest = base.mass * base.height * a / stiffness
+    expected = rest * (1.0 - np.exp(-xi * w * r.time) * (np.cos(wd * r.time) + xi * w / wd * np.sin(wd * r.time)))
+    assert r.landings == (0, 0)
+    assert r.rotation == pytest.approx(expected, abs=1e-10 * rest)
+    assert r.sinking == pytest.approx(sunk(base), rel=1e-12)
+
+
+def test_statics_of_a_winkler_base() -> None:
+    """Yim and Chopra 1984: after uplift M = W b (1 - 2/3 sqrt(theta_u/theta)), theta_u = W / (2 k b^2)."""
+    building = Building(
+        Block(kind="block", width=1.2, height=3.0, depth=0.7), supports=Supports(stiffness=4e7, foundation="winkler")
+    )
+    model = soft_base_model(building, linear=True)
+    b, k, weight = 0.6, 4e7 * 0.7, model.weight
+    lift = weight / (2.0 * k * b**2)
+    assert model.lifted(1) == pytest.approx(lift, rel=1e-9)
+    assert model.uplift(1) == pytest.approx((b / 3.0) / 1.5 - lift, rel=1e-9)
+    for theta in (1.3 * lift, 4.0 * lift, 20.0 * lift):
+        moment = model.restoring(theta) + theta * weight * 1.5
+        assert moment == pytest.approx(weight * b * (1.0 - 2.0 / 3.0 * np.sqrt(lift / theta)), rel=1e-9)
+        assert model.sinking(theta) == pytest.approx(b * (2.0 * np.sqrt(theta * lift) - theta), rel=1e-9, abs=1e-12)
+    # greatest where the moment of the base grows as fast as that of the weight: b/3 sqrt(theta_u) theta^(-3/2) = h
+    best = (b * np.sqrt(lift) / (3.0 * 1.5)) ** (2.0 / 3.0)
+    assert model.capacity(1) == pytest.approx(b / 1.5 * (1.0 - 2.0 / 3.0 * np.sqrt(lift / best)) - best, rel=1e-9)
+    inertia = float(model.block.inertia[0]) + model.core.mass * 1.5**2
+    assert model.periods[0] == pytest.approx(
+        2.0 * np.pi * np.sqrt(inertia / (2.0 / 3.0 * k * b**3 - weight * 1.5)), rel=1e-9
+    )
+    assert model.periods[1] == pytest.approx(2.0 * np.pi * np.sqrt(model.core.mass / (2.0 * k * b)), rel=1e-9)
+
+
+def test_statics_of_two_springs() -> None:
+    """One spring carries the weight from sin q = W/(2 b K) on, K of each: the block then turns about it."""
+    building = Building(
+        Block(kind="block", width=1.2, height=3.0), supports=Supports(stiffness=4e7, foundation="two-spring")
+    )
+    model = soft_base_model(building)
+    lift = np.arcsin(model.weight / (1.2 * 4e7 * 0.6))
+    assert model.lifted(1) == pytest.approx(lift, rel=1e-9)
+    lever = 0.6 * np.sin(lift) + 1.5 * np.cos(lift)
+    assert model.uplift(-1) == pytest.approx((0.6 * np.cos(lift) - 1.5 * np.sin(lift)) / lever, rel=1e-9)
+    assert model.capacity(1) == pytest.approx(model.uplift(1), rel=1e-9)
+    assert model.critical(1) == pytest.approx(np.arctan(0.6 / 1.5), rel=1e-9)
+    assert model.critical(-1) == pytest.approx(-np.arctan(0.6 / 1.5), rel=1e-9)
+
+
+def test_unlike_edges_sink_unlike() -> None:
+    structure = Block(kind="block", mass=4000.0, inertia=3000.0, centre_height=1.2, toe_right=0.5, toe_left=0.3)
+    model = soft_base_model(Building(structure, supports=Supports(stiffness=3e7)))
+    assert model.rest < 0.0
+    assert model.restoring(model.rest) == pytest.approx(0.0, abs=1e-6)
+    still = soft_base_history(
+        model.core,
+        Ground(samples=np.zeros((1, 2)), step=0.5),
+        2.0,
+        0.1,
+        start=(model.rest, model.sinking(model.rest), 0, 0),
+    )
+    assert still.rotation == pytest.approx(model.rest, abs=1e-10)
+    assert still.outcome == "no-hinging"
+
+
+def next_crest(stiffness: float, edges: bool) -> tuple[float, float]:
+    """The crest that follows a release from 0.3 of the critical rotation, of the rigid block and on a damped base [rad]."""
+    rigid = Building(Block(kind="block", width=1.0, height=3.0)).rocker()
+    start, quiet = 0.3 * rigid.critical[0], Ground(samples=np.zeros((1, 2)), step=0.1)
+    expected = history(rigid.body, quiet, 3.0, 0.01, start_rotation=start, tolerance=1e-10)
+    base = block(1.0, 3.0, stiffness, 4.0, edges=edges)
+    weight, turn = base.mass * GRAVITY, np.sin(start)
+    # in equilibrium on the far spring, or on the edge of the bed
+    deep = 2.0 * weight / stiffness if edges else np.sqrt(2.0 * weight * turn / stiffness)
+    r = soft_base_history(base, quiet, 1.8, 0.002, start=(start, deep - 0.5 * turn, 0.0, 0.0))
+    return next(v for kind, _, v in expected.events if kind == "peak"), float(r.rotation.min())
+
+
+def test_two_stiff_springs_that_do_not_bounce_give_housners_impact() -> None:
+    """The impulse acts at the edge that lands, as Housner assumed: 1 - 3/2 sin^2 alpha."""
+    errors = [abs(soft / rigid - 1.0) for rigid, soft in (next_crest(k, SPRINGS) for k in (1e8, 1e9, 1e10))]
+    assert errors[2] < 5e-4
+    assert errors[0] > 5.0 * errors[1] > 25.0 * errors[2]
+
+
+def test_a_stiff_bed_loses_less_than_housners_impact() -> None:
+    """Its impulse acts inside the edge."""
+    (rigid, soft), (_, stiffer) = next_crest(1e9, WINKLER), next_crest(1e10, WINKLER)
+    assert soft == pytest.approx(stiffer, rel=2e-3)
+    assert stiffer < 1.2 * rigid < 0.0
+
+
+def test_a_weak_base_cannot_carry_it() -> None:
+    with pytest.raises(BadGeometry, match="falls over by itself"):
+        _ = soft_base_model(Building(Block(kind="block", width=1.0, height=4.0), supports=Supports(stiffness=1e6))).rest
+
+
+def deck(structure: dict, *kinds: str, **keys) -> dict:
+    return {
+        "structure": structure,
+        "motion": {"kind": "sine-pulse", "amplitude": "0.4 g", "period": 0.6},
+        "supports": {"stiffness": 2e8},
+        "analysis": [{"kind": kind} for kind in kinds],
+        **keys,
+    }
+
+
+BLOCK = {"kind": "block", "width": 1.0, "height": 3.0}
+ARCH = {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 160.0, "voussoirs": 9}
+
+
+def answer(tables: dict, kind: str) -> tuple[str, str]:
+    """Status and reason."""
+    entry = next(a for a in extrados.run(tables).summary["analyses"] if a["kind"] == kind)
+    return entry["status"], entry.get("reason", "")
+
+
+@pytest.mark.parametrize(
+    "structure",
+    [
+        ARCH,
+        {"kind": "frame", "columns": 2, "width": 0.5, "height": 2.0, "spacing": 2.0, "lintel_height": 0.4},
+        {"kind": "stack", "lower_width": 1.0, "lower_height": 1.0, "upper_width": 0.5, "upper_height": 1.5},
+    ],
+    ids=lambda s: s["kind"],
+)
+def test_other_buildings_are_refused_by_name(structure: dict) -> None:
+    status, reason = answer(deck(structure, "rocking"), "rocking")
+    assert status == "refused"
+    assert "supports.stiffness: " in reason
+
+
+@pytest.mark.parametrize(
+    "kind", ["failure-domain", "failure-curves", "fragility", "harmonic-map", "assessment", "resonance"]
+)
+def test_analyses_of_one_coordinate_refuse_it(kind: str) -> None:
+    structure = ARCH if kind == "assessment" else BLOCK
+    status, reason = answer(deck(structure) | {"analysis": [{"kind": kind}]}, kind)
+    assert status == "refused"
+    assert "supports.stiffness: " in reason
+    assert "dem" in reason
+
+
+@pytest.mark.parametrize(
+    ("tables", "word"),
+    [
+        ({"joints": {"restitution": 0.8}}, "restitution"),
+        ({"supports": {"stiffness": 2e8, "abutting_wall": "left"}}, "wall"),
+        ({"dampers": [{"start": [0.0, 1.0], "end": [2.0, 1.0], "damping": 100.0}]}, "dampers"),
+        ({"structure": {**BLOCK, "base_slope": 2.0}}, "base_slope"),
+    ],
+)
+def test_what_it_leaves_out_is_refused(tables: dict, word: str) -> None:
+    status, reason = answer(deck(BLOCK, "rocking") | tables, "rocking")
+    assert status == "refused"
+    assert word in reason
+
+
+def test_keys_of_the_base_are_asked_for_together() -> None:
+    with pytest.raises(ValueError, match="damping_ratio needs stiffness"):
+        Supports(damping_ratio=0.1)
+    status, reason = answer(deck(BLOCK, "tilt", supports={"stiffness": 2e8, "damping_ratio": 0.1}), "tilt")
+    assert status == "refused"
+    assert "damping_ratio" in reason
+
+
+def test_start_and_linear_form_through_the_building() -> None:
+    building = Building(
+        Block(kind="block", width=1.0, height=3.0),
+        supports=Supports(stiffness=2e8),
+        initial=Initial(rotation_ratio=0.2),
+    )
+    assert soft_base_model(building, linear=True).core.linear
+    run = extrados.run(
+        deck(BLOCK, initial={"rotation_ratio": -0.2})
+        | {"analysis": [{"kind": "rocking", "form": "linear", "end_time": 2.0}]}
+    )
+    found = run["rocking"]
+    assert run.array("rocking", "rotation")[0] == pytest.approx(-0.2 * found.critical_rotation_left_rad)
+    with pytest.raises(NoView, match="rocking"):
+        building.rocker()

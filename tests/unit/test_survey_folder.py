@@ -1,0 +1,96 @@
+"""Folders of buildings, and two runs beside each other."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from test_every_strategy import quick_save
+
+import extrados
+from extrados.analyses.context import Context
+from extrados.core.errors import Cancelled
+from extrados.decks.reader import DeckError, make_deck
+from extrados.plots import comparing, html, style
+from extrados.results.compare import compare
+from extrados.running import survey
+from extrados.running.run import Run, compute
+
+COMMON = """motion = { kind = "sine-pulse", amplitude = "0.3 g", period = 0.6 }
+analysis = [{ kind = "assess", budget = 5, strategies = ["tilt", "rocking"] }]
+"""
+COLUMN = 'structure = {{ kind = "column", width = {}, height = 6.0, drums = 3 }}\n'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    place = tmp_path / "towers"
+    place.mkdir()
+    (place / "common.toml").write_text(COMMON)
+    for width in (2.0, 0.8, 1.2):
+        (place / f"w{width}.toml").write_text(COLUMN.format(width))
+    return place
+
+
+def test_the_worst_comes_first(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(style, "save", quick_save)
+    rows = survey.assess_folder(folder, tmp_path / "out", figures=False)
+    assert [r.building for r in rows] == ["w0.8", "w1.2", "w2.0"]
+    assert [r.least_margin for r in rows] == pytest.approx([0.8 / 6 / 0.3, 1.2 / 6 / 0.3, 2.0 / 6 / 0.3])
+    told = list(csv.DictReader((tmp_path / "out" / "ranking.csv").open()))
+    assert [t["building"] for t in told] == ["w0.8", "w1.2", "w2.0"] and told[2]["overall"] == "stands under all"
+    page = (tmp_path / "out" / "ranking.html").read_text()
+    assert page.index("w0.8") < page.index("w1.2") and "limit analysis" in page
+    assert extrados.load(rows[0].folder)["assess"].overall == rows[0].overall
+    assert not (tmp_path / "out.checkpoint").exists()
+
+
+def test_it_goes_on_where_it_was_stopped(folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    done: list[str] = []
+    one = survey.SurveyJob._one
+
+    def stopped(job: survey.SurveyJob, k: int, threads: int) -> dict[str, np.ndarray]:
+        if len(done) == 1:
+            raise Cancelled(0, "interrupted")
+        done.append(job.names[k])
+        return one(job, k, threads)
+
+    monkeypatch.setattr(survey.SurveyJob, "_one", stopped)
+    assert len(survey.assess_folder(folder, tmp_path / "out", figures=False)) == 1
+    again: list[str] = []
+    monkeypatch.setattr(
+        survey.SurveyJob, "_one", lambda job, k, threads: (again.append(job.names[k]), one(job, k, threads))[1]
+    )
+    rows = survey.assess_folder(folder, tmp_path / "out", resume=True, figures=False)
+    assert len(rows) == 3 and not set(done) & set(again), "the building that was done is not computed anew"
+
+
+def test_all_that_is_wrong_is_told_with_its_file(folder: Path) -> None:
+    (folder / "bad.toml").write_text(COLUMN.format(-1.0))
+    (folder / "worse.toml").write_text("structure = 3\n")
+    with pytest.raises(DeckError) as found:
+        survey.decks_of(folder)
+    assert len(found.value.complaints) == 2
+    assert "bad.toml" in found.value.complaints[0] and "worse.toml" in found.value.complaints[1]
+
+
+def test_what_changed_between_two_runs() -> None:
+    def ran(width: float) -> Run:
+        deck = {"structure": {"kind": "block", "width": width, "height": 5.0}, "motion": {"kind": "constant", "amplitude": "0.22 g"},
+                "analysis": {"kind": "tilt"}}  # fmt: skip
+        return compute(Context(make_deck(deck)))
+
+    same = compare(ran(1.0), ran(1.0))
+    assert same.same and "Nothing but" in comparing.document(("a", "b"), same).blocks[0].text
+    found = compare(ran(1.0), ran(1.2))
+    assert [(c.key, c.old, c.new) for c in found.deck] == [("structure.width", 1.0, 1.2)]
+    (verdict,) = found.verdicts
+    assert (
+        (verdict.key, verdict.ratio) == ("tilt", pytest.approx(1.2))
+        and verdict.old.startswith("falls")
+        and verdict.new.startswith("stands")
+    )
+    numbers = {c.key: c.ratio for c in found.numbers["tilt"]}
+    assert numbers["collapse_acceleration_g"] == pytest.approx(1.2) and numbers["weight_N"] == pytest.approx(1.2)
+    assert compare(ran(1.0), ran(1.0 + 1e-7), tolerance=1e-5).numbers == {}
+    assert "collapse_acceleration_g" in html.page(comparing.document(("a", "b"), found), Path())
