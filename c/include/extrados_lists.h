@@ -68,7 +68,8 @@
 #define EXTRADOS_SLA_LAW_LIST(ENTRY) \
   ENTRY(1, linear, "linear") \
   ENTRY(2, exponential, "exponential") \
-  ENTRY(3, hordijk, "hordijk")
+  ENTRY(3, hordijk, "hordijk") \
+  ENTRY(4, yielding, "yielding")
 
 /* How cracked material behaves: fixed orthogonal cracks, cracks that turn with the strain, one damage for all */
 #define EXTRADOS_SLA_CRACKING_LIST(ENTRY) \

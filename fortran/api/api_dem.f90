@@ -7,8 +7,8 @@ module api_dem
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, laws, joints, start, moves, settings, run, go_on, state_size, state, resume
-   public :: summary, history, bodies, contacts
+   public :: create, laws, joints, start, moves, settings, rigid, run, go_on, state_size, state, resume
+   public :: summary, effort, history, bodies, contacts
 
 contains
 
@@ -166,6 +166,29 @@ contains
       end if
       call handle_leave(handle)
    end subroutine settings
+
+   !> Contacts without springs instead of the joints' stiffness and damping
+   subroutine rigid(handle, used, quasi_static, rebound, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : built_model, built_model_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: used                      !! 1: rigid contacts
+      integer(c_int), intent(in) :: quasi_static              !! 1: every step starts from rest
+      real(c_double), intent(in) :: rebound                   !! coefficient of restitution at a contact point, 0 to 1
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: built
+      call built_model_take(handle, built, status)
+      if (status /= status_ok) return
+      if (.not. (rebound >= 0.0_c_double .and. rebound <= 1.0_c_double)) then
+         status = status_invalid_argument
+      else
+         built%rigid = used /= 0
+         built%quasi_static = used /= 0 .and. quasi_static /= 0
+         built%rebound = rebound
+      end if
+      call handle_leave(handle)
+   end subroutine rigid
 
    !> Settle, shake, record; pauses after some steps where asked
    subroutine run(handle, motions, motion, scale, nt, wanted, steps, paused, time, status)
@@ -335,6 +358,32 @@ contains
       end if
       call handle_leave(handle)
    end subroutine summary
+
+   !> What rigid contacts took in the last run
+   subroutine effort(handle, counts, residual, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_not_ready
+      use dem_handle, only : built_model, built_model_take
+      integer(c_int64_t), intent(in) :: handle
+      !> Steps, factorisations, most rounds of a step, steps that did not converge
+      integer(c_int), intent(out) :: counts(4)
+      real(c_double), intent(out) :: residual                 !! greatest violation over gravity's velocity in a step
+      integer(c_int), intent(out) :: status
+      type(built_model), pointer :: built
+      counts = 0
+      residual = 0.0_c_double
+      call built_model_take(handle, built, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(built%record)) then
+         status = status_ok
+         associate (used => built%model%rigid)
+            counts = int([used%steps, used%factors, used%most_rounds, used%open_steps], c_int)
+            residual = used%residual
+         end associate
+      end if
+      call handle_leave(handle)
+   end subroutine effort
 
    !> What the last run recorded
    subroutine history(handle, nb, nt, time, place, rate, energy, status)

@@ -26,7 +26,7 @@ contains
       integer(c_int), intent(in) :: per                       !! nodes of an element
       integer(c_int), intent(in) :: elements
       integer(c_int), intent(in) :: connect(per, elements)
-      real(c_double), intent(in) :: property(11, elements)    !! as of `plane`, angles to the element's x
+      real(c_double), intent(in) :: property(14, elements)    !! as of `plane`, angles to the element's x
       integer(c_int), intent(in) :: choice(5, elements)       !! as of `plane`
       integer(c_int), intent(out) :: bad                      !! inverted element
       integer(c_int), intent(out) :: status

@@ -112,8 +112,9 @@ contains
       !> Thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength that reduces ft [Pa] or 0,
       !> angle of the only crack normal allowed [rad], growth of the compressive strength per lateral pressure;
       !> angle of the bed joints [rad], tensile strength (0: none is bedded) and fracture energy along over across them,
-      !> shear factor, crack band or 0, see sla_bedding
-      real(c_double), intent(in) :: property(11, elements)
+      !> shear factor, crack band or 0, compressive strength along over across them (0: one for all), its b and c, see
+      !> sla_bedding
+      real(c_double), intent(in) :: property(14, elements)
       !> Table of tension teeth (0 none), first and last of them where the crack band follows the direction of the crack
       !> (0 where not); table of compression teeth; 1: the crack normal is given, 2: also the shear is kept
       integer(c_int), intent(in) :: choice(5, elements)
@@ -145,19 +146,23 @@ contains
       call group_added(handle, model, connect, 2, group, status)
    end subroutine plane
 
-   !> Bars
-   subroutine bars(handle, elements, connect, property, choice, bad, status)
-      use common_status, only : status_ok, status_out_of_memory
+   !> Bars by the strain that the displacements of their nodes make
+   subroutine bars(handle, ways, per, elements, connect, gradient, property, choice, bad, status)
+      use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
       use sla_bar, only : bar_group, bar_group_new
-      use sla_group, only : element_group
+      use sla_group, only : element_group, most_entries
       use sla_handle, only : group_added, group_begun
       use sla_model, only : element_model
       integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: ways                          !! directions of a node, 2 or in space 3
+      integer(c_int), intent(in) :: per                           !! nodes of a bar
       integer(c_int), intent(in) :: elements
-      integer(c_int), intent(in) :: connect(2, elements)
-      real(c_double), intent(in) :: property(2, elements)     !! area [m^2], Young's modulus [Pa]
-      integer(c_int), intent(in) :: choice(2, elements)       !! table of tension teeth, of compression teeth, 0 none
-      integer(c_int), intent(out) :: bad                      !! bar without length
+      integer(c_int), intent(in) :: connect(per, elements)
+      real(c_double), intent(in) :: gradient(ways, per, elements) !! strain per displacement in x, y and z [1/m]
+      real(c_double), intent(in) :: property(2, elements)         !! volume [m^3], Young's modulus [Pa]
+      !> Table of tension teeth, of compression teeth, 0 none; 0 bears both, 1 tension, 2 pressure alone
+      integer(c_int), intent(in) :: choice(3, elements)
+      integer(c_int), intent(out) :: bad                          !! bar without length
       integer(c_int), intent(out) :: status
       type(element_model), pointer :: model
       type(bar_group), allocatable :: new_bars
@@ -165,14 +170,21 @@ contains
       integer :: info
       !f2py threadsafe
       bad = 0
-      call group_begun(handle, connect, choice, model, status)
+      call group_begun(handle, connect, choice(1:2, :), model, status)
       if (status /= status_ok) return
       allocate (new_bars, stat=info)
-      status = status_out_of_memory
-      if (info == 0) call bar_group_new(model%xy, connect, property(1, :), property(2, :), choice(1, :), choice(2, :), &
-         model%teeth, model%options, new_bars, bad, status)
+      if (any(choice(3, :) < 0) .or. any(choice(3, :) > 2) .or. ways * per > most_entries .or. &
+          ways /= size(model%xy, 1)) then
+         status = status_invalid_argument
+      else if (info /= 0) then
+         status = status_out_of_memory
+      else
+         call bar_group_new(reshape(gradient, [int(ways * per), int(elements)]), property(1, :), property(2, :), &
+            choice(1, :), choice(2, :), merge(-1_c_int, choice(3, :), choice(3, :) == 2), model%teeth, model%options, &
+            new_bars, bad, status)
+      end if
       call move_alloc(new_bars, group)
-      call group_added(handle, model, connect, size(model%xy, 1), group, status)
+      call group_added(handle, model, connect, int(ways), group, status)
    end subroutine bars
 
    !> Linear springs between freedoms of two nodes, or of one and the ground (node 0)

@@ -17,7 +17,7 @@ module dem_energy
       real(wp) :: potential = 0.0_wp      !! of gravity, 0 at rest [J]
       real(wp) :: elastic = 0.0_wp        !! in the springs [J]
       real(wp) :: friction = 0.0_wp       !! lost by sliding and by breaking [J]
-      real(wp) :: damping = 0.0_wp        !! lost in dashpots [J]
+      real(wp) :: damping = 0.0_wp        !! lost in dashpots, or by impacts of rigid contacts [J]
       real(wp) :: mass_damping = 0.0_wp   !! lost by mass-proportional damping [J]
       real(wp) :: work = 0.0_wp           !! done by the ground and the supports [J]
    end type energy_terms
@@ -67,7 +67,7 @@ contains
       now%work = now%work + model%contacts%support_work
       do k = 1, model%contacts%pairs
          associate (pair => model%contacts%pair(k))
-            now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
+            if (.not. model%rigid%used) now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
             now%friction = now%friction + pair%loss_before(1) + sum(pair%point%friction_loss)
             now%damping = now%damping + pair%loss_before(2) + sum(pair%point%damping_loss)
             now%work = now%work + pair%support_work

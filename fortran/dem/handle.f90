@@ -31,6 +31,9 @@ module dem_handle
       type(loading) :: load                         !! without the ground
       real(wp) :: mass_damping = 0.0_wp             !! alpha [1/s]
       type(run_options) :: options
+      logical :: rigid = .false.                    !! contacts without springs, see dem_moreau
+      logical :: quasi_static = .false.
+      real(wp) :: rebound = 0.0_wp
       logical :: settled = .false.                  !! the settings were given
       type(block_model), allocatable :: model                !! as the last run left it
       type(run_record), allocatable :: record       !! of the last run
@@ -265,6 +268,9 @@ contains
       model%load%gravity = built%load%gravity
       model%load%moving_base = built%load%moving_base
       model%mass_damping = built%mass_damping
+      model%rigid%used = built%rigid
+      model%rigid%quasi_static = built%quasi_static
+      model%rigid%rebound = built%rebound
    end subroutine start_model
 
    !> Contact points that are closed at the end of the last run; counts them, writes as many as there is room for

@@ -29,6 +29,7 @@ module dem_law
    implicit none
    private
    public :: joint_law, act, elastic_energy
+   public :: point_frame, point_force, frame_of, relative, hand_over
 
    !> A type of joint; stiffnesses per area times depth
    type :: joint_law

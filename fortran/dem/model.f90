@@ -6,10 +6,29 @@ module dem_model
    use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
    use dem_law, only : joint_law, act
    use dem_loading, only : loading, mean_acceleration, move_rate
+   use nonsmooth_impulses, only : impulse_problem
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: block_model, advance, critical_step
+   public :: block_model, rigid_contacts, advance, critical_step, prepare, predict, move, finish
+
+   !> Contacts without springs, see dem_moreau
+   type :: rigid_contacts
+      logical :: used = .false.                !! instead of the joints' springs and dashpots
+      logical :: quasi_static = .false.        !! every step starts from rest
+      integer :: waits = 0                     !! steps in a row in which time stands still, until all has come to rest
+      real(wp) :: rebound = 0.0_wp             !! Newton's coefficient of restitution at each contact point
+      integer :: pairs = -1                    !! for which the problem was made; -1: for none
+      type(impulse_problem) :: problem
+      integer, allocatable :: node(:)          !! (bodies) rank in the problem, 0 for supports
+      real(wp), allocatable :: place(:, :)     !! (5, bodies) where the old velocities lead to
+      integer, allocatable :: point(:, :)      !! (2, pairs) number of each contact point in the problem
+      integer :: steps = 0                     !! solved so far
+      integer :: factors = 0                   !! factorisations they took
+      integer :: most_rounds = 0               !! greatest number of rounds of one step
+      integer :: open_steps = 0                !! steps that did not converge
+      real(wp) :: residual = 0.0_wp            !! greatest violation, over the velocity that gravity gives in a step
+   end type rigid_contacts
 
    type :: block_model
       type(body_set) :: set
@@ -29,6 +48,7 @@ module dem_model
       integer :: steps = 0
       logical :: shaking = .false.             !! false while settling: the ground rests
       logical :: stale = .false.               !! somebody moved far enough to look for contacts again
+      type(rigid_contacts) :: rigid
    end type block_model
 
 contains
@@ -163,7 +183,7 @@ contains
       integer :: k
       real(wp) :: rate(3)
       rate = [model%base(1), model%base(2), 0.0_wp]
-      if (model%shaking) then
+      if (model%shaking .and. model%rigid%waits == 0) then
          do k = 1, size(model%load%move)
             if (b%number == model%load%move(k)%body) rate = rate &
                + move_rate(model%load%move(k), model%t + 0.5_wp * model%step)
@@ -231,7 +251,7 @@ contains
       type(block_model), intent(inout) :: model
       model%base_place = model%base_place + model%step * model%base
       model%drift = model%step
-      model%t = model%t + model%step
+      if (model%rigid%waits == 0) model%t = model%t + model%step
       model%steps = model%steps + 1
    end subroutine finish
 

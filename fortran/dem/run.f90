@@ -12,6 +12,7 @@ module dem_run
    use dem_energy, only : energy_now, energy_residual, energy_terms
    use dem_loading, only : movement_end
    use dem_model, only : block_model, advance, critical_step
+   use dem_moreau, only : advance_rigid, rigid_step
    use dem_search, only : search
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -51,6 +52,7 @@ module dem_run
       real(wp) :: residual = 0.0_wp          !! greatest, over the energy that went round
       type(energy_terms) :: start            !! energies as the shaking began
       real(wp) :: round = 0.0_wp             !! greatest energy that went round so far [J]
+      real(wp) :: taken = 0.0_wp             !! greatest loss by rigid contacts so far [J]
       integer :: calm_looks = 0              !! looks in a row at which all was quiet
       logical :: paused = .false.            !! it has not come to its end and can go on
    end type run_record
@@ -85,9 +87,11 @@ contains
       call critical_step(model, record%critical, status)
       if (status /= status_ok) return
       model%step = options%step
+      if (model%rigid%used) record%critical = 0.0_wp     ! none: any step is stable
       if (.not. model%step > 0.0_wp) model%step = options%fraction * record%critical
+      if (.not. model%step > 0.0_wp) model%step = rigid_step(model)
       record%least_step = model%step
-      if (model%step > record%critical) record%reason = stop_step
+      if (model%step > record%critical .and. .not. model%rigid%used) record%reason = stop_step
       if (record%reason == stop_end) call overlapping(model, record)
       if (record%reason /= stop_end) return
       call mark_rest(model)
@@ -128,24 +132,54 @@ contains
       model%set%item%rest_angle = model%set%item%angle
    end subroutine mark_rest
 
-   !> Rest under gravity by kinetic damping: whenever the kinetic energy has passed a peak, all stops
+   !> Rest under gravity: by kinetic damping on springs, or without inertia where contacts are rigid
    subroutine settle(model, options, record, status)
       type(block_model), intent(inout) :: model
       type(run_options), intent(in) :: options
       type(run_record), intent(inout) :: record
       integer(c_int), intent(out) :: status
-      integer, parameter :: batch = 8
       type(run_options) :: quiet
+      logical :: rests
+
+      ! A tiny step or collapse limit of the run must not keep from rest what stands.
+      quiet = options
+      quiet%collapse = options%settlement
+      model%shaking = .false.
+      if (model%rigid%used) then
+         call settle_rigid(model, quiet, record, rests, status)
+      else
+         call settle_springs(model, quiet, record, rests, status)
+      end if
+      if (status /= status_ok) return
+      if (.not. rests) then
+         record%reason = stop_unsettled
+         if (record%blamed(1) == 0) record%blamed(1) = maxloc(abs(model%set%item%fx * model%set%item%inverse_mass) &
+            + abs(model%set%item%fy * model%set%item%inverse_mass + model%load%gravity(2)), &
+            mask=.not. model%set%item%fixed, dim=1)
+      end if
+      call calm(model)
+      model%set%item%bounces = 0
+      model%set%item%airborne = 0.0_wp
+      model%t = 0.0_wp
+      model%drift = 0.0_wp
+      model%steps = 0
+   end subroutine settle
+
+   !> Whenever the kinetic energy has passed a peak, all stops
+   subroutine settle_springs(model, options, record, rests, status)
+      type(block_model), intent(inout) :: model
+      type(run_options), intent(in) :: options
+      type(run_record), intent(inout) :: record
+      logical, intent(out) :: rests
+      integer(c_int), intent(out) :: status
+      integer, parameter :: batch = 8
       real(wp) :: kinetic, before, step
       integer :: n
 
       status = status_ok
-      ! A tiny step or collapse limit of the run must not keep from rest what stands.
-      quiet = options
-      quiet%collapse = options%settlement
+      rests = .false.
       step = model%step
       model%step = max(step, options%fraction * record%critical)
-      model%shaking = .false.
       before = 0.0_wp
       n = 0
       do while (n < options%settle_steps)
@@ -159,15 +193,14 @@ contains
             return
          end if
          if (kinetic < before) then
-            model%set%item%vx = 0.0_wp
-            model%set%item%vy = 0.0_wp
-            model%set%item%spin = 0.0_wp
+            call stop_all(model)
             before = 0.0_wp
-            if (unbalanced(model) < options%settle_tolerance) exit
+            rests = unbalanced(model) < options%settle_tolerance .and. n < options%settle_steps
+            if (rests) exit
          else
             before = kinetic
          end if
-         call limits(model, quiet, record)
+         call limits(model, options, record)
          if (record%reason /= stop_end) exit
          if (cancel_requested()) then
             status = status_cancelled
@@ -176,19 +209,57 @@ contains
       end do
       model%step = min(model%step, step)   ! the step may have been cut as contacts formed
       record%settling = n
-      if (n >= options%settle_steps .or. record%reason /= stop_end) then
-         record%reason = stop_unsettled
-         if (record%blamed(1) == 0) record%blamed(1) = maxloc(abs(model%set%item%fx * model%set%item%inverse_mass) &
-            + abs(model%set%item%fy * model%set%item%inverse_mass + model%load%gravity(2)), &
-            mask=.not. model%set%item%fixed, dim=1)
-      end if
-      call calm(model)
-      model%set%item%bounces = 0
-      model%set%item%airborne = 0.0_wp
-      model%t = 0.0_wp
-      model%drift = 0.0_wp
-      model%steps = 0
-   end subroutine settle
+   end subroutine settle_springs
+
+   !> Steps without inertia, until gravity moves nothing any more; gaps close meanwhile
+   subroutine settle_rigid(model, options, record, rests, status)
+      type(block_model), intent(inout) :: model
+      type(run_options), intent(in) :: options
+      type(run_record), intent(inout) :: record
+      logical, intent(out) :: rests
+      integer(c_int), intent(out) :: status
+      integer, parameter :: most = 20000
+      logical :: quasi_static
+      real(wp) :: speed
+
+      rests = .false.
+      quasi_static = model%rigid%quasi_static
+      model%rigid%quasi_static = .true.
+      do while (record%settling < min(most, options%settle_steps))
+         call several(model, 1, options%threads, record, status)
+         if (status /= status_ok) return
+         record%settling = record%settling + 1
+         associate (b => model%set%item)
+            speed = maxval(abs(b%vx) + abs(b%vy) + b%radius * abs(b%spin))
+         end associate
+         if (.not. speed <= huge(speed)) then
+            status = status_not_finite
+            return
+         end if
+         rests = speed < options%settle_tolerance * model%kick * hypot(model%load%gravity(1), model%load%gravity(2))
+         if (rests) exit
+         call limits(model, options, record)
+         if (record%reason /= stop_end) exit
+         if (cancel_requested()) then
+            status = status_cancelled
+            return
+         end if
+      end do
+      model%rigid%quasi_static = quasi_static
+      call stop_all(model)
+      model%rigid%steps = 0
+      model%rigid%factors = 0
+      model%rigid%most_rounds = 0
+      model%rigid%open_steps = 0
+      model%rigid%residual = 0.0_wp
+   end subroutine settle_rigid
+
+   subroutine stop_all(model)
+      type(block_model), intent(inout) :: model
+      model%set%item%vx = 0.0_wp
+      model%set%item%vy = 0.0_wp
+      model%set%item%spin = 0.0_wp
+   end subroutine stop_all
 
    !> No dashpot force and no loss is left from settling
    subroutine calm(model)
@@ -243,7 +314,12 @@ contains
       status = status_ok
       target_steps = model%steps + count
       do while (model%steps < target_steps)
-         call advance(model, target_steps - model%steps, threads)
+         if (model%rigid%used) then
+            call advance_rigid(model, target_steps - model%steps, status)
+            if (status /= status_ok) return
+         else
+            call advance(model, target_steps - model%steps, threads)
+         end if
          if (.not. model%stale) cycle
          model%stale = .false.
          if (.not. all(abs(model%set%item%x) + abs(model%set%item%y) <= huge(1.0_wp))) then
@@ -254,6 +330,7 @@ contains
          if (status /= status_ok) return
          record%searches = record%searches + 1
          record%most_pairs = max(record%most_pairs, model%contacts%pairs)
+         if (model%rigid%used) cycle
          ! New contacts may be stiffer than those of the start.
          call critical_step(model, critical, status)
          if (status /= status_ok) return
@@ -291,8 +368,10 @@ contains
          energy = energy_now(model)
          record%round = max(record%round, energy%kinetic + abs(energy%potential - record%start%potential) &
             + energy%friction + energy%damping + energy%mass_damping)
-         record%residual = max(record%residual, &
-            abs(energy_residual(energy, record%start)) / max(record%round, record%start%elastic, tiny(1.0_wp)))
+         if (.not. model%rigid%quasi_static) record%residual = max(record%residual, &
+            energy_missing(model, record, energy) / max(record%round, record%start%elastic, still(model), tiny(1.0_wp)))
+         ! Time may have stood still meanwhile.
+         if (due .and. model%rigid%quasi_static) due = model%t > record%wanted(record%points + 1)
          if (due) call write_down(model, record, energy)
          if (.not. record%residual <= options%residual_limit) then
             record%reason = stop_blow_up
@@ -302,7 +381,7 @@ contains
          if (record%reason == stop_end) call limits(model, options, record)
          if (options%stop_at_rest .and. model%t > quiet) then
             record%calm_looks = merge(record%calm_looks + 1, 0, unbalanced(model) < 1.0e-3_wp &
-               .and. energy%kinetic < 1.0e-6_wp * record%round)
+               .and. (model%rigid%quasi_static .or. energy%kinetic < 1.0e-6_wp * record%round))
             if (record%calm_looks >= 50 .and. record%reason == stop_end) record%reason = stop_rest
          end if
          if (record%reason /= stop_end .or. model%t - model%drift >= options%end_time - 0.5_wp * model%step) exit
@@ -313,6 +392,27 @@ contains
       end do
       record%stop_time = model%t - model%drift
    end subroutine run_on
+
+   !> Energy below which rigid contacts do not move: a fall by a millionth of the smallest block [J]
+   pure function still(model) result(energy)
+      type(block_model), intent(in) :: model
+      real(wp) :: energy
+      energy = 0.0_wp
+      if (model%rigid%used) energy = 1.0e-6_wp * model%set%size * hypot(model%load%gravity(1), model%load%gravity(2)) &
+         * sum(model%set%item%mass)
+   end function still
+
+   !> Energy that came from nowhere; what rigid contacts take they must not give back, or it came from nowhere too [J]
+   function energy_missing(model, record, energy) result(missing)
+      type(block_model), intent(in) :: model
+      type(run_record), intent(inout) :: record
+      type(energy_terms), intent(in) :: energy
+      real(wp) :: missing
+      missing = abs(energy_residual(energy, record%start))
+      if (.not. model%rigid%used) return
+      record%taken = max(record%taken, energy%damping)
+      missing = missing + record%taken - energy%damping
+   end function energy_missing
 
    !> State at the time of the last forces: half a step before the velocities, a step before the places
    subroutine write_down(model, record, now)

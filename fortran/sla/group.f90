@@ -132,6 +132,7 @@ module sla_group
       procedure :: hold
       procedure :: advance
       procedure :: excess
+      procedure :: elastic
    end type point_group
 
    type :: group_holder
@@ -299,6 +300,17 @@ contains
       end associate
       energy = 0.0_wp
    end function excess
+
+   !> Energy of the elastic slip of points that slide, which their stiffness does not have [J]
+   pure function elastic(group, lambda, u) result(energy)
+      class(point_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: u(0:)
+      real(wp) :: energy
+      associate (none => group, load => lambda, same => u)
+      end associate
+      energy = 0.0_wp
+   end function elastic
 
    !> What slides has come as far as in the state ua + lambda ub
    pure subroutine advance(group, lambda, ua, ub)

@@ -36,6 +36,7 @@ module sla_interface
       procedure :: hold
       procedure :: advance
       procedure :: excess
+      procedure :: elastic
    end type interface_group
 
 contains
@@ -268,12 +269,29 @@ contains
       end do
    end function excess
 
+   pure function elastic(group, lambda, u) result(energy)
+      class(interface_group), intent(in) :: group
+      real(wp), intent(in) :: lambda
+      real(wp), intent(in) :: u(0:)
+      real(wp) :: energy, local(8), d(2), friction
+      integer :: e, p
+      energy = 0.0_wp
+      do p = 1, group%points
+         if (.not. is_sliding(group, p)) cycle
+         e = (p + 1) / 2
+         call group%gather(e, u, local)
+         d = jump(group, e, p, local)
+         friction = group%held(1, p) + lambda * group%held(2, p) + soft * shear(group, e, p) * d(2)
+         energy = energy + 0.5_wp * group%area(p) * friction**2 / (shear(group, e, p) - bond(group, e, p))
+      end do
+   end function elastic
+
    pure subroutine advance(group, lambda, ua, ub)
       class(interface_group), intent(inout) :: group
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: ua(0:)
       real(wp), intent(in) :: ub(0:)
-      real(wp) :: local(8), other(8), d(2)
+      real(wp) :: local(8), other(8), d(2), friction, slip
       integer :: e, p
       do p = 1, group%points
          if (.not. is_sliding(group, p)) cycle
@@ -281,8 +299,10 @@ contains
          call group%gather(e, ua, local)
          call group%gather(e, ub, other)
          d = jump(group, e, p, local + lambda * other)
-         if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), d(2))
-         if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), d(2))
+         friction = group%held(1, p) + lambda * group%held(2, p) + soft * shear(group, e, p) * d(2)
+         slip = without(group, e, p, d(2), friction)
+         if (group%mode(p) == slides_up) group%mark(p) = max(group%mark(p), slip)
+         if (group%mode(p) == slides_down) group%mark(p) = min(group%mark(p), slip)
       end do
    end subroutine advance
 
@@ -338,17 +358,17 @@ contains
                ! The first slip: friction carries what it can, the cohesion the rest, at the slip of its own law
                group%mode(p) = merge(slides_up, slides_down, d(2) > 0.0_wp)
                group%start(p) = sign(strength, d(2)) / law%ks(e)
-               group%mark(p) = d(2)
                friction = sign(strength, d(2))
             end if
             event%crack = 0.5_wp * group%area(p) * (bond(group, e, p) - bond_of(group, e, group%slip(p) + 1_c_int)) * &
                (d(2) - group%start(p))**2
             group%slip(p) = group%slip(p) + 1_c_int
-            if (group%mode(p) /= sticks) call begin(group, e, p, friction, d, moved, lambda)
-            if (group%mode(p) == sticks) then   ! friction keeps its force, with more stiffness
-               change = (shear(group, e, p) - bond_of(group, e, group%slip(p) - 1_c_int)) * (d(2) - group%mark(p))
-               group%mark(p) = d(2) - change / (shear(group, e, p) - bond(group, e, p))
+            if (group%mode(p) /= sticks) then
+               call begin(group, e, p, friction, d, moved, lambda)
+            else   ! friction keeps its force, with more stiffness
+               friction = (shear(group, e, p) - bond_of(group, e, group%slip(p) - 1_c_int)) * (d(2) - group%mark(p))
             end if
+            group%mark(p) = without(group, e, p, d(2), friction)
             if (law%table(e) /= 0) then
                call wear_with(group%teeth, law%slip_table(e), group%slip(p), law%table(e), group%tooth(p))
                if (group%tooth(p) > 1 .and. d(1) <= 0.0_wp) group%shut(p) = 1
@@ -358,9 +378,8 @@ contains
             change = (shear(group, e, p) - bond(group, e, p)) * (d(2) - group%mark(p))
             group%mode(p) = merge(slides_up, slides_down, change > 0.0_wp)
             call begin(group, e, p, change, d, moved, lambda)
-            group%mark(p) = d(2)
          case default
-            group%mark(p) = d(2) - friction / (shear(group, e, p) - bond(group, e, p))
+            group%mark(p) = without(group, e, p, d(2), friction)
             group%mode(p) = sticks
             group%held(:, p) = 0.0_wp
             group%stuck(p) = lambda
@@ -386,6 +405,16 @@ contains
          event%shift = group%area(p) * (new%e0 - old%e0)
       end associate
    end subroutine damage
+
+   !> Slip but for what is elastic in its friction [m]
+   pure function without(group, e, p, slip, friction) result(mark)
+      class(interface_group), intent(in) :: group
+      integer, intent(in) :: e, p
+      real(wp), intent(in) :: slip        !! [m]
+      real(wp), intent(in) :: friction    !! [Pa]
+      real(wp) :: mark
+      mark = slip - friction / (shear(group, e, p) - bond(group, e, p))
+   end function without
 
    !> The force of a point that begins to slide with a friction, see `slider`; its balance is found with all the others'
    pure subroutine begin(group, e, p, friction, d, moved, lambda)

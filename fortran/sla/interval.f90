@@ -9,9 +9,30 @@ module sla_interval
    use common_kinds, only : wp
    implicit none
    private
-   public :: cone_interval, overload
+   public :: cone_interval, quadratic_interval, overload
 
 contains
+
+   !> Where a + 2 b lambda + c lambda^2 <= 0, c > 0; empty has lo > hi
+   pure subroutine quadratic_interval(a, b, c, lo, hi)
+      real(wp), intent(in) :: a, b, c
+      real(wp), intent(out) :: lo
+      real(wp), intent(out) :: hi
+      real(wp) :: disc, q
+      lo = huge(1.0_wp)
+      hi = -huge(1.0_wp)
+      disc = b**2 - a * c
+      if (.not. disc >= 0.0_wp) return
+      q = -(b + sign(sqrt(disc), b))     ! both roots without cancellation
+      lo = q / c
+      hi = lo
+      if (abs(q) > 0.0_wp) hi = a / q
+      if (lo > hi) then
+         q = lo
+         lo = hi
+         hi = q
+      end if
+   end subroutine quadratic_interval
 
    !> The admissible interval; empty has lo > hi, an open end is +-huge
    pure subroutine cone_interval(alpha, beta, a, b, lo, hi)

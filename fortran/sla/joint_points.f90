@@ -67,7 +67,7 @@ module sla_joint_points
       integer(c_int), allocatable :: mode(:)     !! sticks, slides_up, slides_down
       integer(c_int), allocatable :: even(:)     !! 0 or 1, changes with the held force
       real(wp), allocatable :: start(:)          !! slip from which the cohesion counts its own [m]
-      real(wp), allocatable :: mark(:)           !! where friction sticks: slip without it; where it slides: so far [m]
+      real(wp), allocatable :: mark(:)           !! slip but for what is elastic in its friction, so far [m]
       real(wp), allocatable :: held(:, :)        !! (2, points) see `slider`, constant and per multiplier [Pa]
       real(wp), allocatable :: stuck(:)          !! multiplier at which a sliding point has stuck last
    contains
@@ -298,10 +298,13 @@ contains
             end do
             return
          end if
-         ! Friction that slides, less its strength, both linear in the multiplier
+         ! It turns back where its slip without what is elastic does, which its force, as the slip, is linear in the
+         ! multiplier
          side = merge(1, -1, group%mode(p) == slides_up)
-         k = side * (group%held(1, p) + lambda * group%held(2, p) + &
-            soft * shear(group, e, p) * (da(2) + lambda * db(2)))
+         k = soft * shear(group, e, p)
+         ta = ta - group%held(1, p) - k * da(2)
+         tb = tb - group%held(2, p) - k * db(2)
+         k = side * (group%held(1, p) + lambda * group%held(2, p) + k * (da(2) + lambda * db(2)))
          call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, 0.0_wp, lambda, noise, p, &
             code_stick, found)
       end associate

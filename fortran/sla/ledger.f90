@@ -33,7 +33,7 @@ contains
       real(wp), intent(in) :: lambda
       integer(c_int), intent(out) :: status
       logical :: counted
-      real(wp) :: now(3), held(2), after, was, s, t, cross, free(4), before(4)
+      real(wp) :: now(3), held(2), after, was, s, t, cross, free(4), before(4), elastic
       integer :: i, n
 
       was = model%lambda_recorded
@@ -86,8 +86,9 @@ contains
             + lambda * model%support(2, 2) + model%support_was(1, 2) + was * model%support_was(2, 2))
       end if
       model%event%rank = 0
+      elastic = model%elastic
       call model_recorded(model, lambda, status)
-      if (counted) model%dissipated = model%dissipated + model%excess
+      if (counted) model%dissipated = model%dissipated + model%excess + elastic - model%elastic
       model%held = held
       model%cross = cross
       model%work = now
@@ -106,7 +107,8 @@ contains
       stored = 0.5_wp * model%scale**2 * &
          (model%work(1) + model%lambda * (model%work(2) + model%cross + model%lambda * model%work(3)))
       ! u K u / 2 - fo.u and the energy of the origins, with K u = f + fo + fh
-      if (model%slides) stored = stored + model%origin_energy - model%excess + 0.5_wp * (model%held(1) + &
+      if (model%slides) stored = stored + model%origin_energy - model%excess + model%elastic + 0.5_wp * ( &
+         model%held(1) + &
          model%lambda * model%held(2) - dot_product(model%fo, model%u_before))
    end function stored_energy
 

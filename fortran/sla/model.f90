@@ -51,6 +51,7 @@ module sla_model
       ! Of the last state where joints slide: displacements [m], held forces [N], energy that they take back [J]
       real(wp), allocatable :: u_before(:), f_before(:)
       real(wp) :: excess = 0.0_wp
+      real(wp) :: elastic = 0.0_wp                       !! of the slip in the last state, see group [J]
       real(wp) :: held(2) = 0.0_wp                       !! fh.u of the last state [J]
       real(wp) :: origin_energy = 0.0_wp                 !! [J]
       type(friction_store) :: friction
@@ -548,6 +549,7 @@ contains
       integer :: g, info
       status = status_ok
       model%excess = 0.0_wp
+      model%elastic = 0.0_wp
       if (.not. model%slides) return
       if (.not. allocated(model%u_before)) then
          allocate (model%u_before, model%f_before, mold=model%ua, stat=info)
@@ -560,6 +562,7 @@ contains
          select type (group => model%holders(g)%group)
          class is (point_group)
             model%excess = model%excess + group%excess(model%u_before)
+            model%elastic = model%elastic + group%elastic(lambda, model%u_before)
          end select
       end do
    end subroutine model_recorded

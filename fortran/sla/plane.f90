@@ -35,7 +35,7 @@ contains
       logical, intent(in) :: selective
       real(wp), intent(in) :: xy(:, :)              !! (2, nodes) [m]
       integer(c_int), intent(in) :: connect(:, :)   !! (nodes of an element, elements), 1-based
-      real(wp), intent(in) :: property(:, :)        !! (11, elements), see points_new
+      real(wp), intent(in) :: property(:, :)        !! (14, elements), see points_new
       integer(c_int), intent(in) :: choice(:, :)    !! (5, elements), see points_new
       type(tooth_tables), intent(in) :: teeth
       type(material_options), intent(in) :: options

@@ -22,11 +22,11 @@ module sla_plane_points
       code_compression => sla_event_compression, code_close => sla_event_close, code_open => sla_event_open, &
       element_t3 => sla_element_t3, element_t6 => sla_element_t6
    use common_status, only : status_ok, status_out_of_memory
-   use sla_bedding, only : bedding, between, in_joint_axes
+   use sla_bedding, only : bedding, between, hill, hill_strength, in_joint_axes
    use sla_element, only : element_rule
    use sla_group, only : point_group, scan_result, material_options, most_entries, unbounded, offer_hi, offer_lo, &
       offer_empty, linear_bound
-   use sla_interval, only : cone_interval, overload
+   use sla_interval, only : cone_interval, overload, quadratic_interval
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -115,7 +115,7 @@ contains
    !> `weight` and `diagonal`, then calls points_ready
    subroutine points_new(group, property, choice, teeth, options, status)
       class(plane_points), intent(inout) :: group
-      !> (11, elements) thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength [Pa], angle of the only
+      !> (14, elements) thickness [m], Young's modulus [Pa], Poisson's ratio, lateral strength [Pa], angle of the only
       !> crack normal allowed [rad], confinement, and the components of `bedding` in their order
       real(wp), intent(in) :: property(:, :)
       !> (5, elements) tables of tension teeth of uncracked points, of the narrowest and the widest band, of compression
@@ -153,8 +153,8 @@ contains
       group%shut = 0
       group%changes = 0
       do e = 1, ne
-         associate (bed => property(7:11, e))
-            group%bed(e) = bedding(bed(1), bed(2), bed(3), bed(4), bed(5))
+         associate (bed => property(7:14, e))
+            group%bed(e) = bedding(bed(1), bed(2), bed(3), bed(4), bed(5), bed(6), bed(7), bed(8))
          end associate
          do k = (e - 1) * group%per + 1, e * group%per
             group%turn(:, k) = [1.0_wp, 0.0_wp]
@@ -197,6 +197,9 @@ contains
             share_of(group, e, p, k) * modulus(k) / tension)
          group%limit(k + 2, p) = group%teeth%strength_of(group%crush_table(e), group%crush(k, p), &
             modulus(k) / compression)
+         if (group%bed(e)%crush > 0.0_wp .and. group%cracked(p) > 0 .and. group%limit(k + 2, p) < unbounded) then
+            group%limit(k + 2, p) = group%limit(k + 2, p) * hill_strength(group%bed(e), normal_of(group, p, k))
+         end if
       end do
       if (group%options%cracking == isotropic) modulus(2) = modulus(1)
       ratio = 1.0_wp / (1.0_wp - nu**2 * modulus(1) * modulus(2) / e0**2)
@@ -344,8 +347,12 @@ contains
          end if
          f = group%limit(3, p)
          more = group%confinement(e)
-         if (f < unbounded) call cone(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, lambda, noise, &
-            p, code_compression + 1, found)
+         if (f < unbounded .and. group%bed(e)%crush > 0.0_wp) then
+            call ellipse(group%bed(e), f, sa, sb, noise, lambda, p, code_compression + 1, found)
+         else if (f < unbounded) then
+            call cone(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, lambda, noise, &
+               p, code_compression + 1, found)
+         end if
          return
       end if
       do k = 1, merge(1, 2, group%axis(e) /= axis_free)
@@ -400,6 +407,32 @@ contains
       end if
    end subroutine cone
 
+   !> Limits of an uncracked point under Hill's criterion
+   pure subroutine ellipse(bed, f, sa, sb, noise, lambda, p, code, found)
+      type(bedding), intent(in) :: bed
+      real(wp), intent(in) :: f                  !! compressive strength across the beds [Pa]
+      real(wp), intent(in) :: sa(3), sb(3)       !! [Pa]
+      real(wp), intent(in) :: noise
+      real(wp), intent(in) :: lambda
+      integer, intent(in) :: p, code
+      type(scan_result), intent(inout) :: found
+      real(wp) :: lo, hi, state(3), over
+      found%bounded = .true.
+      state = sa + lambda * sb
+      over = sqrt(hill(bed, state, state)) / f - 1.0_wp
+      if (maxval(abs(sb)) <= noise) then
+         if (over > 1.0e-9_wp) call offer_empty(found, over, p, code)
+         return
+      end if
+      call quadratic_interval(hill(bed, sa, sa) - f**2, hill(bed, sa, sb), hill(bed, sb, sb), lo, hi)
+      if (lo > hi) then
+         call offer_empty(found, over, p, code)
+      else
+         call offer_hi(found, hi, p, code)
+         call offer_lo(found, lo, p, code)
+      end if
+   end subroutine ellipse
+
    !> True where the stress lies safely inside r <= alpha - beta m; in this module so that it is inlined
    pure function inside_cone(alpha, beta, s) result(inside)
       real(wp), intent(in) :: alpha, beta
@@ -419,13 +452,14 @@ contains
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)
-      real(wp) :: la(most_entries), lb(most_entries), ea(3, most_per), eb(3, most_per), sa(3), sb(3), share, f, fc
+      real(wp) :: la(most_entries), lb(most_entries), ea(3, most_per), eb(3, most_per), sa(3), sb(3), share, f, fc, &
+         nu, more, change
       integer :: e, p, k, j
 
       do e = first, last
          if (group%table(e) == 0 .and. group%crush_table(e) == 0) cycle
-         ! Both have no bound yet: crushing that depends on both principal stresses, and the criterion of another stress
-         if (group%confinement(e) > 0.0_wp .or. is_bedded(group, e)) then
+         ! Hill's criterion has no bound yet
+         if (group%bed(e)%crush > 0.0_wp) then
             least = -1.0_wp
             return
          end if
@@ -441,13 +475,20 @@ contains
                 group%axis(e) == axis_free)) then
                share = sqrt(group%weight(p) / group%stiff(1, p))
                f = group%limit(1, p)
-               if (f < unbounded) then
+               if (f < unbounded .and. is_bedded(group, e)) then
+                  ! Shear of the image changes more than that of the stress: c' D c of the worst direction c
+                  nu = group%stiff(2, p) / group%stiff(1, p)
+                  call lower(f, 1.0_wp, in_joint_axes(group%bed(e), sa, f), in_joint_axes(group%bed(e), sb, 0.0_wp), &
+                     share / sqrt(1.0_wp + 0.5_wp * (1.0_wp - nu) * (group%bed(e)%shear**2 - 1.0_wp)), lambda, least)
+               else if (f < unbounded) then
                   call lower(f, 1.0_wp, sa, sb, share, lambda, least)
                   fc = group%lateral(e)
                   if (fc > 0.0_wp) call lower(f * fc / (f + fc), (fc - f) / (fc + f), sa, sb, share, lambda, least)
                end if
                f = group%limit(3, p)
-               if (f < unbounded) call lower(f, -1.0_wp, sa, sb, share, lambda, least)
+               more = group%confinement(e)
+               if (f < unbounded) call lower(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, share, lambda, &
+                  least)
                cycle
             end if
             do k = 1, merge(1, 2, group%axis(e) /= axis_free)
@@ -455,7 +496,13 @@ contains
                f = group%limit(k, p)
                if (f < unbounded) least = min(least, share * (f - sa(k) - lambda * sb(k)))
                fc = group%limit(k + 2, p)
-               if (fc < unbounded) least = min(least, share * (fc + sa(k) + lambda * sb(k)))
+               if (fc < unbounded) then
+                  more = group%confinement(e)
+                  change = group%stiff(2 * k - 1, p) - 2.0_wp * more * group%stiff(2, p) + &
+                     more**2 * group%stiff(5 - 2 * k, p)
+                  least = min(least, sqrt(group%weight(p) / change) * (fc + sa(k) - more * sa(3 - k) + lambda * ( &
+                     sb(k) - more * sb(3 - k))))
+               end if
                if (.not. group%options%closure .or. group%tooth(k, p) == 1) cycle
                if (group%shut(k, p) /= 0) then
                   least = min(least, -share * (sa(k) + lambda * sb(k)))

@@ -6,7 +6,8 @@
 !> of its strain interval.
 !>
 !> Laws of a band of width h, energy Gf/h per volume: linear to the ultimate strain 2 Gf / (ft h) (thesis Eq. 4.1);
-!> exponential, ft exp(-(eps - eps_0) / eps_f) with eps_f = Gf / (ft h) - eps_0 / 2; Hordijk (1991), below. Ripple:
+!> exponential, ft exp(-(eps - eps_0) / eps_f) with eps_f = Gf / (ft h) - eps_0 / 2; Hordijk (1991), below; yielding, a
+!> plateau at ft that breaks at the strain Gf / (ft h) + eps_0 / 2. Ripple:
 !> tooth i ends at f_i = sigma(eps_i) + p ft and the next begins at f_i - 2 p ft, so E_(i+1) = (f_i - 2 p ft) / eps_i.
 !> Energy-exact (our own): a secant E_1 = f_1 / eps_1 reached from strain eps_0 dissipates
 !> f_1 (eps_1 - eps_0^2 / eps_1) / 2, set equal to the area of the law between them.
@@ -16,7 +17,7 @@
 module sla_sawtooth
    use common_kinds, only : wp
    use common_lists, only : law_linear => sla_law_linear, law_exponential => sla_law_exponential, &
-      law_hordijk => sla_law_hordijk
+      law_hordijk => sla_law_hordijk, law_yielding => sla_law_yielding
    use common_status, only : status_ok, status_invalid_argument, status_snap_back, status_too_many_steps
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -184,7 +185,7 @@ contains
 
    !> Teeth of a law: secant moduli and the stresses that end them
    pure subroutine make_teeth(kind, e, ft, gf, h, p, exact, overshoot, n, modulus, strength, status)
-      integer(c_int), intent(in) :: kind      !! law_linear, law_exponential, law_hordijk
+      integer(c_int), intent(in) :: kind      !! of the list sla_law
       real(wp), intent(in) :: e               !! [Pa]
       real(wp), intent(in) :: ft              !! [Pa]
       real(wp), intent(in) :: gf              !! [N/m]
@@ -202,10 +203,14 @@ contains
       n = 0
       modulus = 0.0_wp
       strength = 0.0_wp
-      call softening_new(kind, e, ft, gf, h, law, status)
+      call softening_new(merge(law_linear, kind, kind == law_yielding), e, ft, gf, h, law, status)
       if (status /= status_ok) return
       status = status_invalid_argument
       if (.not. (p > 0.0_wp .and. p < 1.0_wp)) return
+      if (kind == law_yielding) then
+         call yielding_teeth(law, p, n, modulus, strength, status)
+         return
+      end if
       if (exact) then
          call exact_teeth(law, p, overshoot, n, modulus, strength, status)
          return
@@ -232,6 +237,30 @@ contains
       end do
       n = int(size(modulus), c_int)
    end subroutine make_teeth
+
+   !> Teeth of a plateau at ft that ends at the strain of the energy Gf / h. They end at ft itself, as no more than that
+   !> is borne, and begin p / (1 + p) lower than ft (1 - p): on the mean the energy is less by p
+   pure subroutine yielding_teeth(law, p, n, modulus, strength, status)
+      type(softening), intent(in) :: law       !! the linear one of the same energy
+      real(wp), intent(in) :: p
+      integer(c_int), intent(out) :: n
+      real(wp), intent(inout) :: modulus(:)
+      real(wp), intent(inout) :: strength(:)
+      integer(c_int), intent(out) :: status
+      real(wp) :: last
+      status = status_too_many_steps
+      last = law%total / law%ft + 0.5_wp * law%peak
+      modulus(1) = law%e
+      do n = 1, int(size(modulus), c_int)
+         strength(n) = min(law%ft, modulus(n) * last)
+         if (.not. strength(n) < modulus(n) * last) then
+            status = status_ok
+            return
+         end if
+         if (n < size(modulus)) modulus(n + 1) = modulus(n) * (1.0_wp - p) / (1.0_wp + p)
+      end do
+      n = int(size(modulus), c_int)
+   end subroutine yielding_teeth
 
    !> Teeth that dissipate the energy of the law exactly (our own recipe)
    pure subroutine exact_teeth(law, p, overshoot, n, modulus, strength, status)

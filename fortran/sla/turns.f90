@@ -37,7 +37,8 @@ contains
       logical, intent(out) :: found                      !! false: no motion goes on with more load
       integer(c_int), intent(out) :: status
       type(slider), allocatable :: point(:)
-      real(wp), allocatable :: x(:, :), g(:, :), f(:, :), g0(:), f0(:), matrix(:, :), side(:, :), slip(:)
+      real(wp), allocatable :: x(:, :), g(:, :), f(:, :), g0(:), f0(:), matrix(:, :), side(:, :)
+      integer, allocatable :: rows(:, :)
       logical, allocatable :: sliding(:)
       integer :: i, j, m, slides, count, info
 
@@ -45,8 +46,8 @@ contains
       call find_limited(holders, lambda, ua, ub, point, slides, status)
       if (status /= status_ok) return
       m = size(point)
-      allocate (x(n, m), g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), slip(m), sliding(m), &
-         change(3, m), stat=info)
+      allocate (x(n, m), g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), sliding(m), rows(3, m), &
+         stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0 .or. m == 0) return
       x = 0.0_wp
@@ -82,17 +83,24 @@ contains
          status = status_ok
          return
       end if
-      matrix(:, :) = matmul(f, side(:, 1:m))
-      f0(:) = f0 + matmul(f, side(:, m + 1))
-      call lemke(matrix, f0, slip, sliding, found)
-      if (.not. found) return
+      matrix = 0.0_wp
+      do j = 1, m
+         do i = 1, m
+            matrix(:, j) = matrix(:, j) + f(:, i) * side(i, j)
+         end do
+         f0(:) = f0 + f(:, j) * side(j, m + 1)
+      end do
+      call lemke(matrix, f0, sliding, found, status)
+      if (status /= status_ok .or. .not. found) return
       count = 0
       do i = 1, m
          if (sliding(i) .eqv. i <= slides) cycle
          count = count + 1
-         change(:, count) = [point(i)%group, point(i)%point, int(merge(code_slide, code_stick, sliding(i)))]
+         rows(:, count) = [point(i)%group, point(i)%point, int(merge(code_slide, code_stick, sliding(i)))]
       end do
-      change = change(:, 1:count)
+      allocate (change(3, count), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info == 0) change(:, :) = rows(:, 1:count)
    end subroutine friction_turns
 
    !> Points at the limit of their friction: those that slide, then those that have stuck at this very load
@@ -140,24 +148,26 @@ contains
    end subroutine find_limited
 
    !> w = q + M z, w >= 0, z >= 0, w z = 0
-   pure subroutine lemke(matrix, q, z, positive, found)
+   pure subroutine lemke(matrix, q, positive, found, status)
       real(wp), intent(in) :: matrix(:, :)
       real(wp), intent(in) :: q(:)
-      real(wp), intent(out) :: z(:)
       logical, intent(out) :: positive(:)      !! z is in the solution's basis
       logical, intent(out) :: found            !! false: the pivots ended on a ray
+      integer(c_int), intent(out) :: status
       integer, parameter :: rounds = 20
       real(wp), allocatable :: table(:, :)
       real(wp) :: ratio, least, unit
-      integer :: basis(size(q)), m, i, enters, leaves, row, pivots
+      integer :: basis(size(q)), m, i, enters, leaves, row, pivots, info
 
       m = size(q)
-      z = 0.0_wp
+      status = status_ok
       positive = .false.
       found = .true.
       if (all(q >= 0.0_wp)) return
       ! Columns: w 1 to m, z m + 1 to 2 m, the artificial one, the right side
-      allocate (table(m, 2 * m + 2))
+      allocate (table(m, 2 * m + 2), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
       table = 0.0_wp
       unit = maxval(abs(q))
       do i = 1, m
@@ -175,9 +185,7 @@ contains
          basis(row) = enters
          if (leaves == 2 * m + 1) then
             do i = 1, m
-               if (basis(i) <= m) cycle
-               z(basis(i) - m) = max(table(i, 2 * m + 2), 0.0_wp) * unit / maxval(abs(matrix))
-               positive(basis(i) - m) = .true.
+               if (basis(i) > m) positive(basis(i) - m) = .true.
             end do
             return
          end if

@@ -38,7 +38,7 @@ contains
       integer(c_int) :: equation(2, (nx + 1) * (ny + 1)), connect(4, nx * ny), bad, row, node, direction, reason
       integer(c_int), allocatable :: nodes(:, :), directions(:, :)
       integer(c_int) :: choice(5, nx * ny)
-      real(wp) :: property(11, nx * ny), ratio, gap
+      real(wp) :: property(14, nx * ny), ratio, gap
       integer :: i, j, k, e
 
       do i = 0, nx

@@ -11,6 +11,7 @@ import random
 import signal
 import sys
 from collections.abc import Callable
+from dataclasses import astuple
 from types import SimpleNamespace
 from typing import Any
 
@@ -20,7 +21,7 @@ from extrados import _core
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import arch, dem, mechanism, motion, restraints, rocking, sla, stack
+from extrados.core import arch, dem, mechanism, motion, restraints, rocking, sla, soft_base, stack
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -175,6 +176,23 @@ def stacks(mass, inertia, centre, foot, height, contact, samples, dt, end_time, 
     return run.rotation, run.force, *stack.stack_impact(two, pivots, rotation, rate, closing)
 
 
+def soft_bases(mass, inertia, height, left, right, stiffness, damping, edges, linear, samples, dt, end_time, output_step, scale,
+               tolerance, start, room) -> Any:  # fmt: skip
+    """A block on a base that gives way, shaken, and what the base does in a state."""
+    base = soft_base.SoftBase(mass, inertia, height, left, right, stiffness, damping, edges, linear)
+    run = soft_base.soft_base_history(
+        base,
+        Ground(samples=samples, step=dt),
+        end_time,
+        output_step,
+        scale=scale,
+        tolerance=tolerance,
+        start=start,
+        room=room,
+    )
+    return run.rotation, run.force, astuple(soft_base.base_contact(base, *start))
+
+
 def motions(kind, parameters, points, step, intensity, frequency, amplitude, wanted, lines, spacing, scaling, factor, duration, seed,
             first, count, window, periods, dampings, series, length, period, threads) -> Any:  # fmt: skip
     """Everything that is computed of motions."""
@@ -240,6 +258,11 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             mass=(4000.0, 2000.0), inertia=(2000.0, 700.0), centre=(0.75, 1.0), foot=0.5, height=1.5, contact=0.3,
             samples=4.0 * rng.normal(size=(1, 9)), dt=0.05, end_time=1.0, output_step=0.1, scale=1.0, tolerance=1e-8,
             start=(0.01, 0.02, 0.0, 0.0), room=100, pivots=[1, 0], rotation=[0.0, 0.01], rate=[-0.1, -0.2], closing=[1, 0],
+        )),
+        (soft_bases, dict(
+            mass=6000.0, inertia=5000.0, height=1.5, left=0.5, right=0.4, stiffness=1e8, damping=1e5, edges=False, linear=False,
+            samples=4.0 * rng.normal(size=(1, 9)), dt=0.05, end_time=1.0, output_step=0.1, scale=1.0, tolerance=1e-8,
+            start=(0.01, 0.002, 0.0, 0.0), room=100,
         )),
         (hinges, dict(
             hinge=four.hinge, joint=four.joint, mass=four.mass, centroid=four.centroid, inertia=four.inertia, masses=stones.mass,

@@ -35,9 +35,11 @@ class Trial:
         """Note what did not hold."""
         self.failures.append(text)
 
-    def close(self, least: int) -> None:
-        """Keep the numbers of a whole trial; AssertionError where something did not hold or too little was tried."""
-        if SHARE > 0.0:
+    def close(self, least: int, keep: bool | None = None) -> None:
+        """Keep the numbers of a whole trial; AssertionError where something did not hold or too little was tried.
+
+        keep: whether this one is whole, where that is not a question of the share."""
+        if SHARE > 0.0 if keep is None else keep:
             NOTES.mkdir(parents=True, exist_ok=True)
             row = {"what": self.what, "tried": self.tried, "failures": len(self.failures), "notes": self.notes}
             (NOTES / f"{self.name}.json").write_text(json.dumps(row, indent=1), encoding="utf-8")

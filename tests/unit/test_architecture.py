@@ -57,7 +57,8 @@ MAY_USE = {
     "rocking": {"common", "arch", "mechanism"},
     "sla": {"common"},
     "shell": {"common", "sla"},
-    "dem": {"common"},
+    "nonsmooth": {"common"},
+    "dem": {"common", "nonsmooth"},
     "motion": {"common"},
     "limit": {"common"},
 }

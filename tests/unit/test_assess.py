@@ -279,3 +279,28 @@ def test_what_is_moved_by_default() -> None:
     assert keys["joints.restitution"].base == 0.8 and keys["structure.thickness_factor"].bounded(1.1) == 1.0
     block = make_deck(deck(structure={"kind": "block", "width": 1.0, "height": 4.0})).building
     assert "structure.width" in {v.key for v in sensitivity.varied(block, None, None)}
+
+
+def test_what_only_elements_know_is_tried_on_them() -> None:
+    arch = {"kind": "arch", "radius": 1.0, "thickness": 0.25, "embrace": 150.0, "voussoirs": 6}
+    data = deck(structure=arch, assess={"strategies": ["dem"], "vary": {"material.density": 0.1}})
+    probes = {p.changed: p for p in extrados.run(data)["assess"].probes}
+    assert {"joints 4 times as stiff", "joints 4 times as soft"} <= set(probes)
+    (moved,) = [p for text, p in probes.items() if "right support" in text]
+    assert moved.value is not None and moved.value > 2.0 * probes["joints 4 times as stiff"].value, (
+        "it opens as its support moves"
+    )
+
+
+def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = driver._Work.ask
+
+    def stopped(work: driver._Work, strategy: strategies.Strategy) -> Result | None:
+        if strategy.name == "dem":
+            raise driver.Interrupted
+        return asked(work, strategy)
+
+    monkeypatch.setattr(driver._Work, "ask", stopped)
+    (first, *parts) = extrados.run(deck(assess={"strategies": ["tilt", "dem"]})).analyses
+    assert first["status"] == "interrupted" and [p["name"] for p in parts] == ["tilt"]
+    assert [v["strategy"] for v in first["results"]["verdicts"]] == ["tilt"] and first["verdict"]["outcome"] == "falls"

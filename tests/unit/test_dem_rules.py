@@ -53,6 +53,50 @@ def test_tables_7_4_and_7_5(beta: float, stiffness: float, rotation: float, edge
     assert 100 * rules.damping_ratio(beta, impact.edge)[0] == pytest.approx(edge, rel=0.02)
 
 
+@pytest.mark.parametrize(
+    ("alpha", "beta", "least", "at", "critical", "printed"),
+    [
+        (6.28e-5, 1.59e-4, 0.01, 0.1, 2000, 2000), (6.28e-3, 1.59e-4, 0.1, 1, 2000, 2000),  # Table 7.1, I and II
+        (0.628, 1.59e-4, 1, 10, 2000, 2000), (15.7, 1.59e-4, 5, 50, 2000, 2000),  # III and IV
+        (6.28e-5, 3.98e-5, 0.005, 0.2, 8000, 8000), (6.28e-5, 6.37e-6, 0.002, 0.5, 50000, 10000),  # 2 and 3
+        (3.14e-6, 3.18e-5, 0.001, 0.05, 10000, 10000), (6.28e-5, 1.59e-4, 0.01, 0.1, 2000, 2000),  # Table 7.2, A and B
+        (6.28e-4, 1.59e-3, 0.1, 0.1, 200, 200), (6.28e-2, 1.59e-3, 1.0, 1.0, 200, 50),  # C and D
+    ],
+)  # fmt: skip
+def test_tables_7_1_and_7_2(
+    alpha: float, beta: float, least: float, at: float, critical: float, printed: float
+) -> None:
+    """Least damping [%] and its frequency [Hz] by Eq. 7.2, frequency of critical damping [Hz] by Eq. 7.17. Two of the printed
+    critical frequencies are slips: 10 kHz for 50 kHz (UDEC 3), 50 Hz for 200 Hz (UDEC D)."""
+    frequency = np.geomspace(1e-3, 1e6, 400_001)
+    ratio = 100 * rules.damping_ratio(beta, 2 * np.pi * frequency, alpha)
+    assert ratio.min() == pytest.approx(least, rel=0.03)
+    assert frequency[ratio.argmin()] == pytest.approx(at, rel=0.03)
+    assert frequency[np.flatnonzero(ratio < 100)[-1]] == pytest.approx(critical, rel=0.03)
+    assert (printed == critical) or beta in (6.37e-6, 1.59e-3)
+
+
+@pytest.mark.parametrize(
+    ("beta", "stiffness", "rotation", "edge"),
+    [
+        (3.18e-5, 1e12, 11, 18), (1.59e-4, 1e12, 56, 91), (1.59e-3, 1e12, 560, 900),  # Table 7.6: A, B, C and D
+        (1.59e-4, 3e10, 10, 16), (1.59e-4, 1e11, 18, 29), (1.59e-4, 1e13, 180, 286),  # Table 7.7
+    ],
+)  # fmt: skip
+def test_tables_7_6_and_7_7(beta: float, stiffness: float, rotation: float, edge: float) -> None:
+    """Oppenheim's arch. The printed rotational ratios hold between two voussoirs (Eq. 7.19). At a springing only one moves,
+    and the ratio is 1 / sqrt(2) of that: the least over all joints, which answers tell, is 70 to 74 % of the printed ones. The
+    column "omega_e sqrt(2)" is printed at omega_e, which is right for the springings."""
+    arch = make_arch(10.0, 1.5, 157.5, 7)
+    impact = rules.joint_impact(arch, np.full(8, stiffness))
+    at_rotation = 100 * rules.damping_ratio(beta, impact.rotation)
+    at_edge = 100 * rules.damping_ratio(beta, impact.edge)
+    assert at_rotation[1:-1] == pytest.approx(rotation, rel=0.045)
+    assert at_rotation[[0, -1]] / rotation == pytest.approx([0.72, 0.72], abs=0.025)
+    assert at_edge[[0, -1]] == pytest.approx(edge, rel=0.03)
+    assert at_edge[1:-1] == pytest.approx(np.sqrt(2) * edge, rel=0.03)
+
+
 def test_frequencies_of_blocks_of_two_sizes() -> None:
     """Eqs 7.14, 7.18 to 7.21."""
     one = block(1.0, 4.0, 2000.0, 1e10)

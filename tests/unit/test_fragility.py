@@ -26,6 +26,7 @@ from extrados.core import rocking
 from extrados.decks.reader import DeckError, make_deck
 from extrados.motions import pulses
 from extrados.motions.from_deck import make_motion
+from extrados.results import checkpoint
 
 G = 9.80665
 BLOCK = {"kind": "block", "width": 0.1, "height": 0.4}
@@ -407,7 +408,11 @@ def test_rows_that_stay_on_disk_give_the_same(tmp_path, monkeypatch) -> None:
     monkeypatch.setattr(batches, "IN_MEMORY", 100)
     monkeypatch.setattr(batches, "PIECE", 70)
     monkeypatch.setattr(summaries, "FEW", 40)
+    picked = []
+    pick = checkpoint.Checkpoint.pick
+    monkeypatch.setattr(checkpoint.Checkpoint, "pick", lambda *args: picked.append(args[1]) or pick(*args))
     streamed = extrados.run(deck, out=tmp_path / "disk")
+    assert len(set(picked)) > 3  # batches were read again
     table = [(tmp_path / place / "ensemble.csv").read_bytes() for place in ("memory", "disk")]
     assert table[0] == table[1] and table[0].count(b"\n") == 901
     assert not (tmp_path / "disk.checkpoint").exists()

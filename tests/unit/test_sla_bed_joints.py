@@ -4,7 +4,20 @@ import numpy as np
 import pytest
 
 from extrados.building.properties import Material
-from extrados.core.sla import Bars, Bedding, Behaviour, Events, Freedoms, Model, Monitor, Plane, Softening, Stop, teeth
+from extrados.core.sla import (
+    Bars,
+    Bedding,
+    Behaviour,
+    Events,
+    Freedoms,
+    Hill,
+    Model,
+    Monitor,
+    Plane,
+    Softening,
+    Stop,
+    teeth,
+)
 
 YOUNG, STRENGTH, ENERGY, THICKNESS = 5e9, 0.2e6, 40.0, 0.1
 SIDE = 0.25
@@ -202,3 +215,53 @@ def test_bedding_bounds() -> None:
     with pytest.raises(ValueError, match="shear factor"):
         Bedding(shear=0.9)
     assert not hasattr(Bars(np.array([[0, 1]]), 1.0, 1.0), "bedding")
+
+
+def crushing(hill: Hill, a: np.ndarray, b: np.ndarray) -> Model:
+    """The triangle, of masonry that crushes alone."""
+    law = Softening(8e6, 20e3, "linear", 0.05, True, False)
+    group = Plane("T3", CORNERS, THICKNESS, YOUNG, 0.2, SIDE, compression=law, hill=[hill])
+    model = Model(PLACE, Freedoms.make(3, [(0, 0), (0, 1), (1, 1)]), [group], Behaviour("rotating"))
+    model.loads(uniform(a), uniform(b))
+    return model
+
+
+def beyond(hill: Hill, stress: np.ndarray) -> float:
+    """Hill's form less one, in the axes of the joints."""
+    r = turned(hill.angle)
+    x, y, t = (r.T @ stress @ r)[[0, 1, 0], [0, 1, 1]] / 8e6
+    return (x / hill.ratio) ** 2 + hill.coupling * x * y / hill.ratio + y**2 + hill.shear * t**2 / hill.ratio - 1.0
+
+
+def test_admitted_range_against_hills_criterion() -> None:
+    """Random stresses, angles and parameters: both ends lie on the ellipse; beyond them it is exceeded."""
+    rng = np.random.default_rng(19)
+    ends = 0
+    for _ in range(60):
+        hill = Hill(
+            rng.uniform(-np.pi, np.pi), np.exp(rng.uniform(-1, 1)), rng.uniform(-1.5, 1.5), rng.uniform(0.5, 4.0)
+        )
+        a, b = (s + s.T for s in rng.normal(0.0, 2.5e6, (2, 2, 2)))
+        with crushing(hill, a, b) as model:
+            report = model.report(0.0)
+        lo, hi = float(report["lambda_lo"][0]), float(report["lambda_hi"][0])
+        if lo > hi:
+            assert all(beyond(hill, a + x * b) > 0.0 for x in np.linspace(-20.0, 20.0, 401))
+            continue
+        for end, out in ((lo, -1.0), (hi, 1.0)):
+            ends += 1
+            assert beyond(hill, a + end * b) == pytest.approx(0.0, abs=1e-9)
+            assert beyond(hill, a + (end + 1e-6 * out) * b) > 0.0
+    assert ends > 60
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.4, np.pi / 2])
+def test_crushed_masonry_keeps_the_strength_of_its_direction(angle: float) -> None:
+    """Pressed in one direction all of its teeth are those of the law, times Hill's strength in that direction."""
+    hill = Hill(angle, 1.4, -0.9, 1.5)
+    c, s = np.cos(angle) ** 2, np.sin(angle) ** 2
+    share = (c**2 / 1.4**2 + (1.5 - 0.9) * c * s / 1.4 + s**2) ** -0.5
+    with crushing(hill, np.zeros((2, 2)), np.array([[-1e6, 0.0], [0.0, 0.0]])) as model:
+        events = model.run(8, [Monitor.of(1, 0)], Stop())
+    _, strength = teeth(Softening(8e6, 20e3, "linear", 0.05, True, False), YOUNG, SIDE)
+    np.testing.assert_allclose(events.load, share * strength[:8] / 1e6, rtol=1e-9)

@@ -158,8 +158,9 @@ CRUSHING = {"compressive_strength": 1e6, "crushing_energy": 2e3}
         ({}, {"mesh": {"size": 0.1}, "crack_closure": True, "target_displacement": 0.1}),
         (CRUSHING, {"mesh": {"size": 0.1}}),
         (CRUSHING | {"lateral_reduction": True}, {"mesh": {"size": 0.1}}),
-        (CRUSHING | {"confinement": 4.0}, {"mesh": {"size": 0.15}}),
-        ({"tensile_strength_parallel": 0.4e6, "shear_strength": 0.2e6, "bed_angle": 10.0}, {"mesh": {"size": 0.15}}),
+        (CRUSHING | {"confinement": 4.0}, {"mesh": {"size": 0.1}}),
+        (CRUSHING | {"compressive_strength_parallel": 0.9 * CRUSHING["compressive_strength"]}, {"mesh": {"size": 0.15}}),
+        ({"tensile_strength_parallel": 0.4e6, "shear_strength": 0.15e6, "bed_angle": 10.0}, {"mesh": {"size": 0.1}}),
         ({}, {"mesh": {"size": 0.1}, "reference": [
             {"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}, {"y": 1.5, "ratio": 0.6}]}]}),
         ({}, {"mesh": {"size": 0.1}, "control": [{"x": 3.0, "y": 3.0}, {"x": 3.0, "y": 1.5, "direction": "y"}]}),

@@ -1,7 +1,11 @@
 """Limit analysis of solids: the plane ones, closed forms, the cone of friction, certificates, refusals, domes."""
 
+import os
+import signal
+import threading
 from typing import Any
 
+import clarabel
 import numpy as np
 import pytest
 
@@ -10,6 +14,7 @@ from extrados.analyses.run import run_analyses
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.building.templates.dome import make_dome
 from extrados.decks.reader import make_deck
+from extrados.limit import solids
 from extrados.limit.errors import Immovable
 from extrados.limit.solids import Falls, Programme, SolidLimit
 from extrados.results.model import Result
@@ -255,3 +260,50 @@ def test_least_thickness_of_a_hemisphere(rings: int, lunes: int) -> None:
     for friction in (None, 0.7):
         assert isinstance(SolidLimit(make_dome(1.0, 0.0415, 180.0, rings, lunes), friction).push(0.0), Falls)
         assert pushed(SolidLimit(make_dome(1.0, 0.0432, 180.0, rings, lunes), friction)).gamma > 0.0
+
+
+def test_ctrl_c_is_answered_while_the_solver_works(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The solver is held up until the interruption has been answered: it would wait for ever else."""
+    answered, real = threading.Event(), clarabel.DefaultSolver
+
+    class Slow:
+        def __init__(self, *given: Any):
+            self.solver = real(*given)
+
+        def solve(self) -> Any:
+            os.kill(os.getpid(), signal.SIGINT)
+            answered.wait(60.0)
+            return self.solver.solve()
+
+    monkeypatch.setattr(solids.clarabel, "DefaultSolver", Slow)
+    with pytest.raises(KeyboardInterrupt):
+        limit_of(ARCH).push(0.0)
+    assert not answered.is_set()
+    answered.set()
+
+
+def test_threads_change_no_bit() -> None:
+    limit = limit_of({"kind": "dome", "radius": 5, "thickness": 0.5, "rings": 5, "lunes": 8})
+    directions = [0.0, 10.0, 20.0, 30.0, 40.0]
+    one, three = (limit.pushes(directions, threads) for threads in (1, 3))
+    for a, b in zip(one, three, strict=True):
+        assert isinstance(a, Programme) and isinstance(b, Programme)
+        assert a.gamma == b.gamma and (a.force == b.force).all() and (a.motion == b.motion).all()
+
+
+def test_what_no_push_brings_down_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a flat arch that cannot slide; and a rose may be open in some directions."""
+    flat = {"kind": "arch", "radius": 10, "thickness": 3, "embrace": 40, "voussoirs": 4}
+    found = run(flat, "no-sliding", direction=0.0)
+    assert found.status == "refused" and "no push of its weight brings it down" in found.reason
+    real = SolidLimit.push
+
+    def push(limit: SolidLimit, direction: float) -> Any:
+        if direction in (90.0, 270.0):
+            raise Immovable("held")
+        return real(limit, direction)
+
+    monkeypatch.setattr(SolidLimit, "push", push)
+    found = run(ARCH, "no-sliding", direction=0.0, rose=4)
+    assert found.arrays["rose_capacity"].data == pytest.approx([0.37000973802, np.inf, 0.37000973802, np.inf], abs=1e-7)
+    assert found.results["least_direction_deg"] == 0.0

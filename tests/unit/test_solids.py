@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.solids.assembly import SolidAssembly, Stone, assemble, mass_properties
@@ -322,6 +324,15 @@ def test_every_file_gives_the_same_solids(folder: Path) -> None:
     assert small.mass == pytest.approx(exact.mass * 1e-9, rel=1e-12)
 
 
+def test_a_compas_assembly_without_a_plane_is_looked_at_in_space(folder: Path) -> None:
+    """The upper stone is no prism: tilt takes the solids of itself, what needs a section says why it cannot."""
+    tables = {"structure": {"kind": "blocks", "file": "stack.json"}, "analysis": [{"kind": "tilt"}, {"kind": "thrust"}]}
+    tilt, thrust = run_analyses(Context(make_deck(tables, folder), threads=1))
+    assert tilt.status == "ok" and tilt.results["blocks"] == 2
+    assert thrust.status == "refused" and "no prisms across one plane" in thrust.reason
+    assert check_building(make_deck({**tables, "analysis": tables["analysis"][:1]}, folder)).solids is not None
+
+
 def test_groups_of_an_object_are_parts_of_one_stone(folder: Path) -> None:
     """An L of two boxes, which is not convex."""
     one, two = box((0, 0, 0), (2, 1, 1)), box((0, 0, 1), (1, 1, 2))
@@ -342,7 +353,7 @@ def test_what_is_wrong_with_a_file_is_told(folder: Path) -> None:
     pressed = {**STACK, "upper": STACK["upper"].moved(np.eye(3), np.array([0, 0, -5e-3]))}
     wrong = {
         "concave.obj": (obj({"ell": ell}), "ell is not convex: its hull has 16.7 % more volume; cut it into convex parts"),
-        "open.obj": (obj({"cube": Polyhedron(CUBE.vertices, CUBE.faces[1:])}), "cube is not closed: 4 edges"),
+        "open.obj": (obj({"cube": Polyhedron(CUBE.vertices, CUBE.faces[1:])}), "cube is not closed: 4 edges do not have a face on either side"),
         "short.obj": ("v 0 0\n", "short.obj:1: expected a vertex of three numbers"),
         "words.obj": ("v 0 0 0\nf 1 b 2\n", "words.obj:2: a face names vertices by numbers"),
         "none.obj": ("v 0 0 0\nf 1 2 3\n", "none.obj:2: a face names a vertex that is not there"),

@@ -6,8 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_every_strategy import quick_save
+from typer.testing import CliRunner
 
 import extrados
+from extrados import cli
 from extrados.analyses.context import Context
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
@@ -94,3 +96,18 @@ def test_what_changed_between_two_runs() -> None:
     assert numbers["collapse_acceleration_g"] == pytest.approx(1.2) and numbers["weight_N"] == pytest.approx(1.2)
     assert compare(ran(1.0), ran(1.0 + 1e-7), tolerance=1e-5).numbers == {}
     assert "collapse_acceleration_g" in html.page(comparing.document(("a", "b"), found), Path())
+
+
+def test_on_the_command_line(folder: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    done = CliRunner().invoke(cli.app, ["assess", str(folder), "--out", str(out), "--no-figures"])
+    assert done.exit_code == 0 and done.output.index("w0.8") < done.output.index("w2.0"), done.output
+    page = tmp_path / "changes.html"
+    told = CliRunner().invoke(cli.app, ["compare", str(out / "w0.8"), str(out / "w1.2"), "--page", str(page)])
+    assert told.exit_code == 0 and "structure.width" in told.output and "structure.width" in page.read_text()
+    same = CliRunner().invoke(cli.app, ["compare", str(out / "w0.8"), str(out / "w0.8")])
+    assert "Nothing but" in same.output
+    missing = CliRunner().invoke(cli.app, ["compare", str(out), str(out / "none")])
+    assert missing.exit_code == 3 and "Traceback" not in missing.output
+    empty = CliRunner().invoke(cli.app, ["assess", str(tmp_path)])
+    assert empty.exit_code == 2

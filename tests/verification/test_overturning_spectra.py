@@ -11,6 +11,7 @@ from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.motions.pulses import sine_pulse
 from extrados.schema.constants import GRAVITY
+from trials import Trial
 
 C_V = 0.9
 SHAPES = {"sine": one_sine, "cosine": one_cosine, "rectangular": rectangle}
@@ -43,9 +44,19 @@ def test_every_outcome_of_the_spectrum_is_that_of_the_closed_form(pulse: str) ->
     found = codes(model, pulse, 2.0 * np.pi / (ratios * p), amplitudes * alpha * GRAVITY)
     expected = np.array([[closed(pulse, w, a) for a in amplitudes] for w in ratios])
     assert {1, 2, 3} <= set(expected.ravel()) or pulse == "rectangular"
+    trial = Trial(
+        f"overturning_{pulse}",
+        f"outcomes of the overturning spectrum of one {pulse} that are not those of the closed form",
+    )
+    trial.tried = found.size
+    trial.notes.append("omega/p 0.75 to 8, amplitudes to 12 g alpha, c_v 0.9 (Zhang and Makris 2001)")
     for i, k in np.argwhere(found != expected):
         near = {closed(pulse, ratios[i], amplitudes[k] * (1.0 + shift)) for shift in (-1e-6, 1e-6)}
-        assert found[i, k] in near, (ratios[i], amplitudes[k], found[i, k], expected[i, k])
+        if found[i, k] not in near:
+            trial.fail(
+                f"omega/p {ratios[i]:.3f}, amplitude {amplitudes[k]:.3f}: {found[i, k]}, expected {expected[i, k]}"
+            )
+    trial.close(1200, keep=True)
 
 
 @pytest.mark.parametrize(("pulse", "ratios"), [("sine", (1.5, 3.0, 5.0, 6.0)), ("cosine", (1.5, 2.5, 3.5))])

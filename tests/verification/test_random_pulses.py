@@ -9,6 +9,7 @@ from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.motions import pulses
 from extrados.schema.constants import GRAVITY
+from trials import Trial
 
 SHAPES = ("step", "sine", "half-sine", "rectangular", "cosine", "train")
 #: Motions are on the edge where this share more or less of the amplitude changes outcome, impacts or peak
@@ -136,8 +137,15 @@ def check(count: int, seed: int) -> None:
         f"{count} pulses: {shares[0]} at rest, {shares[1]} rock, {shares[2]} down by DOP853; {int((~same).sum())} other outcomes, "
         f"{int(edge.sum())} on the edge; greatest difference of the peak {difference[~edge].max():.1e} alpha"
     )
-    assert same[~edge].all()
-    assert difference[~edge].max() < 1e-6
+    trial = Trial("random_pulses", "random pulses on free blocks whose outcome or peak is not that of DOP853")
+    trial.tried = count
+    trial.notes.append(
+        f"{shares[0]} at rest, {shares[1]} rock, {shares[2]} down; greatest difference of the peak {difference[~edge].max():.0e} alpha; "
+        f"{int(edge.sum())} on the edge, where a millionth of the amplitude decides"
+    )
+    for k in np.flatnonzero(~edge & ~(same & (difference < 1e-6))):
+        trial.fail(f"pulse {k}: ours {ours[k]}, DOP853 {theirs[k]}")
+    trial.close(count, keep=count >= 1000)
     assert edge.mean() < 0.02
     # The statistics that such runs are made for: the distributions of the peak, by their quantiles.
     one, other = (np.sort(np.minimum(x[~edge, 0], 2.0)) for x in (ours, theirs))

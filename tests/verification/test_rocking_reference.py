@@ -8,6 +8,7 @@ from extrados.building.rockers.block import BlockModel
 from extrados.building.templates.block import make_block
 from extrados.core import rocking
 from extrados.core.rocking import Ground
+from trials import Trial
 
 STEP, POINTS = 0.02, 301
 
@@ -74,5 +75,14 @@ def test_two_hundred_motions(width: float, height: float, seed: int) -> None:
         f"{width} x {height} m: greatest difference {difference[~edge].max():.1e}, {edge.sum()} of 100 on the edge of collapse"
     )
     assert edge.sum() <= 10
-    assert same[~edge].all()
-    assert difference[~edge].max() < 1e-6
+    trial = Trial(
+        f"random_motions_{seed}",
+        f"random motions of a block of {width:g} x {height:g} m that end otherwise than by DOP853, or in another peak",
+    )
+    trial.tried = len(same)
+    trial.notes.append(
+        f"greatest difference of the peak {difference[~edge].max():.0e} alpha; {edge.sum()} on the edge of collapse"
+    )
+    for k in np.flatnonzero(~edge & ~(same & (difference < 1e-6))):
+        trial.fail(f"motion {k}: difference {difference[k]:.1e}")
+    trial.close(100, keep=True)

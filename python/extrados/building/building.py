@@ -232,8 +232,16 @@ class Building:
         from extrados.building.mesh.options import MeshOptions
 
         options = options or MeshOptions()
-        tables = (self.structure, self.material, *self.materials.items(), self.joints, self.supports, options, seed)
-        return self._view("mesh", tables, lambda: self._structure().mesh(self, options, seed))
+        tables = (
+            self.structure, self.material, *self.materials.items(), self.joints, self.supports, *self.ties, options, seed
+        )  # fmt: skip
+        return self._view("mesh", tables, lambda: self._meshed(options, seed))
+
+    def _meshed(self, options: "MeshOptions", seed: int | None) -> "Mesh":
+        from extrados.building.mesh.rods import rods_of
+
+        mesh = self._structure().mesh(self, options, seed)
+        return replace(mesh, rods=rods_of(self, mesh))
 
     def shell(self, options: "ShellOptions | None" = None) -> "ShellMesh":
         """Flat shells in space: walls on a plan with the floors between them."""

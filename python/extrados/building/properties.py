@@ -41,6 +41,17 @@ class Material(Table):
         "linear", "how the stress falls after the strength", source="thesis Fig. 4-1"
     )
     compressive_strength: Stress | None = key(None, "compressive strength; without it nothing crushes", gt=0)
+    compressive_strength_parallel: Stress | None = key(
+        None, "compressive strength along the bed joints; compressive_strength is then that across them (Hill's criterion)",
+        source="Lourenco, de Borst and Rots (1997)", gt=0,
+    )  # fmt: skip
+    compressive_coupling: float = key(
+        -1.0, "what pressure along and across the bed joints do for each other: b of (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 "
+        "+ c t^2 / (fx fy) = 1", source="-1.05 of Page's panels, Lourenco (1996), from memory", gt=-2, lt=2,
+    )  # fmt: skip
+    compressive_shear: float = key(
+        1.2, "c of the same criterion", source="1.20 of Page's panels, Lourenco (1996), from memory", gt=0, le=20
+    )
     crushing_energy: Energy | None = key(
         None, "energy of crushing per area, Gc; sequentially linear analysis crushes only with it", gt=0
     )
@@ -63,6 +74,11 @@ class Material(Table):
             raise ValueError("lateral_reduction needs compressive_strength")
         if self.confinement and self.crushing_energy is None:
             raise ValueError("confinement needs compressive_strength and crushing_energy")
+        if self.compressive_strength_parallel is not None:
+            if self.crushing_energy is None:
+                raise ValueError("compressive_strength_parallel needs compressive_strength and crushing_energy")
+            if self.confinement:
+                raise ValueError("confinement is for one compressive strength: leave out compressive_strength_parallel")
         self._check_bedding()
         return self
 
@@ -72,8 +88,8 @@ class Material(Table):
             for name in ("fracture_energy_parallel", "shear_strength"):
                 if getattr(self, name) is not None:
                     raise ValueError(f"{name} needs tensile_strength_parallel")
-            if self.bed_angle:
-                raise ValueError("bed_angle needs tensile_strength_parallel")
+            if self.bed_angle and self.compressive_strength_parallel is None:
+                raise ValueError("bed_angle needs tensile_strength_parallel or compressive_strength_parallel")
             return
         if self.tensile_strength is None:
             raise ValueError("tensile_strength_parallel needs tensile_strength, that across the bed joints")

@@ -81,7 +81,9 @@ class Options:
     """How to run. step [s]: 0 takes `fraction` of the critical step. domain: left, right, bottom, top [m].
     collapse: displacement that counts as collapse [m], 0 none. residual_limit: of the energy that went round,
     above it the run is stopped. settle_steps 0 starts without settling under gravity; settlement: displacement by
-    which a body falls instead of settling [m], 0 none."""
+    which a body falls instead of settling [m], 0 none. rigid: contacts without springs (the joints' stiffness and damping
+    play no part, `step` 0 takes one that suits the smallest block), with Newton's coefficient `rebound` at each point;
+    quasi_static: without inertia."""
 
     end_time: float
     output_step: float = 0.01
@@ -96,6 +98,9 @@ class Options:
     stop_at_rest: bool = False
     moving_base: bool = False
     mass_damping: float = 0.0
+    rigid: bool = False
+    quasi_static: bool = False
+    rebound: float = 0.0
     gravity: tuple[float, float] = (0.0, -GRAVITY)
     threads: int = 1
 
@@ -110,6 +115,25 @@ class Contacts:
     force: np.ndarray
     normal: np.ndarray
     shear: np.ndarray
+
+
+@dataclass(frozen=True)
+class Effort:
+    """What rigid contacts took: steps, factorisations, most rounds of a step, steps that did not converge, and the greatest
+    violation of the law over the velocity that gravity gives in a step."""
+
+    steps: int
+    factors: int
+    most_rounds: int
+    open_steps: int
+    residual: float
+
+    def with_(self, other: "Effort") -> "Effort":
+        """Both runs together."""
+        return Effort(
+            self.steps + other.steps, self.factors + other.factors, max(self.most_rounds, other.most_rounds),
+            self.open_steps + other.open_steps, max(self.residual, other.residual),
+        )  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -139,6 +163,7 @@ class Run:
     bounces: np.ndarray
     airborne: np.ndarray
     contacts: Contacts
+    effort: Effort
     interrupted: bool = False
 
 
@@ -238,6 +263,8 @@ class Model(Owner):
             int(o.stop_at_rest), thread_count(o.threads),
         )  # fmt: skip
         check(status, "options of the run")
+        status = _core.api_dem.rigid(self.handle, int(o.rigid), int(o.quasi_static), float(o.rebound))
+        check(status, "rebound of rigid contacts")
 
     def run(
         self,
@@ -323,6 +350,8 @@ class Model(Owner):
         if closed:
             touching, contact, status = _core.api_dem.contacts(self.handle, closed)
             check(status, "contacts after the run")
+        effort, violation, status = _core.api_dem.effort(self.handle)
+        check(status, "effort of the run")
         return Run(
             reason=REASONS[reason],
             blamed=[k - 1 for k in (first, second) if k > 0],
@@ -342,8 +371,14 @@ class Model(Owner):
             bounces=bounces,
             airborne=airborne,
             contacts=Contacts(touching.T - 1, contact.T[:, :2], contact.T[:, 2:4], contact[4], contact[5]),
+            effort=_effort(effort, violation),
             interrupted=interrupted,
         )
+
+
+def _effort(counts: np.ndarray, violation: float) -> Effort:
+    steps, factors, rounds, open_steps = (int(n) for n in counts)
+    return Effort(steps, factors, rounds, open_steps, float(violation))
 
 
 def _digest(words: np.ndarray) -> np.ndarray:

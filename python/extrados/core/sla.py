@@ -11,6 +11,7 @@ from extrados.core.calls import indices, integers, long_call, real, room_for, th
 from extrados.core.errors import check, status_code
 from extrados.core.handles import Owner
 from extrados.core.sla_parts import (
+    BEARS,
     CRACKING,
     DIRECTIONS,
     ELEMENTS,
@@ -24,6 +25,7 @@ from extrados.core.sla_parts import (
     Behaviour,
     Events,
     Freedoms,
+    Hill,
     Joints,
     Monitor,
     Plane,
@@ -51,6 +53,7 @@ __all__ = [
     "Events",
     "FreeNode",
     "Freedoms",
+    "Hill",
     "Joints",
     "Model",
     "Monitor",
@@ -182,6 +185,7 @@ class Model(Owner):
         axes, self.freedoms = np.shape(xy)[-1], freedoms.of_node
         place = real("xy", np.transpose(xy), (axes, None))
         self.nodes = place.shape[1]
+        self.xy = place.T
         equation = np.asarray(freedoms.equation)
         if (axes, self.freedoms) not in ((2, 2), (3, 6)) or len(equation) != self.nodes:
             raise ValueError(
@@ -267,15 +271,21 @@ class Model(Owner):
         if isinstance(group, Springs):
             self._add_springs(group)
             return
-        per = 2 if isinstance(group, Bars) else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
+        per = (
+            np.shape(group.connect)[1] if isinstance(group, Bars)
+            else 4 if isinstance(group, Joints) else ELEMENTS[group.kind]
+        )  # fmt: skip
         connect = indices("connect", np.transpose(group.connect), self.nodes, (per, None))
         count = connect.shape[1]
         young = _each("young", group.young, count)
         tables, ladder = self._tables(count, group)
         if isinstance(group, Bars):
+            gradient, length = group.strains(self.xy)
             bad, status = _core.api_sla_model.bars(
-                self.handle, connect, _rows(_each("area", group.area, count), young), _rows(*tables)
-            )
+                self.handle, connect, real("gradient", np.transpose(gradient, (2, 1, 0)), (self.xy.shape[1], per, count)),
+                _rows(_each("area", group.area, count) * length, young),
+                _rows(*tables, np.full(count, BEARS[group.bears], dtype=np.int32)),
+            )  # fmt: skip
             what = "bar"
         elif isinstance(group, Joints):
             bad, status = self._add_joints(group, connect, tables)
@@ -512,15 +522,18 @@ def _beddings(group: Plane | Bars | Joints, count: int) -> list[Bedding | None]:
 
 
 def _bed_rows(group: Plane, count: int) -> np.ndarray:
-    """(5, elements) the components of the core's `bedding`: none where nothing cracks."""
-    rows = np.zeros((5, count))
+    """(8, elements) the components of the core's `bedding`: none where nothing cracks or crushes."""
+    rows = np.zeros((8, count))
     rows[3] = 1.0
+    for k, criterion in enumerate(group.hill or ()):
+        if criterion is not None:
+            rows[[0, 5, 6, 7], k] = criterion.angle, criterion.ratio, criterion.coupling, criterion.shear
     if group.bedding is None:
         return rows
     width = _each("band", group.band, count) if group.reach is None else np.zeros(count)
     for k, (bed, law) in enumerate(zip(_beddings(group, count), _softenings(group.tension, count), strict=True)):
         if bed is not None and law is not None:
-            rows[:, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
+            rows[:5, k] = bed.angle, bed.strength, bed.energy, bed.shear, width[k]
     return rows
 
 

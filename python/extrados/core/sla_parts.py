@@ -104,6 +104,26 @@ class Bedding:
 
 
 @dataclass(frozen=True)
+class Hill:
+    """Compressive strength of masonry in courses by Hill's criterion: the compression law is that across the bed joints.
+
+    angle of the bed joints to x [rad]; ratio fx / fy of the strengths along and across them; coupling b and shear c of
+    (sx/fx)^2 + b sx sy / (fx fy) + (sy/fy)^2 + c t^2 / (fx fy) = 1.
+    """
+
+    angle: float
+    ratio: float
+    coupling: float
+    shear: float
+
+    def __post_init__(self) -> None:
+        if not (self.ratio > 0.0 and self.shear > 0.0 and abs(self.coupling) < 2.0):
+            raise ValueError(
+                "Hill's criterion needs a ratio and a shear factor above 0 and a coupling between -2 and 2"
+            )
+
+
+@dataclass(frozen=True)
 class Plane:
     """Plane-stress elements of one kind, all arrays by element (or one value for all).
 
@@ -132,6 +152,7 @@ class Plane:
     reach: np.ndarray | None = None
     confinement: float | np.ndarray = 0.0
     bedding: Bedding | Sequence[Bedding | None] | None = None
+    hill: Sequence[Hill | None] | None = None
 
     @property
     def points_each(self) -> int:
@@ -163,7 +184,11 @@ class Shells(Plane):
 
 @dataclass(frozen=True)
 class Bars:
-    """Bars of two nodes: connect (bars, 2) 0-based, area [m^2], young [Pa], band [m], softening as of Plane."""
+    """Bars: connect (bars, nodes) 0-based, area [m^2], young [Pa], band [m], softening as of Plane.
+
+    Of two nodes, or of more whose displacements make the strain by `gradient` (bars, nodes, 2 or 3) [1/m], with the `length`
+    (bars) [m]. bears: "both", "tension" or "compression" alone.
+    """
 
     connect: np.ndarray
     area: float | np.ndarray
@@ -171,6 +196,23 @@ class Bars:
     band: float | np.ndarray = 0.0
     tension: Softening | Sequence[Softening | None] | None = None
     compression: Softening | Sequence[Softening | None] | None = None
+    gradient: np.ndarray | None = None
+    length: np.ndarray | None = None
+    bears: str = "both"
+
+    def strains(self, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gradient (bars, nodes, 2) [1/m] and length (bars) [m] between nodes at xy (nodes, 2) [m]."""
+        if self.gradient is not None and self.length is not None:
+            return np.asarray(self.gradient, dtype=float), np.asarray(self.length, dtype=float)
+        along = xy[self.connect[:, 1]] - xy[self.connect[:, 0]]
+        length = np.hypot(*along.T) if along.shape[1] == 2 else np.linalg.norm(along, axis=1)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            each = along / (length**2)[:, None]
+        return np.stack([-each, each], axis=1), length
+
+
+#: What a bar bears, as the core numbers it
+BEARS = {"both": 0, "tension": 1, "compression": 2}
 
 
 @dataclass(frozen=True)

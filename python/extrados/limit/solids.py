@@ -6,8 +6,11 @@ place, keeps force, moment and cone. The dual of the programme is a motion of ri
 times as fast as they slide (associated friction); its virtual work is the bound from above.
 """
 
+import threading
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TypeVar
 
 import clarabel
 import highspy
@@ -19,6 +22,8 @@ from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.schema.constants import GRAVITY
 
+Found = TypeVar("Found")
+LOOK = 0.1  # s between looks whether somebody wants to stop
 ACCURACY = 1e-10  # of forces, powers and the gap between the programmes, over the scale of the weights
 LOOSE = 1e-6  # a solution that is no better than this is none
 PROOF = 1e-7  # of the fastest contact: what overlap a motion that proves something may have
@@ -133,6 +138,30 @@ class SolidLimit:
             assert complaint is not None
             raise complaint
         return falls
+
+    def pushes(
+        self, directions: Sequence[float], threads: int = 1, told: Callable[[int], None] = lambda done: None
+    ) -> "list[Programme | Falls | None]":
+        """What each of many directions [deg] gives, None where no push brings it down; `threads` at a time, which changes no
+        bit of it. told(done) is called now and then."""
+        _ = self.matrix  # made once, before threads ask for it
+        found: dict[int, Programme | Falls | None] = {}
+        left = iter(enumerate(directions))
+        taking = threading.Lock()
+
+        def work() -> None:
+            while True:
+                with taking:
+                    k, direction = next(left, (-1, 0.0))
+                if k < 0:
+                    return
+                try:
+                    found[k] = self.push(direction)
+                except Immovable:
+                    found[k] = None
+
+        _waited(*[work] * min(threads, len(directions)), told=lambda: told(len(found)))
+        return [found[k] for k in range(len(directions))]
 
     def falls(self) -> Falls | None:
         """The proof that it cannot stand without a push; None where no motion proves that."""
@@ -250,7 +279,8 @@ class SolidLimit:
         settings.max_threads = 1
         settings.direct_solve_method = method
         nothing = sparse.csc_array((len(cost), len(cost)))
-        return clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, settings).solve(), lines
+        solver = clarabel.DefaultSolver(nothing, cost, matrix.tocsc(), right, cones, settings)
+        return _waited(solver.solve)[0], lines
 
     def _rates(self, motion: np.ndarray) -> np.ndarray:
         """Velocities and spins (nb, 6) of a motion of the programme, whose moments are over the size."""
@@ -338,6 +368,30 @@ class SolidLimit:
         return _most(matrix, -dead, np.concatenate([*low, [-np.inf]]), np.concatenate([*high, [np.inf]]))
 
 
+def _waited(*calls: Callable[[], Found], told: Callable[[], None] = lambda: None) -> list[Found]:
+    """What long calls give, each made in a thread of its own: so Ctrl-C is answered at once, and the threads left to
+    themselves. told() is called while they work."""
+    answers: dict[int, Found] = {}
+    failed: list[BaseException] = []
+
+    def work(k: int) -> None:
+        try:
+            answers[k] = calls[k]()
+        except BaseException as error:
+            failed.append(error)
+
+    workers = [threading.Thread(target=work, args=(k,), daemon=True) for k in range(len(calls))]
+    for worker in workers:
+        worker.start()
+    while any(worker.is_alive() for worker in workers):
+        for worker in workers:
+            worker.join(LOOK)
+        told()
+    if failed:
+        raise failed[0]
+    return [answers[k] for k in range(len(calls))]
+
+
 def _most(matrix: sparse.csc_array, right: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:
     """The most of the last unknown, by the interior-point method of HiGHS with its crossover to a vertex."""
     solver = highspy.Highs()
@@ -356,7 +410,7 @@ def _most(matrix: sparse.csc_array, right: np.ndarray, low: np.ndarray, high: np
     programme.a_matrix_.start_, programme.a_matrix_.index_ = matrix.indptr, matrix.indices
     programme.a_matrix_.value_ = matrix.data
     solver.passModel(programme)
-    solver.run()
+    _waited(solver.run)
     status = solver.getModelStatus()
     if status == highspy.HighsModelStatus.kOptimal:
         return float(solver.getSolution().col_value[-1])

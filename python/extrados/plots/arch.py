@@ -59,10 +59,10 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         )
         rotation.set_ylabel("rotation [mrad]\n+ to +x")
         style.legend_above(rotation)
-        energy.plot(t, run.array(name, "kinetic") / 1e3, label="kinetic")
-        energy.plot(t, run.array(name, "potential") / 1e3, label="potential")
-        energy.plot(t, run.array(name, "ledger") / 1e3, "k--", linewidth=0.8, label="supplied less lost")
-        energy.set_ylabel("energy [kJ]")
+        style.energies(energy, "energy", [
+            (t, run.array(name, "kinetic"), {"label": "kinetic"}), (t, run.array(name, "potential"), {"label": "potential"}),
+            (t, run.array(name, "ledger"), {"label": "supplied less lost", "color": "k", "linestyle": "--", "linewidth": 0.8}),
+        ])  # fmt: skip
         style.legend_above(energy)
         needed = run.array(name, "required_friction").max(axis=1) if len(t) else t
         friction.plot(t, np.minimum(needed, 2.0), color=style.HINGE, linewidth=0.8)

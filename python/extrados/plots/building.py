@@ -33,13 +33,18 @@ def draw_building(run: Stored, folder: Path) -> tuple[str, str] | None:
         ax.update_datalim(points)
         ax.autoscale_view()
         off = OFF * float(extent.max())
-        below = 0
+        taken: list[tuple[float, float]] = []  # widths below that are drawn: those that do not meet share a line
         for row in rows:
+            ends = sorted((row["start"][0], row["end"][0]))
+            level = 1 + sum(a < ends[1] and ends[0] < b for a, b in taken) if row["aside"] == "below" else 1
             if row["aside"] == "below":
-                below += 1
-            _dimension(ax, row, off, below)
+                taken.append((ends[0], ends[1]))
+            _dimension(ax, row, off, level)
         ax.set_aspect("equal")
-        ax.margins(0.12)
+        reach = 2.4 * off  # room for dimensions at the sides of what is slender
+        low, high = points.min(axis=0), points.max(axis=0)
+        ax.set_xlim(low[0] - reach, high[0] + reach)
+        ax.set_ylim(low[1] - reach - off * max(0, len(taken) - 1), high[1] + 0.7 * reach)
         ax.grid(False)
         ax.set_xlabel("x [m]")
         ax.set_ylabel("y [m]")

@@ -160,7 +160,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 1e3 * other["rotation"].data,
                 color="#999999",
                 linewidth=2.4,
-                label="rigid-block model",
+                label="rocking by one mechanism",
             )
         for i in most:
             top.plot(time, 1e3 * rotation[:, i], label=label[int(i)])
@@ -181,14 +181,13 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         "damping": "lost in damping", "friction": "lost in friction", "residual": "residual",
     }  # fmt: skip
     with style.figure(8.0, 5.4, rows=2, sharex=True) as (fig, (top, low)):
-        top.plot(time, run.array(name, "kinetic_energy") / 1e3, color=style.THRUST)
-        top.set_ylabel("kinetic energy [kJ]")
+        style.energies(top, "kinetic energy", [(time, run.array(name, "kinetic_energy"), {"color": style.THRUST})])
         top.set_title("Drops are impacts")
-        for key, word in words.items():
-            low.plot(
-                time, run.array(name, f"{key}_energy") / 1e3, label=word, linestyle="--" if key == "residual" else "-"
-            )
-        low.set_ylabel("energy [kJ]")
+        lines = [
+            (time, run.array(name, f"{key}_energy"), {"label": word, "linestyle": "--" if key == "residual" else "-"})
+            for key, word in words.items()
+        ]
+        style.energies(low, "energy", lines)
         low.set_xlabel("time [s]")
         low.set_xlim(0.0, time[-1])
         style.legend_above(low)
@@ -248,7 +247,11 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     with style.figure(6.5, 4.6) as (fig, (ax,)):
         for k, (label, row) in enumerate(zip(labels, shortest, strict=True)):
             shown = "discrete elements" if k == 0 else label
+            if k == 0 and run[name].cross_check is not None:
+                shown += f" ({run[name].curves[0].solver})"
             ax.plot(row, amplitude, "o-" if k == 0 else ".-", linewidth=1.8 if k == 0 else 0.9, label=shown)
+        if run[name].mode_II_durations_s is not None:
+            ax.plot(run.array(name, "elements_mode_II"), amplitude, "s-", label="discrete elements, mode II")
         for mode, mark in (("mode_I", "--"), ("mode_II", ":")):
             if mode in run.arrays[name]:
                 ax.plot(
@@ -263,7 +266,36 @@ def draw_domain(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         ax.set_xlim(left=0.0)
         ax.legend()
         saved = style.save(fig, folder, f"{name}-curves")
-    return [(saved, "Shortest failing pulses; to the right of a curve it comes down.")]
+    drawn = [(saved, "Shortest failing pulses; to the right of a curve it comes down.")]
+    return [*drawn, _both_solvers(run, name, folder)] if run[name].cross_check is not None else drawn
+
+
+def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """Outcomes of all cells by both solvers."""
+    check, fails = run[name].cross_check, run.array(name, "fails")
+    amplitude, duration = np.meshgrid(run.array(name, "amplitude"), run.array(name, "duration"), indexing="ij")
+    first, second = (
+        ("nonsmooth", "compliant") if run[name].curves[0].solver == "nonsmooth" else ("compliant", "nonsmooth")
+    )
+    kinds = (
+        (fails[0] & fails[1], "falls by both", {"marker": "s", "color": style.HINGE}),
+        (~fails[0] & ~fails[1] & 1, "stands by both", {"marker": "s", "color": "#d8d4c8"}),
+        (fails[0] & ~fails[1] & 1, f"falls by {first} only", {"marker": "X", "color": style.THRUST}),
+        (~fails[0] & 1 & fails[1], f"falls by {second} only", {"marker": "P", "color": "#d9a400"}),
+    )
+    with style.figure(6.5, 4.6) as (fig, (ax,)):
+        for cells, label, look in kinds:
+            at = cells.astype(bool)
+            if at.any():
+                ax.scatter(duration[at], amplitude[at], s=36, label=label, **look)
+        ax.set_xlabel("t_p [s]" if run[name].pulse == "step" else "T_p [s]")
+        ax.set_ylabel("amplitude [g]")
+        ax.set_xlim(left=0.0)
+        ax.set_ylim(bottom=0.0)
+        ax.set_title(f"both solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells")
+        ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        saved = style.save(fig, folder, f"{name}-solvers")
+    return saved, "Outcome of every cell by springs (compliant) and by rigid contacts (nonsmooth)."
 
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:

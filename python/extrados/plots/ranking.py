@@ -39,7 +39,7 @@ def _page(name: str, run: Stored, out: Path, figures: bool) -> list[Block]:
     there = [a for a in run.analyses if a["kind"] == "assess" and a["results"]]
     if figures and (out / name / "figures" / "building.svg").exists():
         told = "; ".join(f"{d['name']} {d['length_m']:.4g} m" for d in run.summary["deck"].get("dimensions", []))
-        found.append(Figure(f"{name}/figures/building", f"{told[:1].upper()}{told[1:]}.", 0.55))
+        found.append(Figure(f"{name}/figures/building", f"{told[:1].upper()}{told[1:]}.", 0.35))
     for a in there:
         r = run[a["name"]]
         rows = [
@@ -58,5 +58,5 @@ def _page(name: str, run: Stored, out: Path, figures: bool) -> list[Block]:
         )
         found += [Words(one.text) for one in r.reasons]
         if figures and (out / name / "figures" / f"{a['name']}-margins.svg").exists():
-            found.append(Figure(f"{name}/figures/{a['name']}-margins", f"Hazard: {r.hazard.told}.", 0.75))
+            found.append(Figure(f"{name}/figures/{a['name']}-margins", f"Hazard: {r.hazard.told}.", 0.6))
     return found

@@ -153,6 +153,7 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             ax.plot(at * 1e3, load / 1e3, "o-", color="#8a8a8a", markersize=3, linewidth=0.8,
                     label=f"incremental, {run[other].stop}")  # fmt: skip
         _measured(run, name, ax, True)
+        lost = False
         for prefix, numbers in zip(PREFIXES, (r, r.minus), strict=True):
             if numbers is None:
                 continue
@@ -163,7 +164,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             on = next((1e-3 * s.start_load_N for s in numbers.get("stages", []) if not s.prefix), 0.0)
             ax.plot(np.append(begin, d[fine]), np.append(on, p[fine]), color=color, linewidth=0.25, alpha=0.4)
             if (~fine).any():
-                ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium")
+                ax.plot(d[~fine], p[~fine], "x", color=LOST, markersize=3, label="no equilibrium" if not lost else None)
+                lost = True
             ax.plot(get(f"{prefix}envelope_displacement") * 1e3, get(f"{prefix}envelope_load") / 1e3, color=color,
                     linewidth=1.4, label=f"envelope, load to {numbers.sense}")  # fmt: skip
             idea = numbers.bilinear
@@ -172,7 +174,8 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 ax.plot(
                     (shift + np.array([0, idea.yield_displacement_m, idea.ultimate_displacement_m])) * 1e3,
                     np.array([0, idea.yield_load_N, idea.yield_load_N]) / 1e3,
-                    color=ENVELOPE, linestyle="--", linewidth=0.9, label="bilinear of equal area" if not prefix else None,
+                    color=ENVELOPE if not prefix else color, linestyle="--" if not prefix else "-.", linewidth=0.9,
+                    label=f"bilinear of equal area, load to {numbers.sense}",
                 )  # fmt: skip
         # Events without equilibrium of a wall that comes apart lie far beyond: they must not shrink the curve
         there = [p for p in PREFIXES if f"{p}envelope_load" in run.arrays[name]]

@@ -14,6 +14,10 @@ PERCENTILES = (16, 50, 84)
 FALLEN = 1.12  # where a figure draws the rotation ratio of what has come down
 
 
+#: Incremental curves that are drawn one by one: more are a cloud
+HAIRS = 40
+
+
 def draw_fragility(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Histogram (Fig. 6-7), single histories (Fig. 6-6) and cloud; over levels the curves with their stripes and the
     incremental picture; the annual rate; or Fig. 6-8."""
@@ -63,6 +67,17 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_xlabel("greatest rotation over the critical rotation")
         ax.set_ylabel("share of the motions [%]")
         ax.set_title(f"{r.count} runs, {100 * r.collapse_probability:.1f} % collapse")
+        full = np.flatnonzero(counts)
+        if len(full) == 1:  # one bar says nothing by its height
+            where = f"{edges[full[0]]:.2f} to {edges[full[0] + 1]:.2f}"
+            ax.text(
+                0.5,
+                0.5,
+                f"{int(counts[full[0]])} runs turn by {where} of the critical rotation",
+                transform=ax.transAxes,
+                ha="center",
+                fontsize=8,
+            )
         ax.legend()
         return style.save(
             fig, folder, f"{name}-histogram"
@@ -276,7 +291,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
     unit = run.arrays[name]["stripe_level"].unit
     quantile = [np.minimum(run.array(name, f"stripe_peak_ratio_{p}"), FALLEN) for p in PERCENTILES]
     with style.figure(6.5, 4.2) as (fig, (ax,)):
-        for row in np.minimum(ratio, FALLEN):
+        for row in np.minimum(ratio[:HAIRS], FALLEN):
             ax.plot(row, level, color=style.EDGE, alpha=0.15, linewidth=0.5)
         low, middle, high = quantile
         ax.fill_betweenx(level, low, high, color=style.HINGE, alpha=0.2, linewidth=0, label="16 to 84 % of the motions")
@@ -293,7 +308,7 @@ def _incremental(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_ylabel(f"{r.intensity}{f' [{unit}]' if unit else ''}")
         style.legend_below(fig, ax)
         return style.save(fig, folder, f"{name}-incremental"), (
-            f"Incremental curves of {len(ratio)} motions with the percentiles of all {r.motions}; "
+            f"Incremental curves of {min(len(ratio), HAIRS)} motions with the percentiles of all {r.motions}; "
             f"{r.resurrections} have resurrections."
         )
 

@@ -86,6 +86,21 @@ def numbers(axis: Axis) -> None:
     axis.set_major_locator(MaxNLocator(integer=True))
 
 
+#: Energies below this are rounding, in J
+NO_ENERGY = 1e-6
+
+
+def energies(ax: Axes, what: str, curves: list[tuple[np.ndarray, np.ndarray, dict]]) -> None:
+    """Energies [J] over times, each with the options of its line, in J or kJ by their size; rounding is drawn as zero."""
+    most = max((float(np.abs(energy).max(initial=0.0)) for _, energy, _ in curves), default=0.0)
+    factor, unit = (1e3, "kJ") if most >= 100.0 else (1.0, "J")
+    for time, energy, options in curves:
+        ax.plot(time, energy / factor, **options)
+    ax.set_ylabel(f"{what} [{unit}]")
+    if most < NO_ENERGY:
+        ax.set_ylim(-1.0, 1.0)
+
+
 def section_axes(ax: Axes) -> None:
     """Axes for a drawing of a structure that is already in them: equal scales, metres."""
     ax.set_aspect("equal")
@@ -124,7 +139,7 @@ def _spread(fig: Figure) -> None:
 
     Candidates stand on rings around the place; a letter far from it gets a hair line to it.
     """
-    pixel = fig.dpi / 72.0
+    pixel, renderer = fig.dpi / 72.0, FigureCanvasAgg(fig).get_renderer()
     for ax in fig.axes:
         texts = [t for t in ax.texts if t.get_gid() == LETTER]
         if not texts:
@@ -138,7 +153,9 @@ def _spread(fig: Figure) -> None:
         ]
         ink = np.concatenate([*drawn, np.empty((0, 2))])
         frame = ax.get_window_extent()
-        taken: list[np.ndarray] = []  # boxes: left, low, right, high
+        # boxes: left, low, right, high; what else is written there stays where it is
+        fixed = [t for t in ax.texts if t not in texts and t.get_visible() and t.get_text().strip()]
+        taken = [np.ravel(t.get_window_extent(renderer).get_points()) for t in fixed]
         for text, place in zip(texts, places, strict=True):
             half = pixel * np.array([2.9 * len(text.get_text()) + 1.0, 5.0])
             best, least = np.zeros(2), np.inf

@@ -117,7 +117,7 @@ def _figure(block: Figure, folder: Path) -> str:
     name = f"{block.name}.{'svg' if drawing.stat().st_size <= LARGEST else 'png'}"
     size = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', drawing.read_text(encoding="utf-8")[:2000])
     tall = float(size[2]) / float(size[1]) if size else 1.0
-    width = 100.0 * min(block.width, TALLEST / tall)
+    width = 100.0 * block.width * min(1.0, TALLEST / tall)
     return f"#figure(image({text_of('/' + name)}, width: {width:.3g}%), caption: {_words(block.caption)})"
 
 

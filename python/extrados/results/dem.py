@@ -31,6 +31,18 @@ class Variation(ResultModel):
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
 
 
+class Convergence(ResultModel):
+    """How far the impulses of rigid contacts were found."""
+
+    steps: int = fact("time steps")
+    open_steps: int = fact("time steps in which the contacts did not converge")
+    most_rounds: int = fact("greatest number of rounds (new impulses) of a step")
+    factorisations_per_step: float = fact("sparse factorisations per step")
+    worst_violation_ratio: float = fact(
+        "greatest violation of the contact law as a velocity, over that which gravity gives in a step"
+    )
+
+
 class DemRun(KindResults):
     """dem: the blocks under a motion."""
 
@@ -52,18 +64,24 @@ class DemRun(KindResults):
     restitution_housner: float | None = fact("of a block: the momentum balance", source="Housner 1963")
     bounces: int = fact("times that blocks left the ground or each other")
     airborne_time_s: float = fact("longest time that a block was without contact", "s")
-    joint_stiffness_min_Pa_per_m: float = fact("least normal stiffness of the joints", "Pa/m")
-    joint_stiffness_max_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
-    beta_s: float = fact("stiffness-proportional damping", "s")
-    damping_ratio_rotation: float = fact(
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "springs at the joints, or rigid contacts; these have no stiffness"
+    )
+    convergence: Convergence | None = maybe("of rigid contacts")
+    joint_stiffness_min_Pa_per_m: float | None = fact("least normal stiffness of the joints", "Pa/m")
+    joint_stiffness_max_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
+    beta_s: float | None = fact("stiffness-proportional damping", "s")
+    damping_ratio_rotation: float | None = fact(
         "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
     )
-    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
-    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact", source="thesis Eq. 7.9")
+    damping_ratio_corner: float | None = fact("least fraction of critical damping at corner impact")
+    damping_ratio_edge: float | None = fact(
+        "least fraction of critical damping at edge impact", source="thesis Eq. 7.9"
+    )
     steps: int = fact("time steps")
     settling_steps: int = fact("time steps until it had settled under its weight")
     time_step_s: float = fact("time step", "s")
-    critical_step_s: float = fact("greatest stable time step", "s")
+    critical_step_s: float | None = fact("greatest stable time step", "s")
     contact_searches: int = fact("searches for contacts")
     animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
     sensitivity: list[Variation] = maybe(
@@ -100,7 +118,9 @@ class DemTilt(KindResults):
     energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
     time_step_s: float = fact("time step", "s")
     steps: int = fact("time steps of the last run")
-    beta_s: float = fact("stiffness-proportional damping", "s")
+    solver: Literal["compliant", "nonsmooth"] = fact("springs at the joints, or rigid contacts")
+    convergence: Convergence | None = maybe("of rigid contacts, in the last runs of both senses")
+    beta_s: float | None = fact("stiffness-proportional damping; null of rigid contacts", "s")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
@@ -112,16 +132,36 @@ Dem = DemRun | DemTilt
 
 
 class DemCurve(ResultModel):
-    """Shortest failing durations with one set of joints."""
+    """Shortest failing durations with one set of joints, by one solver."""
 
-    label: str = fact("what was varied")
-    beta_s: float = fact("stiffness-proportional damping", "s")
-    stiffness_Pa_per_m: float = fact("greatest normal stiffness of the joints", "Pa/m")
+    label: str = fact("what was varied, or the other solver")
+    solver: Literal["compliant", "nonsmooth"] = fact(
+        "springs at the joints, or rigid contacts; these have no stiffness"
+    )
+    beta_s: float | None = fact("stiffness-proportional damping", "s")
+    stiffness_Pa_per_m: float | None = fact("greatest normal stiffness of the joints", "Pa/m")
     friction: float = fact("greatest coefficient of friction of the joints")
-    damping_ratio_rotation: float = fact("least fraction of critical damping at rotational impact")
-    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
-    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact")
+    damping_ratio_rotation: float | None = fact("least fraction of critical damping at rotational impact")
+    damping_ratio_corner: float | None = fact("least fraction of critical damping at corner impact")
+    damping_ratio_edge: float | None = fact("least fraction of critical damping at edge impact")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
+
+
+class CellApart(ResultModel):
+    """A pulse that brings the structure down by one solver only."""
+
+    amplitude_g: float = fact("amplitude", "g")
+    duration_s: float = fact("duration", "s")
+    fails_as_given: bool = fact("whether it comes down by the solver of the deck")
+    fails_by_the_other: bool = fact("whether it comes down by the other solver")
+
+
+class CrossCheck(ResultModel):
+    """Springs and rigid contacts side by side, in every cell of amplitudes and durations."""
+
+    cells: int = fact("cells")
+    agreement_ratio: float = fact("share of cells in which both have the same outcome")
+    apart: list[CellApart] = fact("cells in which they do not")
 
 
 class DemDomain(KindResults):
@@ -131,6 +171,11 @@ class DemDomain(KindResults):
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
     shortest_durations_s: list[float | None] = fact("at each amplitude; null where none of those tried fails", "s")
     curves: list[DemCurve] = fact("failure curves with other damping, stiffness or friction; the first is as given")
+    mode_II_durations_s: list[float | None] | None = maybe(
+        "shortest durations that bring it down in its first swing; null where none of those tried does", "s"
+    )
+    convergence: Convergence | None = maybe("of rigid contacts, in all runs")
+    cross_check: CrossCheck | None = maybe("by both solvers")
     energy_residual_ratio: float = fact("greatest error of the energy ledgers over the energy that went round")
     steps: int = fact("time steps of all runs")
     four_hinge_mode_I_durations_s: list[float | None] = maybe(

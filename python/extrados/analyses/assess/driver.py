@@ -29,6 +29,8 @@ from extrados.results.store import group_names
 
 #: Factors on the hazard at which discrete elements are tried, from 1 up while they stand, down while they fall
 UP, DOWN = (1.25, 1.5, 2.0, 3.0, 4.0), (0.8, 0.65, 0.5, 0.35, 0.25)
+#: Elements with joints so many times as stiff and as soft; a support that moves by this part of the size
+STIFFER, SPREAD = 4.0, 0.002
 #: Factors between two of the first ones, where the margin of rocking is thin
 FINE = 16
 
@@ -383,6 +385,31 @@ class _Work:
             if stop.interrupted:
                 raise Interrupted from None
             self.not_done.append(f"sensitivity: {stop}")
+        self._move_elements()
+
+    def _move_elements(self) -> None:
+        """What only discrete elements know: stiffness of the joints, and a support that gives way while it shakes."""
+        if "dem" not in self.results:
+            return
+        choice, stones = self.choices["dem"], self.context.building.blocks()
+        r = self.results["dem"].results
+        if not isinstance(r, DemRun):
+            return
+        stiffness = choice.keys.get("joints", {}).get("normal_stiffness", r.joint_stiffness_max_Pa_per_m)
+        for factor, told in (
+            (STIFFER, f"joints {STIFFER:g} times as stiff"),
+            (1.0 / STIFFER, f"joints {STIFFER:g} times as soft"),
+        ):
+            keys = _merged(choice.keys, {"joints": {"normal_stiffness": factor * stiffness}})
+            self._probe("dem", told, "dem", keys)
+        grounded = np.flatnonzero((stones.a < 0) | (stones.b < 0))
+        if len(grounded) > 1:
+            right = int(grounded[np.argmax(stones.middle[grounded, 0])])
+            spread = SPREAD * stones.size
+            keys = _merged(
+                choice.keys, {"initial": {"movements": [{"joint": stones.joint_names[right], "dx": spread}]}}
+            )
+            self._probe("dem", f"the right support moves out by {1e3 * spread:.3g} mm in the first second", "dem", keys)
 
     def _sensitivity(self) -> list[out.Sensitivity]:
         """Rows of the tornado, the widest first."""

@@ -293,7 +293,7 @@ def last_digits(facts: Facts, pairs: list[Pair]) -> Reason | None:
 def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Buildings that differ as nobody can know end differently: a single run is one draw."""
     row = facts.rows.get("probability")
-    mine = dynamic(pairs, "probability") or [p for p in pairs if "probability" in p]
+    mine = [p for p in pairs if "probability" in p and not set(p) & set(STATIC)]
     if not mine or row is None or row.demand is None or not 0.05 < row.demand < 0.95:
         return None
     return reason(
@@ -427,10 +427,12 @@ def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if check.demand is None or abs(check.capacity / least - 1.0) < 0.05:
         return None
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
+    part = getattr(r, "participating_part", 1.0)
+    taking = "" if abs(part - 1.0) < 0.005 else f" over the part e* = {part:.3g} of the weight that takes part"
     return reason(
         "code-factors", other,
-        f"The linear check of the code compares {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics over "
-        f"the confidence factor, times the behaviour factor q. q stands for what rocking bears beyond its uplift.",
+        f"The linear check of the code compares {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, over "
+        "the confidence factor, times the behaviour factor q. q stands for what rocking bears beyond its uplift.",
         code_capacity=check.capacity, static_capacity=least, demand=check.demand,
     )  # fmt: skip
 

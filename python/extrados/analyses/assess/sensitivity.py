@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.assess.hazard import Demanded
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_one
@@ -84,6 +85,8 @@ class MarginsJob:
                 senses = {"left": (r.collapse_acceleration_g,), "right": (r.collapse_acceleration_opposite_g,)}
                 both = (r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
                 margins[k] = min(senses.get(wall or "", both)) / self.peak_g
+            elif options.kind == "tilt" and (judged := r.judged(Demanded(self.peak_g))) is not None:  # of solids
+                margins[k] = np.nan if judged.ratio is None else judged.ratio
             elif isinstance(r, OverLevels):
                 margins[k] = margin_over(r, self.acceptable if self.count is not None else 0.0)
         return {"margin": margins}

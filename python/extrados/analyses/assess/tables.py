@@ -22,6 +22,7 @@ class Assess(Analysis):
 
     kind: Literal["assess"]
     view: ClassVar = "blocks"
+    solid: ClassVar = True
     needs_motion: ClassVar = True
     starter_motion: ClassVar = "record"
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")

@@ -80,7 +80,7 @@ def conclusion(
             f"The {word} {'stands' if stands else 'falls'} by {_list(stands or falls)}." if stands or falls else ""
         )
     if left:
-        said.append(f"{_list(left).capitalize()} {'leave' if len(left) > 1 else 'leaves'} it open.")
+        said.append(f"It stays open by {_list(left)}.")
     decisive = [one for one in reasons if any(facts.relation(*p) in ("disagree", "open") for p in one.explains)]  # type: ignore[misc]
     if decisive:
         said.append(f"What decides is {_list(list(dict.fromkeys(one.headline for one in decisive)))}.")

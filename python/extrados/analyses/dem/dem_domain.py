@@ -1,10 +1,12 @@
 """dem-domain: the shortest pulses that bring a structure down, by discrete elements (thesis Figs 7-11, 7-13, 7-14)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.dem import measures
 from extrados.analyses.dem import model as dem_model
 from extrados.analyses.dem.model import JointValues, Model
 from extrados.analyses.dem.runs import Runs, Task, answered
@@ -23,35 +25,50 @@ from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
 FAILED = ("collapse", "left")
+#: Times at which a swing is looked at [s], and rotations below which bodies vibrate [rad].
+SWING, VIBRATES = 0.01, 2e-3
+COMPLIANT, RIGID = "springs (compliant)", "rigid contacts (nonsmooth)"
+#: Solvers that agree in fewer cells do not confirm each other.
+AGREE = 0.95
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Shortest failing duration [s] at each amplitude (NaN: none of those tried fails) for one set of joints."""
+    """What is asked of one set of joints and one solver."""
 
     label: str
     values: JointValues
-    shortest: np.ndarray
+    rigid: bool = False
 
 
 class Search:
     """Asks round by round which pulses (curve, amplitude, duration) bring the structure down."""
 
-    def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[JointValues], rounds: float):
-        self.context, self.options, self.model = context, options, model
-        self.bodies = [model.bodies(values) for values in curves]
-        self.settlement = [farthest_settlement(model, values) for values in curves]
+    def __init__(self, context: Context, options: DemDomain, model: Model, curves: list[Curve], rounds: float):
+        self.context, self.options, self.model, self.curves = context, options, model, curves
+        self.bodies = [model.bodies(curve.values) for curve in curves]
+        self.settlement = [farthest_settlement(model, curve.values, curve.rigid) for curve in curves]
         self.settle = options.settle or dem_model.settle_time(model)
         self.limit = options.collapse_displacement or 0.2 * model.size
         self.shift = start(context, model)
         self.asked, self.total = 0, len(curves) * len(options.amplitudes) * rounds
-        self.residual, self.steps = 0.0, 0
+        self.residual, self.steps, self.effort = 0.0, 0, dem.Effort(0, 0, 0, 0, 0.0)
 
     def fails(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
         """Whether each pulse (curve, amplitude [m/s^2], duration [s]) brings the structure down; Unfinished where
         some have no answer, Refused where one is not to be trusted."""
+        return [run.reason in FAILED for run in self._runs(pulses)]
+
+    def falls_at_once(self, pulses: list[tuple[int, float, float]]) -> list[bool]:
+        """Whether each pulse brings it down in its first swing: no body turns back beyond where it began."""
+        return [
+            run.reason in FAILED and _swings_once(run, self.model.rigid.count)
+            for run in self._runs(pulses, output_step=SWING)
+        ]
+
+    def _runs(self, pulses: list[tuple[int, float, float]], output_step: float = 1e3) -> list[dem.Run]:
         runs = answered(
-            self.context, "dem-domain", Runs(self.bodies, [self._task(*one) for one in pulses]), "",
+            self.context, "dem-domain", Runs(self.bodies, [self._task(*one, output_step) for one in pulses]), "",
             tell=lambda done: self.context.progress(
                 min(self.asked + done, self.total), self.total, "failure domain by discrete elements"
             ),
@@ -61,13 +78,19 @@ class Search:
             dem_model.checked(run, self.model)
             self.residual = max(self.residual, run.residual)
             self.steps += run.steps
-        return [run.reason in FAILED for run in runs]
+            self.effort = self.effort.with_(run.effort)
+        return runs
 
-    def _task(self, curve: int, amplitude: float, duration: float) -> Task:
+    def convergence(self) -> out.Convergence | None:
+        """Of the rigid contacts in all runs, None where there were none."""
+        return measures.convergence(self.effort) if self.effort.steps else None
+
+    def _task(self, curve: int, amplitude: float, duration: float, output_step: float) -> Task:
         motion = unit_pulse(self.options.pulse, duration)
         options = dem.Options(
-            end_time=motion.end + self.settle, output_step=1e3, fraction=self.options.fraction, collapse=self.limit,
+            end_time=motion.end + self.settle, output_step=output_step, fraction=self.options.fraction, collapse=self.limit,
             stop_at_rest=True, mass_damping=self.options.mass_damping, settlement=self.settlement[curve],
+            rigid=self.curves[curve].rigid, rebound=self.options.rebound, step=self.options.time_step or 0.0,
         )  # fmt: skip
         return Task(curve, options, motion.ground, amplitude, self.shift)
 
@@ -75,24 +98,25 @@ class Search:
 def run(context: Context, options: DemDomain) -> Result:
     """Curves of the shortest failing durations, with their sensitivity, beside those of the four-hinge model."""
     model = dem_model.make_model(context, options)
-    labels = ["as given"]
-    labels += [f"damping x {f:g}" for f in options.vary_damping]
-    labels += [f"stiffness x {f:g}" for f in options.vary_stiffness]
-    labels += [f"friction {f:g}" for f in options.vary_friction]
     base = model.values
     curves = [
-        base,
-        *(base.scaled(damping=f) for f in options.vary_damping),
-        *(base.scaled(stiffness=f) for f in options.vary_stiffness),
-        *(base.scaled(friction=f) for f in options.vary_friction),
+        Curve("as given", base, options.rigid),
+        *(Curve(f"damping x {f:g}", base.scaled(damping=f)) for f in options.vary_damping),
+        *(Curve(f"stiffness x {f:g}", base.scaled(stiffness=f)) for f in options.vary_stiffness),
+        *(Curve(f"friction {f:g}", base.scaled(friction=f), options.rigid) for f in options.vary_friction),
     ]
+    if options.cross_check:
+        curves.append(Curve(COMPLIANT if options.rigid else RIGID, base, not options.rigid))
     context.warnings += dem_model.warnings(model, options)
     amplitudes, durations = np.array(options.amplitudes), np.array(options.durations)
     refining = max(0.0, np.ceil(np.log2(max(float(np.diff(durations).max()), durations[0]) / options.accuracy)))
     search = Search(context, options, model, curves, len(durations) + refining)
     with interruptible():  # Ctrl-C between two rounds stops the next one
-        shortest = _shortest(search, len(curves), amplitudes, durations, options.accuracy)
-    found = [Curve(label, v, row) for label, v, row in zip(labels, curves, shortest, strict=True)]
+        shortest = _shortest(search.fails, len(curves), amplitudes, durations, options.accuracy)
+        at_once = (
+            _shortest(search.falls_at_once, 1, amplitudes, durations, options.accuracy)[0] if options.mode_II else None
+        )
+        checked = _cross_check(search, amplitudes, durations) if options.cross_check else None
     result = Result("dem-domain")
     numbers = {
         "pulse": options.pulse,
@@ -101,24 +125,46 @@ def run(context: Context, options: DemDomain) -> Result:
         "curves": [
             out.DemCurve(
                 label=c.label,
-                beta_s=c.values.beta,
-                stiffness_Pa_per_m=c.values.stiffness.max(),
+                solver="nonsmooth" if c.rigid else "compliant",
                 friction=c.values.friction.max(),
-                **{f"damping_ratio_{name}": ratio for name, ratio in c.values.ratios().items()},
-                shortest_durations_s=c.shortest,
+                shortest_durations_s=row,
+                **_springs(c),
             )
-            for c in found
+            for c, row in zip(curves, shortest, strict=True)
         ],
+        "convergence": search.convergence(),
         "energy_residual_ratio": search.residual,
         "steps": search.steps,
     }
-    table = {"amplitude": amplitudes / GRAVITY, **{f"shortest duration, {c.label}": c.shortest for c in found}}
-    units = {"amplitude": "g", **{f"shortest duration, {c.label}": "s" for c in found}}
+    labels = [c.label for c in curves]
+    table = {"amplitude": amplitudes / GRAVITY}
+    table |= {f"shortest duration, {label}": row for label, row in zip(labels, shortest, strict=True)}
+    units = {"amplitude": "g", **{f"shortest duration, {label}": "s" for label in labels}}
     result.arrays = {
         "amplitude": Array(amplitudes / GRAVITY, ("amplitude",), "g"),
         "curve": Array(np.array(labels), ("curve",), "", "what was varied"),
         "shortest": Array(np.array(shortest), ("curve", "amplitude"), "s", "shortest failing duration"),
     }
+    if at_once is not None:
+        numbers["mode_II_durations_s"] = at_once
+        result.arrays["elements_mode_II"] = Array(
+            at_once, ("amplitude",), "s", "shortest duration that brings the elements down in their first swing"
+        )
+        table["shortest duration, mode II"], units["shortest duration, mode II"] = at_once, "s"
+    if checked is not None:
+        numbers["cross_check"] = _compared(checked, amplitudes, durations)
+        result.arrays |= {
+            "duration": Array(durations, ("duration",), "s", "durations of the cells that both solvers were asked"),
+            "fails": Array(
+                checked,
+                ("solver", "amplitude", "duration"),
+                "",
+                "1 where the cell brings it down: as given, other solver",
+            ),
+        }
+        if numbers["cross_check"].agreement_ratio < AGREE:
+            result.warnings.append(_apart(numbers["cross_check"]))
+    result.warnings += dem_model.unconverged(search.effort)
     numbers |= _beside(context, options, model, amplitudes, durations, result, table, units)
     result.results = out.DemDomain(**numbers)
     result.tables["dem_domain"] = TableData(table, units)
@@ -126,8 +172,61 @@ def run(context: Context, options: DemDomain) -> Result:
     return result
 
 
+def _springs(curve: Curve) -> dict[str, float | None]:
+    """Stiffness and damping of a curve; None of rigid contacts."""
+    told = {"beta_s": curve.values.beta, "stiffness_Pa_per_m": float(curve.values.stiffness.max())}
+    told |= {f"damping_ratio_{name}": ratio for name, ratio in curve.values.ratios().items()}
+    return dict.fromkeys(told) if curve.rigid else told
+
+
+def _cross_check(search: Search, amplitudes: np.ndarray, durations: np.ndarray) -> np.ndarray:
+    """Whether each cell (solver, amplitude, duration) fails: by the solver of the deck, then by the other."""
+    curves = (0, len(search.curves) - 1)
+    cells = [(curve, float(a), float(t)) for curve in curves for a in amplitudes for t in durations]
+    return np.reshape(search.fails(cells), (2, len(amplitudes), len(durations))).astype(int)
+
+
+def _compared(fails: np.ndarray, amplitudes: np.ndarray, durations: np.ndarray) -> out.CrossCheck:
+    """In how many cells two maps agree, and where they do not."""
+    apart = fails[0] != fails[1]
+    return out.CrossCheck(
+        cells=apart.size,
+        agreement_ratio=float(1.0 - apart.mean()),
+        apart=[
+            out.CellApart(
+                amplitude_g=float(amplitudes[i] / GRAVITY),
+                duration_s=float(durations[k]),
+                fails_as_given=bool(fails[0, i, k]),
+                fails_by_the_other=bool(fails[1, i, k]),
+            )
+            for i, k in np.argwhere(apart)
+        ],
+    )
+
+
+def _apart(check: out.CrossCheck) -> str:
+    """Where the two solvers do not agree, in words."""
+    where = "; ".join(
+        f"{c.amplitude_g:.3g} g for {c.duration_s:.3g} s {'falls' if c.fails_as_given else 'stands'} as given and "
+        f"{'falls' if c.fails_by_the_other else 'stands'} by the other solver"
+        for c in check.apart[:8]
+    )
+    return f"the solvers agree in {100 * check.agreement_ratio:.0f} % of {check.cells} cells only: {where}"
+
+
+def _swings_once(run: dem.Run, count: int) -> bool:
+    """Does each of the bodies 0 to count - 1 turn to one side only until it falls? Vibrations do not count."""
+    turn = run.place[:, :count, 2] - run.settled[:count, 2]
+    side = np.sign(turn[-1])
+    return bool((turn * side).min() > -VIBRATES)
+
+
 def _shortest(
-    search: Search, curves: int, amplitudes: np.ndarray, durations: np.ndarray, accuracy: float
+    fails: Callable[[list[tuple[int, float, float]]], list[bool]],
+    curves: int,
+    amplitudes: np.ndarray,
+    durations: np.ndarray,
+    accuracy: float,
 ) -> np.ndarray:
     """Shortest failing duration (curves, amplitudes): the first failing one of those tried, refined by bisection.
 
@@ -138,13 +237,13 @@ def _shortest(
     low, high = np.zeros(len(rows)), np.full(len(rows), np.nan)
     open_rows = list(range(len(rows)))
     for duration in durations:
-        fails = search.fails([(*rows[r], float(duration)) for r in open_rows]) if open_rows else []
-        for r, failed in zip(open_rows, fails, strict=True):
+        found = fails([(*rows[r], float(duration)) for r in open_rows]) if open_rows else []
+        for r, failed in zip(open_rows, found, strict=True):
             if failed:
                 high[r] = duration
             else:
                 low[r] = duration
-        open_rows = [r for r, failed in zip(open_rows, fails, strict=True) if not failed]
+        open_rows = [r for r, failed in zip(open_rows, found, strict=True) if not failed]
     while True:
         wide = [
             r for r in range(len(rows))
@@ -153,8 +252,8 @@ def _shortest(
         ]  # fmt: skip
         if not wide:
             return high.reshape(curves, len(amplitudes))
-        fails = search.fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide])
-        for r, failed in zip(wide, fails, strict=True):
+        found = fails([(*rows[r], float(0.5 * (low[r] + high[r]))) for r in wide])
+        for r, failed in zip(wide, found, strict=True):
             middle = 0.5 * (low[r] + high[r])
             if failed:
                 high[r] = middle
@@ -192,12 +291,22 @@ def _answer(r: out.DemDomain, amplitudes: np.ndarray, shortest: np.ndarray) -> s
         for a, t in zip(amplitudes, shortest, strict=True)
     ]
     text = f"Shortest {r.pulse} pulses that bring it down: {'; '.join(told)}."
-    spread = [(c.label, np.array([np.nan if t is None else t for t in c.shortest_durations_s])) for c in r.curves[1:]]
+    spread = [
+        (c.label, np.array([np.nan if t is None else t for t in c.shortest_durations_s]))
+        for c in r.curves[1:]
+        if c.solver == r.curves[0].solver
+    ]
     if spread:
         with np.errstate(invalid="ignore"):
             worst = max(spread, key=lambda item: np.nanmax(np.abs(item[1] / shortest - 1.0), initial=0.0))
         change = np.nanmax(np.abs(worst[1] / shortest - 1.0), initial=0.0)
         text += f" The greatest change, {100 * change:.0f} %, comes with {worst[0]}."
+    if r.cross_check is not None:
+        other = [f"{t:.3f}" if t is not None else "none" for t in r.curves[-1].shortest_durations_s]
+        text += (
+            f" By {r.curves[-1].label}: {', '.join(other)} s; both solvers agree in {100 * r.cross_check.agreement_ratio:.0f} % "
+            f"of {r.cross_check.cells} cells."
+        )
     mode = r.four_hinge_mode_I_durations_s
     if mode and all(t is not None for t in mode) and np.isfinite(shortest).all():
         text += f" The four-hinge model gives {', '.join(f'{t:.3f}' for t in mode)} s (after one impact)."

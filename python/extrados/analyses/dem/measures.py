@@ -7,7 +7,7 @@ from extrados.analyses.dem.tables import Dem
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.rigid import FOOTING
 from extrados.core import dem
-from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND
+from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, Convergence
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
 
@@ -66,6 +66,17 @@ def hinges(model: Model, gap_p: np.ndarray, gap_q: np.ndarray, slip: np.ndarray)
 def peak_slip(state: np.ndarray, slip: np.ndarray) -> float:
     """Greatest slip of joints that still touch [m]."""
     return float(np.nanmax(np.abs(np.where(state == APART, 0.0, slip)), initial=0.0))
+
+
+def convergence(effort: dem.Effort) -> Convergence:
+    """What rigid contacts took."""
+    return Convergence(
+        steps=effort.steps,
+        open_steps=effort.open_steps,
+        most_rounds=effort.most_rounds,
+        factorisations_per_step=effort.factors / max(effort.steps, 1),
+        worst_violation_ratio=effort.residual,
+    )
 
 
 def off_their_footings(model: Model, state: np.ndarray, slip: np.ndarray) -> list[str]:

@@ -113,8 +113,14 @@ class Model:
 
 
 def make_model(context: Context, options: DemTable) -> Model:
-    """The model of a deck; Refused where a block has no area or crosses itself."""
+    """The model of a deck; Refused where a block has no area or crosses itself, or where rigid contacts lack something."""
     building = context.building
+    if options.rigid:
+        for name in ("cohesion", "tension"):
+            if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
+                raise Refused(f'joints.{name}: rigid contacts (solver = "nonsmooth") know no mortar')
+        if building.supports.stiffness is not None:
+            raise Refused('supports.stiffness: rigid contacts (solver = "nonsmooth") know no springs')
     assembly = building.blocks()
     groups: tuple[tuple[int, ...], ...] = ()
     if options.merge == "three-bars":
@@ -141,7 +147,7 @@ def checked(run: dem.Run, model: Model, keep: tuple[str, ...] = ("end", "collaps
             "overlap": f"{' and '.join(names)} overlap at the start",
             "unsettled": f"the structure does not stand under its own weight: {first} falls, or does not come to rest",
             "blow-up": f"the energy ledger does not close: stopped at step {run.steps} ({run.stop_time:.4g} s), fastest block "
-            f"{first}; a smaller fraction of the critical step may help",
+            f"{first}; a smaller step may help",
         }.get(run.reason, f"stopped: {run.reason} ({first})")
     )
 
@@ -150,6 +156,8 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
     """What is doubtful about the damping (thesis 7.2.1, 7.4.2), and what of the building is left out."""
     found = passive_left_out(model.assembly.earth)
     ratio = (values or model.values).ratios()
+    if options.rigid:
+        return found
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
             f"under-damped: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} % at edge "
@@ -160,6 +168,16 @@ def warnings(model: Model, options: DemTable, values: JointValues | None = None)
             "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
         )
     return found
+
+
+def unconverged(effort: dem.Effort) -> list[str]:
+    """The warning that rigid contacts did not converge in some steps."""
+    if not effort.open_steps:
+        return []
+    return [
+        f"the contacts did not converge in {effort.open_steps} of {effort.steps} steps: at the worst they are off by "
+        f"{effort.residual:.2g} of the velocity that gravity gives in a step; a smaller time_step may help"
+    ]
 
 
 def settle_time(model: Model) -> float:

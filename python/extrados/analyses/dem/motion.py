@@ -59,7 +59,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     result = Result("dem", status="interrupted" if found.interrupted else "ok")
     again = "; --resume goes on from here" if context.checkpoint is not None and len(found.time) else ""
     result.reason = f"interrupted at {found.stop_time:.3f} s{again}" if found.interrupted else ""
-    numbers = _numbers(trial, found, seen) | {"animation": options.animation}
+    numbers = _numbers(options, trial, found, seen) | {"animation": options.animation}
     _store(options, model, found, seen, result)
     if seen.sliding > measures.SLIDES * float(model.assembly.length.min()):
         result.warnings.append(f"joints slide by up to {1e3 * seen.sliding:.3g} mm")
@@ -71,6 +71,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         result.warnings.append(
             f"the energy ledger is off by {100 * found.residual:.2g} % of the energy that went round"
         )
+    result.warnings += dem_model.unconverged(found.effort)
     if numbers["still_moving"]:
         result.warnings.append("it still moves at the end of the run: a longer end_time may show another outcome")
     if trial.idle:
@@ -94,7 +95,7 @@ def _look(options: Dem, model: Model, found: dem.Run, ground: np.ndarray) -> See
     )  # fmt: skip
 
 
-def _numbers(trial: Trial, found: dem.Run, seen: Seen) -> dict[str, Any]:
+def _numbers(options: Dem, trial: Trial, found: dem.Run, seen: Seen) -> dict[str, Any]:
     """The results of the run itself."""
     model, names = trial.model, trial.model.assembly.block_names
     peak = np.abs(seen.rotation).argmax(axis=0)
@@ -122,16 +123,27 @@ def _numbers(trial: Trial, found: dem.Run, seen: Seen) -> dict[str, Any]:
         else None,
         "bounces": int(found.bounces[mobile].sum()),
         "airborne_time_s": float(found.airborne[mobile].max(initial=0.0)),
-        "joint_stiffness_min_Pa_per_m": float(model.values.stiffness.min()),
-        "joint_stiffness_max_Pa_per_m": float(model.values.stiffness.max()),
-        "beta_s": model.values.beta,
-        **{f"damping_ratio_{name}": ratio for name, ratio in model.values.ratios().items()},
+        "solver": options.solver,
+        "convergence": measures.convergence(found.effort) if options.rigid else None,
+        **_springs(options, model, found),
         "steps": found.steps,
         "settling_steps": found.settling_steps,
         "time_step_s": found.step,
-        "critical_step_s": found.critical_step,
         "contact_searches": found.searches,
     }
+
+
+def _springs(options: Dem, model: Model, found: dem.Run) -> dict[str, float | None]:
+    """Stiffness, damping and the stable step of joints with springs; None of rigid contacts."""
+    values = model.values
+    told = {
+        "joint_stiffness_min_Pa_per_m": float(values.stiffness.min()),
+        "joint_stiffness_max_Pa_per_m": float(values.stiffness.max()),
+        "beta_s": values.beta,
+        **{f"damping_ratio_{name}": ratio for name, ratio in values.ratios().items()},
+        "critical_step_s": found.critical_step,
+    }
+    return dict.fromkeys(told) if options.rigid else told
 
 
 def _store(options: Dem, model: Model, found: dem.Run, seen: Seen, result: Result) -> None:

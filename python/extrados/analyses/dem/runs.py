@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -91,6 +91,7 @@ class Runs:
             "settled": found.settled,
             "bounces": found.bounces,
             "airborne": found.airborne,
+            "effort": np.array(astuple(found.effort), dtype=float),
             **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
         }
 
@@ -119,6 +120,7 @@ def run_of(rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
         bounces=row["bounces"],
         airborne=row["airborne"],
         contacts=NO_CONTACTS,
+        effort=dem.Effort(*(int(v) for v in row["effort"][:-1]), float(row["effort"][-1])),
         **{name: float(row[name]) for name in NUMBERS},
         **{name: int(row[name]) for name in COUNTS},
     )

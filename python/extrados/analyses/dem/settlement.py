@@ -13,16 +13,21 @@ from extrados.schema.constants import GRAVITY
 TIMES = 10.0
 #: Of the size of the structure: however soft its joints are, no settlement goes so far.
 FARTHEST = 0.2
+#: Of the size: rigid contacts give nothing, but the last gaps close.
+RIGID = 1e-3
 
 
-def farthest_settlement(model: Model, values: JointValues | None = None) -> float:
+def farthest_settlement(model: Model, values: JointValues | None = None, rigid: bool = False) -> float:
     """The displacement of a block beyond which it falls instead of settling [m].
 
     `TIMES` the greatest displacement under the own weight with all joints held closed, and twice that as the gaps of a
-    survey close; at most `FARTHEST` of the size. With `values` instead of those of the model where given.
+    survey close; at most `FARTHEST` of the size. With `values` instead of those of the model where given. On `rigid`
+    contacts gaps close, and nothing else gives.
     """
     weight, gaps = closed_settlement(model, values or model.values)
     most = FARTHEST * model.size
+    if rigid:
+        return most if np.isnan(gaps) else min(RIGID * model.size + 2.0 * gaps, most)
     return most if np.isnan(weight + gaps) else min(TIMES * weight + 2.0 * gaps, most)
 
 

@@ -1,7 +1,7 @@
 """Analysis kinds of the discrete elements: dem, dem-domain, dem-parameters."""
 
 import itertools
-from typing import Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
@@ -10,6 +10,11 @@ from extrados.schema.constants import GRAVITY
 from extrados.schema.quantities import Acceleration, Gravities, Length, Time
 from extrados.schema.table import key
 
+if TYPE_CHECKING:
+    from extrados.building.building import Building
+
+#: Properties of a building that rigid contacts do not look at
+SPRINGS = ("material.young", "joints.cohesion", "joints.tension", "joints.normal_stiffness", "joints.damping")
 Positive = Annotated[float, Field(gt=0.0)]
 
 
@@ -20,15 +25,47 @@ class DemTable(BuildingAnalysis):
         "material.density", "material.young", "joints.friction", "joints.cohesion", "joints.tension",
         "joints.normal_stiffness", "joints.damping",
     )  # fmt: skip
+    solver: Literal["compliant", "nonsmooth"] = key(
+        "compliant", "springs and dashpots at the joints, or rigid contacts that neither overlap nor pull (Moreau 1988, "
+        "Jean 1999): no stiffness, no damping, large time steps; each checks the other",
+    )  # fmt: skip
+    rebound: float = key(
+        0.0, "nonsmooth: Newton's coefficient of restitution at each contact point; 0 is the loss of Housner's block",
+        ge=0, le=1,
+    )  # fmt: skip
     mass_damping: float = key(0.0, "mass-proportional damping alpha in 1/s; not physical for rocking", ge=0, le=1e4)
     merge: Literal["none", "three-bars"] = key(
         "none", "glue the voussoirs of an arch into the three links of its four-hinge mechanism"
     )
     fraction: float = key(0.3, "time step over the critical one", gt=0, le=0.9)
+    time_step: Time | None = key(
+        None, "instead of the fraction of the critical step, or nonsmooth of a 200th of the time in which the smallest block "
+        "falls by its own size", gt=0,
+    )  # fmt: skip
     floor: Length | None = key(
         None, "height of a level floor that catches what falls and on which blocks slide on; default none, but a footing a "
         "quarter wider on both sides under each joint to the ground",
     )  # fmt: skip
+
+    @property
+    def rigid(self) -> bool:
+        """Without springs?"""
+        return self.solver == "nonsmooth"
+
+    def rests_on(self, building: "Building") -> dict[str, str | None]:
+        """As it says: rigid contacts do not ask how stiff and damped they are."""
+        told = super().rests_on(building)
+        return {key: fixed for key, fixed in told.items() if not (self.rigid and key in SPRINGS)}
+
+    @model_validator(mode="after")
+    def _one_solver(self) -> "DemTable":
+        """What only the other solver knows is refused."""
+        given = self.model_fields_set
+        if self.rigid and (wrong := sorted(given & {"mass_damping", "fraction", "vary_damping", "vary_stiffness"})):
+            raise ValueError(f'{wrong[0]} is of solver = "compliant": rigid contacts have no stiffness and no damping')
+        if not self.rigid and (wrong := sorted(given & {"rebound", "quasi_static"})):
+            raise ValueError(f'{wrong[0]} needs solver = "nonsmooth"')
+        return self
 
 
 class Dem(DemTable, Animated):
@@ -36,12 +73,15 @@ class Dem(DemTable, Animated):
 
     starter_motion: ClassVar = "step-pulse"
     kind: Literal["dem"]
+    quasi_static: bool = key(
+        False, "nonsmooth: without inertia, so that supports that move are followed through large displacements until "
+        "what stands on them falls",
+    )  # fmt: skip
     test: Literal["motion", "tilt"] = key(
         "motion", "follow the motion, or find the constant acceleration that brings it down"
     )
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.01, "spacing of the history", ge=1e-6)
-    time_step: Time | None = key(None, "instead of the fraction of the critical step", gt=0)
     base: Literal["body-force", "moving"] = key("body-force", "how the ground moves: both give the same")
     collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
     domain: float = key(10.0, "blocks may go this many sizes of the structure away from it", gt=1, le=1000)
@@ -74,6 +114,14 @@ class DemDomain(DemTable):
     accuracy: Time = key(0.005, "of the failing durations", ge=1e-6)
     settle: Time | None = key(None, "time after the pulse in which it must come to rest or down", gt=0)
     collapse_displacement: Length | None = key(None, "of any block; default a fifth of the structure's size", gt=0)
+    mode_II: bool = key(
+        False, "also the shortest pulses that bring it down in its first swing, before any impact; with merge = "
+        '"three-bars" beside the four-hinge curve of that name', source="thesis Fig. 7-11",
+    )  # fmt: skip
+    cross_check: bool = key(
+        False, "also by the other solver: its curve, and the share of the cells of all amplitudes and durations in which both "
+        "have the same outcome",
+    )  # fmt: skip
     vary_damping: list[Positive] = key([], "further curves with beta times these factors", max_length=20)
     vary_stiffness: list[Positive] = key([], "further curves with joint stiffnesses times these factors", max_length=20)
     vary_friction: list[Positive] = key(

@@ -44,7 +44,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         context.warnings.append(f"plays no part in a tilt test: {', '.join(unused)}")
     base = replace(
         core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
-        settlement=farthest_settlement(model), output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
+        settlement=farthest_settlement(model, rigid=options.rigid), output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
     )  # fmt: skip
     (collapse, last), (back, back_run) = _capacities(context, options, model, base)
     state, slip, at, found_hinges = _hinged(model, last)
@@ -69,8 +69,11 @@ def run(context: Context, options: Dem, model: Model) -> Result:
         energy_residual_ratio=max(last.residual, back_run.residual),
         time_step_s=last.step,
         steps=last.steps,
-        beta_s=model.values.beta,
+        solver=options.solver,
+        beta_s=None if options.rigid else model.values.beta,
+        convergence=measures.convergence(last.effort.with_(back_run.effort)) if options.rigid else None,
     )
+    result.warnings += dem_model.unconverged(last.effort.with_(back_run.effort))
     result.arrays = {
         **geometry_arrays(model.assembly),
         "time": Array(last.time, ("time",), "s"),

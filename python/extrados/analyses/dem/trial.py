@@ -39,6 +39,9 @@ def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
         stop_at_rest=options.end_time is None,
         moving_base=options.base == "moving",
         mass_damping=options.mass_damping,
+        rigid=options.rigid,
+        rebound=options.rebound,
+        quasi_static=options.quasi_static,
     )
 
 
@@ -109,7 +112,7 @@ class Trial:
         options = replace(self.options, **change)
         tasks = [
             Task(
-                k, replace(options, settlement=farthest_settlement(self.model, v)), self.ground, shift=self.shift,
+                k, replace(options, settlement=farthest_settlement(self.model, v, options.rigid)), self.ground, shift=self.shift,
                 moves=self.moves,
             )
             for k, v in enumerate(values)

@@ -2,7 +2,16 @@
 
 from extrados.analyses.dem.measures import SLIDES
 from extrados.analyses.dem.model import Model
-from extrados.results.dem import DemRun, DemTilt
+from extrados.results.dem import Convergence, DemRun, DemTilt
+
+
+def solved(c: Convergence) -> str:
+    """How far rigid contacts converged."""
+    where = "all" if not c.open_steps else f"{c.steps - c.open_steps} of"
+    return (
+        f"rigid contacts converged in {where} {c.steps} steps (at most {c.most_rounds} rounds, off by "
+        f"{c.worst_violation_ratio:.1g} of gravity's velocity in a step)"
+    )
 
 
 def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
@@ -10,10 +19,13 @@ def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
         return "It stands under its own weight; nothing moves it."
     turn = max(r.peak_rotation_rad.items(), key=lambda item: abs(item[1]), default=("", 0.0))
     audit = f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %"
-    damping = (
-        f"damping {100 * r.damping_ratio_rotation:.3g} % of critical at rotational and {100 * r.damping_ratio_edge:.3g} % at "
-        f"edge impact"
-    )
+    if r.convergence is None:
+        audit += (
+            f", damping {100 * r.damping_ratio_rotation:.3g} % of critical at rotational and "
+            f"{100 * r.damping_ratio_edge:.3g} % at edge impact"
+        )
+    else:
+        audit += f", {solved(r.convergence)}"
     if r.outcome == "collapse":
         who = f" ({r.stopped_by[0]} is the first to go)" if r.stopped_by else ""
         first = f"It collapses{who} at {r.collapse_time_s:.2f} s"
@@ -26,7 +38,7 @@ def motion_answer(r: DemRun, model: Model, idle: bool) -> str:
         first = f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m"
     return (
         f"{first}; {turn[0]} turns by {1e3 * abs(turn[1]):.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, "
-        f"{r.bounces} bounces; {audit}, {damping}."
+        f"{r.bounces} bounces; {audit}."
     )
 
 
@@ -37,5 +49,5 @@ def tilt_answer(r: DemTilt) -> str:
     return (
         f"A constant horizontal acceleration brings it down at {collapse:.4f} g pushed to +x (a tilt of "
         f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
-        f"Hinges as it goes to +x: {where}."
+        f"Hinges as it goes to +x: {where}." + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
     )

@@ -32,15 +32,20 @@ def run(context: Context, options: Tilt) -> Result:
     limit = SolidLimit(assembly, building.friction(assembly))
     word = building.structure.word  # type: ignore[union-attr]
     first = 0.0 if options.direction is None else options.direction
-    there, back = (_stands(limit.push(d), assembly, word) for d in (first, first + 180.0))
+    count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
+    angles = first + 360.0 * np.arange(count) / count if count else np.array([first, first + 180.0])
+    asked = np.unique(np.round(np.concatenate([[first, first + 180.0], angles]), 9))
+    given = limit.pushes(asked.tolist(), context.threads, lambda done: context.progress(done, len(asked), "directions"))
+    found_at = dict(zip(asked.tolist(), given, strict=True))
+    there, back = (_stands(found_at[round(d, 9)], assembly, word) for d in (first, first + 180.0))
     if there.gamma < 0.0 or back.gamma < 0.0:
         low, high = sorted((there.gamma, -back.gamma))
         raise Refused(
             f"the {word} cannot stand under its own weight: it stands only when pushed along {first:g} degrees by {low:.4f} to "
             f"{high:.4f} g; proof: the mechanism of the lesser push, in which the weights do work"
         )
-    count = options.rose or (DIRECTIONS if len(assembly.mass) <= FEW else 0)
-    angles, capacity = _rose(context, limit, assembly, word, first, count, there, back)
+    rose = [found_at[round(d, 9)] for d in angles.tolist()]
+    capacity = np.array([np.inf if one is None else _stands(one, assembly, word).gamma for one in rose])
     result = Result("tilt")
     least = int(np.flatnonzero(capacity <= capacity.min() + SAME)[0])  # of equals the first
     opens = _openings(assembly, limit, there)
@@ -102,7 +107,9 @@ def _refuse(building: Building, options: Tilt) -> None:
             raise Refused(f"tilt of solids does not reckon with {what}: leave it out, or look at a plane section")
 
 
-def _stands(found: Programme | Falls, assembly: SolidAssembly, word: str) -> Programme:
+def _stands(found: Programme | Falls | None, assembly: SolidAssembly, word: str) -> Programme:
+    if found is None:
+        raise Immovable("no push of its weight brings it down: its contacts hold it from all sides")
     if isinstance(found, Falls):
         name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
         raise Refused(
@@ -110,26 +117,6 @@ def _stands(found: Programme | Falls, assembly: SolidAssembly, word: str) -> Pro
             "hinders and by which the weights do work"
         )
     return found
-
-
-def _rose(
-    context: Context, limit: SolidLimit, assembly: SolidAssembly, word: str, first: float, count: int, there: Programme,
-    back: Programme,
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
-    """Directions [deg] and capacities [g], infinite where no push brings it down: all around, or only there and back."""
-    if not count:
-        return np.array([first, first + 180.0]), np.array([there.gamma, back.gamma])
-    angles = first + 360.0 * np.arange(count) / count
-    known = {0.0: there.gamma, 180.0: back.gamma}
-    found = []
-    for k, angle in enumerate(angles.tolist()):
-        context.progress(k, count, "directions")
-        turn = round(angle - first, 9)
-        try:
-            found.append(known[turn] if turn in known else _stands(limit.push(angle), assembly, word).gamma)
-        except Immovable:
-            found.append(np.inf)
-    return angles, np.array(found)
 
 
 def _pyramids(limit: SolidLimit, direction: float, sides: int) -> out.Pyramids:

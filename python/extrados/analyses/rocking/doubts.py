@@ -16,12 +16,6 @@ from extrados.results.rocking import RuleOutcome
 DIFFER = 1.3
 #: A motion scaled by 1 plus and minus this is the same motion to every instrument.
 NUDGE = 1e-6
-#: Arches that keep less than this at a blow keep more in discrete elements: up to MORE beyond it, or LEAST, the greater
-#: (tests/verification/test_impact_map.py)
-STOCKY, MORE, LEAST = 0.7, 0.2, 0.4
-#: Motion that repeats itself faster than this times sqrt(.2 m/R) [Hz] fells discrete elements that the blow lets stand
-#: (tests/verification/test_impact_tests.py)
-FAST = 5.0
 #: A motion repeats itself where it is this much like itself a period later, over so many periods
 ALIKE, OFTEN = 0.5, 4.0
 
@@ -38,7 +32,7 @@ class Doubts:
 def beat(context: Context, response: Response) -> float:
     """Frequency at which the ground repeats itself while the structure rocks [Hz]; 0 where it does not."""
     times = [t for kind, t, _ in response.events if kind in ("uplift", "impact")]
-    if len(times) < 2 or times[-1] <= times[0]:
+    if not times or min(times[-1], context.motion.end) <= times[0]:
         return 0.0
     time = np.linspace(times[0], min(times[-1], context.motion.end), 16384)
     ground = context.motion.sample(time)
@@ -53,25 +47,25 @@ def beat(context: Context, response: Response) -> float:
     return cycles / span if size > 0.0 and float(early @ late) > ALIKE * size else 0.0
 
 
+def too_fast(limit: float) -> str:
+    """Why motion that repeats itself above a frequency [Hz] is worse than fixed hinges say."""
+    return (
+        f"above {limit:.2g} Hz impacts in a row, of hinges that do not move, lose too much in an arch of this size, and discrete "
+        "elements fell at a third of the strength"
+    )
+
+
 def _keeping_more(context: Context, rocker: Rocker, response: Response) -> list[tuple[float, str]]:
     """c_v to try beside that of the blow at all joints, and why: where discrete elements are known to keep more."""
     model = rocker.model
     if not isinstance(model, ArchModel) or model.rule != "inelastic" or response.outcome != "recovery":
         return []
-    found, c_v = [], model.restitution
-    if c_v < STOCKY:
-        kept = max(c_v + MORE, LEAST)
-        found.append((
-            kept,
-            f"the blow at all joints of an arch this stocky leaves {c_v:.3f} of the rate, discrete elements up to {kept:.3f}",
-        ))  # fmt: skip
-    frequency, limit = beat(context, response), FAST * float(np.sqrt(0.2 / model.arch.radius))
-    if frequency > limit:
-        found.append((
-            1.0,
-            f"the motion repeats itself at {frequency:.2g} Hz: above {limit:.2g} Hz impacts in a row, of hinges that do not move, "
-            "lose too much in an arch of this size, and discrete elements fell at a third of the strength",
-        ))  # fmt: skip
+    found = []
+    if (kept := model.kept_by_elements) is not None:
+        found.append((kept, "discrete elements may keep more than the blow at all joints"))
+    frequency, limit = beat(context, response), model.fastest_beat
+    if limit is not None and frequency > limit:
+        found.append((1.0, f"the motion repeats itself at {frequency:.2g} Hz: {too_fast(limit)}"))
     return found
 
 

@@ -9,10 +9,12 @@ import numpy as np
 from extrados.analyses.batches import computed
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.motion_source import source_of
+from extrados.analyses.rocking.doubts import OFTEN, too_fast
 from extrados.analyses.rocking.failure_domain import LowestAmplitudes, natural_durations
 from extrados.analyses.rocking.needs import structures_of
 from extrados.analyses.rocking.tables import FailureCurves
 from extrados.building.errors import BadGeometry
+from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import FAILED, OUTCOMES, ensemble
 from extrados.motions.impulse import Impulse, primary_impulses
@@ -138,6 +140,9 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
         parts = [_said(structure, name) for name in names]
         told = f"{', '.join(parts)}: " if parts else ""
         context.warnings += [told + warning for warning in rocker.warnings]
+        limit = rocker.model.fastest_beat if isinstance(rocker.model, ArchModel) else None
+        if limit is not None and max(options.cycles) >= OFTEN:
+            context.warnings.append(f"{told}trains of sines repeat themselves: {too_fast(limit)}")
         for cycles in options.cycles:
             of_train = [f"{cycles} cycle{'s' if cycles > 1 else ''}"] if len(options.cycles) > 1 else []
             found.append(Variant(", ".join(parts + of_train) or rocker.word, rocker, cycles))

@@ -6,7 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.shell.tables import Pushover
-from extrados.analyses.sla.model import POINTS_PER_THREAD, bands_of, crushing_of, laws_of, softening_of
+from extrados.analyses.sla.model import POINTS_PER_THREAD, bands_of, crushing_of, hills_of, laws_of, softening_of
 from extrados.building.errors import BadGeometry
 from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellPart
 from extrados.core import sla as core
@@ -120,7 +120,7 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     if not weight > 0.0:
         raise BadGeometry("a building without weight: give the material a density")
     behaviour = core.Behaviour(options.cracking, options.shear_retention, options.crack_closure)
-    control = _control(mesh, options, along)
+    control = _control(mesh, options, along, held)
     model = ShellModel(
         mesh,
         freedoms,
@@ -210,7 +210,7 @@ def _settlements(
     return ties, np.array(far)
 
 
-def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray) -> core.Monitor:
+def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> core.Monitor:
     """The mean displacement in the direction of the push."""
     if options.control is not None:
         nodes = _place(mesh, options.control, "control")
@@ -221,6 +221,13 @@ def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray) -> core.Moni
     if not len(nodes):
         raise BadGeometry("control: no wall reaches the highest level; name a wall and a storey")
     axis = np.flatnonzero(along)
+    if options.control is None and all((int(n), int(d)) in held for n in nodes for d in axis):
+        mass = mesh.mass()  # a propped top: what the forces of the push go
+        nodes = np.flatnonzero(mass)
+        share = mass[nodes] / mass.sum()
+        return core.Monitor(
+            np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.outer(share, along[axis]).ravel()
+        )
     return core.Monitor(
         np.repeat(nodes, len(axis)), np.tile(axis, len(nodes)), np.tile(along[axis] / len(nodes), len(nodes))
     )
@@ -284,7 +291,8 @@ def _shells(
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
         selective=options.mesh.selective and part.kind == "Q4", reach=reach,
         confinement=np.array([m.confinement for m in materials]),
-        bedding=beds if any(bed is not None for bed in beds) else None, frames=frames, flat=flat,
+        bedding=beds if any(bed is not None for bed in beds) else None, hill=hills_of(materials, part.linear, options),
+        frames=frames, flat=flat,
         layers=options.mesh.layers if part.bends else 1, through=options.mesh.through if part.bends else "gauss",
         bends=part.bends,
     )  # fmt: skip

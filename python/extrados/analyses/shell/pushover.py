@@ -151,7 +151,7 @@ def _numbers(model: ShellModel, options: Pushover, curve: Curve, elastic: dict[s
         for w, wall in enumerate(model.mesh.walls)
     ]  # fmt: skip
     across = np.abs(facing) < 0.5
-    if across.any() and base:
+    if across.any() and not across.all() and base:
         change = (normal - normal0)[across]
         up, down = float(change[change > 0].sum()), float(-change[change < 0].sum())
         numbers["flanges"] = {
@@ -371,7 +371,7 @@ def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> s
                 f"; it cracks first in wall {crack['wall']}, storey {crack['storey']}, {crack['along_m']:.3g} m along and "
                 f"{crack['height_m']:.3g} m up, under {crack['base_shear_N'] / 1e3:.3g} kN"
             )
-        if curve["walls"]:
+        if any(r["share"] > 0.02 for r in curve["walls"]):
             most = sorted(curve["walls"], key=lambda row: -row["share"])[:4]
             text += "; " + ", ".join(
                 f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02

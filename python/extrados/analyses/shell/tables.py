@@ -69,7 +69,9 @@ class Pushover(CrackOptions, BuildingAnalysis):
         max_length=100,
     )
     control: Drive | None = key(
-        None, "whose mean displacement in the direction is followed; default that of all walls on the highest level"
+        None,
+        "whose mean displacement in the direction is followed; default that of all walls on the highest level, or of all "
+        "masses where that is propped",
     )
     settlements: list[Settlement] = key(
         [], "ground that goes down as the weight comes on, [[analysis.settlements]]", max_length=100

@@ -21,17 +21,19 @@ STICKS, SLIDES_UP, SLIDES_DOWN = 0.0, 1.0, 2.0
 @dataclass(frozen=True)
 class DryPoints:
     """Integration points of dry joints, from 0; their friction (NaN: no sliding), shear stiffness [Pa/m] and the stress
-    that counts as small [Pa]."""
+    that counts as small [Pa]. Ties and struts that go slack are such points, too: `sense` is -1 of what bears tension,
+    else +1."""
 
     number: np.ndarray
     friction: np.ndarray
     stiffness: np.ndarray
     small: np.ndarray
+    sense: np.ndarray
 
 
 def dry_points(core_model: core.Model, model: SlaModel) -> DryPoints:
     """The points of joints without tensile strength."""
-    found = [(np.empty(0, dtype=int), *(np.empty(0) for _ in range(3)))]
+    found = [(np.empty(0, dtype=int), *(np.empty(0) for _ in range(4)))]
     for group, (made, first, per) in zip(model.mesh.groups, core_model.plane_points, strict=True):
         if group.dry is None:
             continue
@@ -40,7 +42,17 @@ def dry_points(core_model: core.Model, model: SlaModel) -> DryPoints:
         values = (
             (made.friction, made.shear_stiffness, made.small) if isinstance(made, core.Joints) else (np.nan, 1.0, 1.0)
         )
-        found.append((first + at, *(np.repeat(value * each, per)[at] for value in values)))
+        found.append((first + at, *(np.repeat(value * each, per)[at] for value in (*values, 1.0))))
+    if any(len(number) for number, *_ in found):
+        bars = [group for group in model.groups if isinstance(group, core.Bars)]
+        first = np.cumsum(
+            [core_model.points - sum(len(bar.connect) for bar in bars), *(len(bar.connect) for bar in bars)]
+        )
+        for bar, start in zip(bars, first[:-1].tolist(), strict=True):
+            each = np.ones(len(bar.connect))
+            if bar.bears != "both":
+                values = (np.nan, 1.0, 1.0, -1.0 if bar.bears == "tension" else 1.0)
+                found.append((start + np.arange(len(each)), *(value * each for value in values)))
     return DryPoints(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
@@ -60,8 +72,11 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
     if not len(at):
         return False
     damage = core_model.damage()
-    damage[CRACKED, at] = 1.0
-    damage[TOOTH, at] = core.MOST_TEETH + 1.0  # beyond the last tooth, whatever their number
+    joints = at[
+        at < core_model.damage().shape[1] - sum(len(g.connect) for g in model.groups if isinstance(g, core.Bars))
+    ]
+    damage[CRACKED, joints] = 1.0
+    damage[TOOTH, joints] = core.MOST_TEETH + 1.0  # beyond the last tooth, whatever their number
     touching, mode = np.ones(len(at), dtype=bool), np.full(len(at), STICKS)
     mark = np.zeros(len(at))
     can_slide, fresh = np.isfinite(dry.friction), np.empty(0, dtype=int)
@@ -90,7 +105,7 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
             fresh = fresh[:1] if len(fresh) > 1 else fresh[:0]
             continue
         report = core_model.report(1.0)
-        stress = report["stress_n"][at] / np.where(touching, 1.0, core_model.behaviour.floor)
+        stress = dry.sense * report["stress_n"][at] / np.where(touching, 1.0, core_model.behaviour.floor)
         noise = TOUCH * float(np.abs(stress[touching]).max(initial=0.0))
         wrong = np.where(touching, stress > noise, stress < -noise)
         # Work of A: the more open points, the more; what only the remains of open joints hold, moves far
@@ -110,12 +125,13 @@ def settle(core_model: core.Model, model: SlaModel, options: Sla, warnings: list
             # The worst first: a stone all of whose points slid at once, each its way, would drift off
             beyond = np.where(begins, np.abs(tau) / (strength + dry.small), 0.0)
             begins &= beyond >= WORST * beyond.max()
-            back = touching & ~stuck & (sense * (slip - mark) < 0.0)
+            plastic = slip - tau / dry.stiffness
+            back = touching & ~stuck & (sense * (plastic - mark) < 0.0)
             if not (wrong | begins | back).any():
                 core_model.end_stage(1.0)
                 return True
             fresh = np.flatnonzero(begins)[np.argsort(-beyond[begins])]
-            mark = np.where(begins, slip, np.where(back, slip - tau / dry.stiffness, mark))
+            mark = np.where(back, plastic, mark)
             mode = np.where(begins, np.where(tau > 0.0, SLIDES_UP, SLIDES_DOWN), np.where(back, STICKS, mode))
             mode = np.where(wrong, STICKS, mode)
             mark = np.where(wrong, np.where(touching, mark, slip), mark)

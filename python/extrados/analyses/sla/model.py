@@ -7,11 +7,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extrados.analyses.context import Refused
+from extrados.analyses.sla.bars import bar_group, tie_group
 from extrados.analyses.sla.tables import CrackOptions, Load, Sla
 from extrados.building.errors import BadGeometry, Key
 from extrados.building.mesh.mesh import ElementGroup, Mesh, corner_count, element_areas
 from extrados.building.places import Placed
 from extrados.building.properties import Material
+from extrados.building.templates.walls import Bar
 from extrados.core import sla as core
 
 AXES = {"x": 0, "y": 1}
@@ -171,6 +173,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         points.append(point_positions(mesh.xy, group))
     for bar in mesh.bars:
         groups.append(_bar(mesh, bar, options))
+    groups += [tie_group(mesh, tie, rod, options) for tie, rod in mesh.rods]
     if springs:
         node, direction, stiffness = (np.array(column) for column in zip(*springs, strict=True))
         ground = np.full(len(node), -1)
@@ -287,6 +290,23 @@ def softening_of(material: Material, options: CrackOptions, factor: float = 1.0)
     )  # fmt: skip
 
 
+def hills_of(materials: Sequence[Material], linear: np.ndarray, options: CrackOptions) -> list[core.Hill | None] | None:
+    """Compressive strength that depends on the direction, of each element; None where none has it."""
+    found: list[core.Hill | None] = []
+    for material, stays in zip(materials, linear.tolist(), strict=True):
+        along, across = material.compressive_strength_parallel, material.compressive_strength
+        if stays or along is None or across is None:
+            found.append(None)
+            continue
+        angle = float(np.radians(material.bed_angle))
+        found.append(core.Hill(angle, along / across, material.compressive_coupling, material.compressive_shear))
+    if not any(criterion is not None for criterion in found):
+        return None
+    if options.cracking == "isotropic":
+        raise BadGeometry("compressive_strength_parallel needs cracks with a direction: isotropic cracking has none")
+    return found
+
+
 def bedding_of(material: Material) -> core.Bedding | None:
     """Bed joints of masonry whose strength depends on the direction."""
     along, across = material.tensile_strength_parallel, material.tensile_strength
@@ -346,8 +366,8 @@ def _plane(
         crushing if any(c is not None for c in crushing) else None,
         np.array([m.compressive_strength if m.lateral_reduction else 0.0 for m in materials]),
         group.axis, group.gauss, mesh.selective and group.kind == "Q4", group.joint is not None, reach,
-        np.array([m.confinement for m in materials]),
-        beds if any(bed is not None for bed in beds) else None,
+        np.array([m.confinement for m in materials]), beds if any(bed is not None for bed in beds) else None,
+        hills_of(materials, group.linear, options),
     )  # fmt: skip
 
 
@@ -395,20 +415,9 @@ def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Join
     )
 
 
-def _bar(mesh: Mesh, bar, options: Sla) -> core.Bars:
-    ends = [int(np.hypot(*(mesh.xy - at).T).argmin()) for at in (bar.start, bar.end)]
-    if ends[0] == ends[1]:
-        raise BadGeometry(f"a bar from {bar.start} to {bar.end} begins and ends at the same node")
+def _bar(mesh: Mesh, bar: Bar, options: Sla) -> core.Bars:
     material = mesh.named[bar.material]
-    if material.tensile_strength_parallel is not None:
-        raise BadGeometry(
-            f"a bar of {bar.material!r}: tensile_strength_parallel is for masonry, a bar has one strength"
-        )
-    length = float(np.hypot(*(mesh.xy[ends[1]] - mesh.xy[ends[0]])))
-    return core.Bars(
-        np.array([ends]), bar.area, material.young, options.crack_band or length,
-        softening_of(material, options), crushing_of(material, options),
-    )  # fmt: skip
+    return bar_group(mesh, bar, softening_of(material, options), crushing_of(material, options), options)
 
 
 def point_positions(xy: np.ndarray, group: ElementGroup) -> np.ndarray:

@@ -49,13 +49,17 @@ def makeup(model: SlaModel) -> Makeup:
             laws["tension"].append(_law(group.cohesion))  # the teeth of sliding go with those of parting
             fixed.append(["Joints", group.normal, group.friction, group.dry, group.small, group.ripple])
             continue
-        size = group.area if isinstance(group, core.Bars) else [group.thickness, group.nu, group.kind, group.points]
+        size = (
+            [group.area, group.length, group.bears]
+            if isinstance(group, core.Bars)
+            else [group.thickness, group.nu, group.kind, group.points]
+        )
         stiffness.append([type(group).__name__, size, group.young])
         for sense, found in laws.items():
             found.append([*_law(getattr(group, sense)), group.band])
         if isinstance(group, core.Plane):
             laws["tension"] += [group.reach, group.bedding]
-            laws["compression"].append(group.confinement)
+            laws["compression"] += [group.confinement, group.hill]
             fixed.append([group.axis, group.joint, group.lateral, group.selective])
     return Makeup(
         stiffness=fingerprint(stiffness)[:16], tension=fingerprint(laws["tension"])[:16],

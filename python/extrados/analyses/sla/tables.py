@@ -168,6 +168,7 @@ class Sla(CrackOptions, BuildingAnalysis, Animated):
 
     kind: Literal["sla"]
     view: ClassVar = "mesh"
+    bears: ClassVar = ("[[ties]]",)
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength", "joints.tension",

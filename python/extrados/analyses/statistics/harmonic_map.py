@@ -5,8 +5,10 @@ import numpy as np
 from extrados.analyses.batches import sweep
 from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
+from extrados.analyses.rocking.doubts import too_fast
 from extrados.analyses.runs import runs_job
 from extrados.analyses.statistics.tables import HarmonicMap
+from extrados.building.rockers.arch import ArchModel
 from extrados.motions import pulses
 from extrados.results import statistics as out
 from extrados.results.model import Array, Result, TableData
@@ -17,6 +19,9 @@ from extrados.schema.constants import GRAVITY
 def run(context: Context, options: HarmonicMap) -> Result:
     """At rest, rocking with its greatest rotation, or overturned, for each frequency and amplitude."""
     model = rocker_of(context, options)
+    limit = model.model.fastest_beat if isinstance(model.model, ArchModel) else None
+    if limit is not None:
+        context.warnings.append(f"harmonic motion repeats itself: {too_fast(limit)}")
     p = 1.0 / model.time_unit
     frequency = np.array(options.frequencies) if options.frequencies else np.linspace(1.0, 12.0, 40) * p / (2.0 * np.pi)
     cap = options.max_amplitude or 6.0 * model.uplift * GRAVITY

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.drawing import MOST_BLOCKS, UNITS, Drawing, Polygon
 from extrados.building.geometry.polygons import following, signed_area
 
@@ -26,7 +26,7 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     one is given.
 
     The plane is xz or yz, whichever all blocks are prisms across, or xy where all have a height in z alone. Supports
-    become ground along their faces. BadGeometry names the block that is no prism.
+    become ground along their faces. NoView names the block that is no prism.
     """
     scale = UNITS[unit or "m"]
     nodes = nodes_of(value, name)
@@ -40,7 +40,7 @@ def read_compas(value: Any, name: str, unit: str | None = None) -> tuple[Drawing
     else:
         faults = {AXES[a]: next(k for k, m in meshes.items() if _section(*m, a) is None) for a in (1, 0, 2)}
         told = ", ".join(f"block {key} along {a}" for a, key in faults.items())
-        raise BadGeometry(f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms")
+        raise NoView(f"{name}: the blocks are no prisms across one plane ({told}); a section needs prisms")
     blocks, ground, depths = [], [], []
     for key, found in sections.items():
         assert found is not None

@@ -1,7 +1,7 @@
 """A finite-element mesh: nodes, elements by group, boundary edges, and the nodes that a place in a deck means."""
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -57,7 +57,8 @@ class ElementGroup:
 class Mesh:
     """xy (nodes, 2) [m]; size: typical element size [m]; held, ties and bars by the places where they act;
     named: further materials by name, for bars. Of stones: mass (nodes) [kg] that stands for the density of the
-    elements, ground: nodes on the ground, held unless `held` says what is, joint_names of the rows of elements."""
+    elements, ground: nodes on the ground, held unless `held` says what is, joint_names of the rows of elements. rods: the [[ties]]
+    of the building, each with its Rod (mesh/rods.py)."""
 
     xy: np.ndarray
     groups: list[ElementGroup]
@@ -72,6 +73,7 @@ class Mesh:
     mass: np.ndarray | None = None
     ground: np.ndarray | None = None
     joint_names: list[str] = field(default_factory=list)
+    rods: list[tuple[Any, Any]] = field(default_factory=list)
 
     def __repr__(self) -> str:
         return f"<Mesh: {len(self.xy)} nodes, {sum(len(group.connect) for group in self.groups)} elements>"

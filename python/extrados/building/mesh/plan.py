@@ -76,6 +76,11 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
         _prestress(plan, load, grids, number, used, push)
     bars += [_rod(rod, k, grown, used, building) for k, rod in enumerate(plan.rods, 1)]
     held, springs = _supports(plan, parts, grown, used)
+    for prop in plan.props:
+        w = next(i for i, wall in enumerate(plan.walls) if wall.name == prop.wall)
+        nodes, _ = _level_nodes(plan, prop.storey, grids[w], number)
+        across = int(np.abs(plan.walls[w].direction).argmin())
+        held = sorted({*held, *((int(n), across) for n in nodes)})
     kept = np.cumsum(used) - 1
     parts = [
         ShellPart(**{**part.__dict__, "connect": kept[part.connect]}) for part in parts
@@ -215,9 +220,9 @@ def _named(name: str, names: list[str], what: str) -> int:
     return 1 + names.index(name)
 
 
-def _level_nodes(plan: Plan, floor: Floor, grid: _Grid, number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The nodes of a wall at the height of a floor that are there, and their distances along it."""
-    k = int(np.abs(grid.z - plan.levels[floor.storey]).argmin())
+def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The nodes of a wall on top of a storey that are there, and their distances along it."""
+    k = int(np.abs(grid.z - plan.levels[storey]).argmin())
     there = np.zeros(len(grid.s), dtype=bool)
     for row in (k - 1, k):
         if 0 <= row < grid.there.shape[1]:
@@ -246,7 +251,7 @@ def _ring(
     nodes: list[int] = []
     for k, w in enumerate(walls):
         start, end = corners[k - 1][1], corners[k][0]
-        own, s = _level_nodes(plan, floor, grids[w], number)
+        own, s = _level_nodes(plan, floor.storey, grids[w], number)
         inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
         order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
         nodes += own[inside][order].tolist()
@@ -296,7 +301,7 @@ def _add_floor(
         bearing = [i for i, w in enumerate(plan.walls) if w.name in floor.bears_on] or walls
         shares = np.zeros(len(xyz))
         for w in bearing:
-            own, s = _level_nodes(plan, floor, grids[w], number)
+            own, s = _level_nodes(plan, floor.storey, grids[w], number)
             on = np.isin(own, ring)
             half = np.diff(s[on]) / 2.0
             np.add.at(shares, own[on], np.append(half, 0.0) + np.append(0.0, half))
@@ -330,8 +335,8 @@ def _joists(
 ) -> list[ShellBar]:
     """Joists as bars from each node of a wall across to the nearest of the other, of the area that stands for it."""
     one, two = (next(i for i, w in enumerate(plan.walls) if w.name == word) for word in floor.bears_on)
-    own, s = _level_nodes(plan, floor, grids[one], number)
-    far, _ = _level_nodes(plan, floor, grids[two], number)
+    own, s = _level_nodes(plan, floor.storey, grids[one], number)
+    far, _ = _level_nodes(plan, floor.storey, grids[two], number)
     own, s = own[np.isin(own, ring)], s[np.isin(own, ring)]
     across = np.array([-plan.walls[one].direction[1], plan.walls[one].direction[0]])
     material = Material(density=0.0, young=floor.young)
@@ -354,7 +359,7 @@ def _prestress(plan: Plan, load, grids: list[_Grid], number: np.ndarray, used: n
     """The force along the top of a wall as nodal forces."""
     w = next(i for i, wall in enumerate(plan.walls) if wall.name == load.wall)
     storey = load.level or plan.reach(plan.walls[w])[1]
-    nodes, s = _level_nodes(plan, Floor(storey=storey, kind="none"), grids[w], number)
+    nodes, s = _level_nodes(plan, storey, grids[w], number)
     if not len(nodes):
         raise BadGeometry(f"prestress: wall '{load.wall}' has no masonry on top of storey {storey}")
     half = np.diff(s) / 2.0

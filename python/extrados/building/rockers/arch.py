@@ -18,6 +18,12 @@ from extrados.limit.solver import Immovable, NoEquilibrium
 
 #: Bounds of thickness over radius between which the minimum thickness is sought.
 THINNEST, THICKEST = 1e-3, 1.9
+#: Arches that keep less than this at a blow keep more in discrete elements: up to MORE beyond it, or LEAST, the greater
+#: (tests/verification/test_impact_map.py)
+STOCKY, MORE, LEAST = 0.7, 0.2, 0.4
+#: Motion that repeats itself faster than this times sqrt(.2 m/R) [Hz] fells discrete elements that the blow lets stand
+#: (tests/verification/test_impact_tests.py)
+FAST = 5.0
 
 
 def minimum_thickness(embrace: float, voussoirs: int) -> float:
@@ -155,8 +161,26 @@ class ArchModel:
         return min(value, 1.0)
 
     @property
+    def kept_by_elements(self) -> float | None:
+        """c_v up to which discrete elements keep, where the blow at all joints is known to lose too much; else None."""
+        if self.rule != "inelastic" or self.restitution >= STOCKY:
+            return None
+        return max(self.restitution + MORE, LEAST)
+
+    @property
+    def fastest_beat(self) -> float | None:
+        """Frequency above which motion that repeats itself is worse than the blow at all joints says [Hz]; None where that is
+        not the rule."""
+        return FAST * float(np.sqrt(0.2 / self.arch.radius)) if self.rule == "inelastic" else None
+
+    @property
     def warnings(self) -> list[str]:
         impacts = self.impacts
+        if (kept := self.kept_by_elements) is not None:
+            return [
+                f"the blow at all joints of an arch this stocky leaves {self.restitution:.3f} of the rate, discrete elements up "
+                f"to {kept:.3f}: they fall earlier"
+            ]
         if self.rule == "thesis" and impacts.thesis > 1.0:
             return [
                 f"the impact balance of the thesis gives c_v = {impacts.thesis:.3f}, which would create energy; 1 is used "

@@ -242,9 +242,10 @@ class Blocks(Structure):
         return touch(stones, self.contact_tolerance, self.foundation_levels, name)
 
     def inspection(self, folder: Path) -> Inspection | None:
-        if self.file is not None and self.file.lower().endswith(SOLID):
+        try:
+            return self._inspected(folder)[0]
+        except NoView:  # solids
             return None
-        return self._inspected(folder)[0]
 
     def mended(self, folder: Path) -> "Blocks | None":
         found = self.inspection(folder)

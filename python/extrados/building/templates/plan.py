@@ -132,6 +132,13 @@ class Rod(Table):
     prestress: Force = key(0.0, "force before the building moves, tension", ge=0)
 
 
+class Prop(Table):
+    """The top of a storey of a wall that cannot move across its plane: what holds it does not move."""
+
+    wall: str = key(about="name of the wall, along x or y")
+    storey: int = key(about="on top of this storey", ge=1)
+
+
 class Prestress(Table):
     """A vertical force along the top of a wall, of post-tensioning or of what stands on it."""
 
@@ -166,6 +173,7 @@ class Plan(Structure):
     corners: list[Corner] = key([], "where walls meet and are not one masonry, [[structure.corners]]", max_length=1000)
     floors: list[Floor] = key([], "[[structure.floors]]", max_length=200)
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
+    props: list[Prop] = key([], "[[structure.props]]", max_length=200)
     prestress: list[Prestress] = key([], "[[structure.prestress]]", max_length=200)
     assumed: list[str] = key(
         [], "what the sources of the deck do not say and it assumes: every answer repeats it", max_length=100
@@ -187,9 +195,16 @@ class Plan(Structure):
             *(("corners", corner.walls) for corner in self.corners),
             *(("floors", [*(floor.walls or []), *floor.bears_on]) for floor in self.floors),
             ("prestress", [part.wall for part in self.prestress]),
+            ("props", [part.wall for part in self.props]),
         ):
             if strange := [name for name in named if name not in names]:
                 raise ValueError(f"{what}: there is no wall '{strange[0]}'; there are {', '.join(names)}")
+        for prop in self.props:
+            if np.abs(self.wall(prop.wall).direction).max() < 1.0 - 1e-9:
+                raise ValueError(f"props: wall '{prop.wall}' stands askew on the plan; a prop holds walls along x or y")
+            first, last = self.reach(self.wall(prop.wall))
+            if not first <= prop.storey <= last:
+                raise ValueError(f"props: wall '{prop.wall}' has no storey {prop.storey}")
         for floor in self.floors:
             if floor.storey > len(self.storeys):
                 raise ValueError(f"floors: there is no storey {floor.storey}, there are {len(self.storeys)}")

@@ -14,7 +14,7 @@ from extrados.building.places import Placed
 from extrados.building.structure import RocksAs, Structure
 from extrados.building.templates.brickwork import Laid, make_brickwork
 from extrados.building.templates.piers import make_piers
-from extrados.schema.quantities import Angle, Length
+from extrados.schema.quantities import Angle, Length, Stress
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
@@ -56,6 +56,13 @@ class Bar(Table):
     end: list[Length] = key(about="[x, y] of the other end", min_length=2, max_length=2)
     area: Annotated[float, Field(gt=0)] = key(about="cross-section in m^2")
     material: str = key(about="a name of [materials]")
+    bonded: bool = key(
+        False, "embedded: it moves with every element that it runs through; else it is held at its ends alone"
+    )
+    yield_strength: Stress | None = key(
+        None, "stress at which it yields in tension and compression, in place of the strengths of its material", gt=0
+    )
+    ultimate_strain: float = key(0.05, "strain at which it breaks once it yields", gt=0, le=1)
 
 
 class MeshedWall(Structure):

@@ -132,16 +132,15 @@ def stones_of(meshes: Sequence[Mesh], density: float, unit: str | None, name: st
 
 def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedron:
     """The convex body within a closed mesh; ValueError says in words why there is none."""
-    count: dict[tuple[int, int], int] = {}
-    for face in faces:
-        for i, j in zip(face, [*face[1:], face[0]], strict=True):
-            count[i, j] = count.get((i, j), 0) + 1
-    open_edges = sum(n != 1 or count.get((j, i), 0) != 1 for (i, j), n in count.items())
+    around_edge: dict[tuple[int, int], list[int]] = {}
+    for k, face in enumerate(faces):
+        for i, j in _edges(face):
+            around_edge.setdefault((min(i, j), max(i, j)), []).append(k)
+    open_edges = sum(len(there) != 2 for there in around_edge.values())
     if open_edges:
-        raise ValueError(
-            f"is not closed: {open_edges} edges do not have one face on either side, with one sense of turning"
-        )
-    triangles = np.array([(f[0], b, c) for f in faces for b, c in itertools.pairwise(f[1:])])
+        raise ValueError(f"is not closed: {open_edges} edges do not have a face on either side")
+    turned = _turned(faces, around_edge)
+    triangles = np.array([(f[0], b, c) for f in turned for b, c in itertools.pairwise(f[1:])])
     volume = abs(moments(points, triangles)[0])
     try:
         whole = hull(points, PLANE)
@@ -154,6 +153,29 @@ def convex_body(points: np.ndarray, faces: Sequence[Sequence[int]]) -> Polyhedro
             "as groups `g` of one object `o`"
         )
     return whole
+
+
+def _edges(face: Sequence[int]) -> list[tuple[int, int]]:
+    return list(zip(face, [*face[1:], face[0]], strict=True))
+
+
+def _turned(faces: Sequence[Sequence[int]], around: dict[tuple[int, int], list[int]]) -> list[list[int]]:
+    """Faces that all turn as the first of their piece does: files do not always see to that."""
+    found: dict[int, list[int]] = {}
+    for first in range(len(faces)):
+        if first in found:
+            continue
+        found[first] = list(faces[first])
+        waiting = [first]
+        while waiting:
+            here = waiting.pop()
+            for i, j in _edges(found[here]):
+                other = next((k for k in around[min(i, j), max(i, j)] if k != here), here)
+                if other not in found:
+                    face = list(faces[other])
+                    found[other] = face[::-1] if (i, j) in _edges(face) else face
+                    waiting.append(other)
+    return [found[k] for k in range(len(faces))]
 
 
 def _pieces(faces: list[list[int]]) -> list[list[list[int]]]:

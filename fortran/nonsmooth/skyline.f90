@@ -1,0 +1,245 @@
+!> Symmetric positive definite systems of bodies with three freedoms each, coupled pair by pair: an order that keeps the
+!> couplings near the diagonal, and Cholesky factors within the envelope ("skyline") of the matrix.
+!>
+!> Order: reverse Cuthill-McKee (George and Liu 1981, ch. 4). A chain of blocks has an envelope of two bodies, a wall
+!> one of about its shorter side.
+module nonsmooth_skyline
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory, status_singular
+   use, intrinsic :: iso_c_binding, only : c_int
+   implicit none
+   private
+   public :: skyline, skyline_new, skyline_add, skyline_factor, skyline_solve, freedoms
+
+   integer, parameter :: freedoms = 3
+
+   !> Row i holds the entries (i, first(i)) to (i, i) of the lower triangle, at a(start(i) + column)
+   type :: skyline
+      integer :: n = 0
+      integer, allocatable :: first(:)
+      integer, allocatable :: start(:)
+      real(wp), allocatable :: a(:)
+      integer, allocatable :: rank(:)       !! place of each node in the order
+   end type skyline
+
+contains
+
+   !> Room for a matrix of `nodes` bodies and links between them, empty
+   subroutine skyline_new(nodes, link, matrix, status)
+      integer, intent(in) :: nodes
+      integer, intent(in) :: link(:, :)         !! (2, links) nodes that are coupled
+      type(skyline), intent(out) :: matrix
+      integer(c_int), intent(out) :: status
+      integer :: k, i, low, high, failed
+
+      status = status_out_of_memory
+      matrix%n = freedoms * nodes
+      allocate (matrix%first(matrix%n), matrix%start(matrix%n), matrix%rank(nodes), stat=failed)
+      if (failed /= 0) return
+      call order(nodes, link, matrix%rank, status)
+      if (status /= status_ok) return
+      do i = 1, matrix%n
+         matrix%first(i) = i - mod(i - 1, freedoms)
+      end do
+      do k = 1, size(link, 2)
+         low = minval(matrix%rank(link(:, k)))
+         high = maxval(matrix%rank(link(:, k)))
+         do i = freedoms * (high - 1) + 1, freedoms * high
+            matrix%first(i) = min(matrix%first(i), freedoms * (low - 1) + 1)
+         end do
+      end do
+      k = 0
+      do i = 1, matrix%n
+         matrix%start(i) = k - matrix%first(i) + 1
+         k = k + i - matrix%first(i) + 1
+      end do
+      status = status_out_of_memory
+      allocate (matrix%a(k), stat=failed)
+      if (failed /= 0) return
+      matrix%a = 0.0_wp
+      status = status_ok
+   end subroutine skyline_new
+
+   !> Reverse Cuthill-McKee: from an end of each part that hangs together, neighbours of few links first
+   subroutine order(nodes, link, rank, status)
+      integer, intent(in) :: nodes
+      integer, intent(in) :: link(:, :)
+      integer, intent(out) :: rank(:)           !! (nodes)
+      integer(c_int), intent(out) :: status
+      integer, allocatable :: row(:), beside(:), queue(:)
+      logical, allocatable :: seen(:)
+      integer :: k, i, node, done, failed
+
+      status = status_out_of_memory
+      allocate (row(nodes + 1), beside(2 * size(link, 2)), queue(nodes), seen(nodes), stat=failed)
+      if (failed /= 0) return
+      row = 0
+      do k = 1, size(link, 2)
+         do i = 1, 2
+            row(link(i, k)) = row(link(i, k)) + 1
+         end do
+      end do
+      row(nodes + 1) = 1 + 2 * size(link, 2)
+      do i = nodes, 1, -1
+         row(i) = row(i + 1) - row(i)
+      end do
+      queue(:) = row(1:nodes)                   ! where the next neighbour of each node goes
+      do k = 1, size(link, 2)
+         do i = 1, 2
+            node = link(i, k)
+            beside(queue(node)) = link(3 - i, k)
+            queue(node) = queue(node) + 1
+         end do
+      end do
+      seen = .false.
+      done = 0
+      do while (done < nodes)
+         node = 0
+         do i = 1, nodes
+            if (seen(i)) cycle
+            if (node == 0) node = i
+            if (degree(i) < degree(node)) node = i
+         end do
+         ! The last node of a walk from anywhere is at an end of its part.
+         k = done
+         call walk(node, k)
+         node = queue(k)
+         seen(queue(done + 1:k)) = .false.
+         call walk(node, done)
+      end do
+      do k = 1, nodes
+         rank(queue(k)) = nodes + 1 - k
+      end do
+      status = status_ok
+
+   contains
+
+      integer pure function degree(at)
+         integer, intent(in) :: at
+         degree = row(at + 1) - row(at)
+      end function degree
+
+      !> Nodes that hang on `from`, level by level, into the queue
+      subroutine walk(from, last)
+         integer, intent(in) :: from
+         integer, intent(inout) :: last
+         integer :: head, n, at, moving, place
+         last = last + 1
+         queue(last) = from
+         seen(from) = .true.
+         head = last
+         do while (head <= last)
+            at = last + 1
+            do n = row(queue(head)), row(queue(head) + 1) - 1
+               if (seen(beside(n))) cycle
+               seen(beside(n)) = .true.
+               last = last + 1
+               moving = beside(n)
+               place = last
+               do while (place > at)
+                  if (degree(queue(place - 1)) <= degree(moving)) exit
+                  queue(place) = queue(place - 1)
+                  place = place - 1
+               end do
+               queue(place) = moving
+            end do
+            head = head + 1
+         end do
+      end subroutine walk
+
+   end subroutine order
+
+   !> Add factor * one * other' to the block of two bodies, and its transpose where they differ
+   pure subroutine skyline_add(matrix, first_rank, second_rank, factor, one, other)
+      type(skyline), intent(inout) :: matrix
+      integer, intent(in) :: first_rank
+      integer, intent(in) :: second_rank
+      real(wp), intent(in) :: factor
+      real(wp), intent(in) :: one(freedoms)      !! of the first body
+      real(wp), intent(in) :: other(freedoms)    !! of the second
+      integer :: i, j, row, column
+      if (first_rank < second_rank) then
+         do i = 1, freedoms
+            row = freedoms * (second_rank - 1) + i
+            column = matrix%start(row) + freedoms * (first_rank - 1)
+            do j = 1, freedoms
+               matrix%a(column + j) = matrix%a(column + j) + factor * other(i) * one(j)
+            end do
+         end do
+      else
+         do i = 1, freedoms
+            row = freedoms * (first_rank - 1) + i
+            column = matrix%start(row) + freedoms * (second_rank - 1)
+            do j = 1, merge(i, freedoms, first_rank == second_rank)
+               matrix%a(column + j) = matrix%a(column + j) + factor * one(i) * other(j)
+            end do
+         end do
+      end if
+   end subroutine skyline_add
+
+   !> Cholesky factors in place of the matrix; singular where it is not positive definite
+   pure subroutine skyline_factor(matrix, status)
+      type(skyline), intent(inout) :: matrix
+      integer(c_int), intent(out) :: status
+      integer :: i, j, from, other
+      real(wp) :: pivot
+
+      status = status_singular
+      do i = 1, matrix%n
+         associate (a => matrix%a, row => matrix%start(i), first => matrix%first(i))
+            do j = first, i - 1
+               from = max(first, matrix%first(j))
+               other = matrix%start(j)
+               a(row + j) = (a(row + j) - dot(a(row + from:row + j - 1), a(other + from:other + j - 1))) / a(other + j)
+            end do
+            pivot = a(row + i) - dot(a(row + first:row + i - 1), a(row + first:row + i - 1))
+            if (.not. pivot > 0.0_wp) return
+            a(row + i) = sqrt(pivot)
+         end associate
+      end do
+      status = status_ok
+   end subroutine skyline_factor
+
+   !> Solve with the factors: right-hand side in, solution out
+   pure subroutine skyline_solve(matrix, x)
+      type(skyline), intent(in) :: matrix
+      real(wp), intent(inout) :: x(:)
+      integer :: i
+      do i = 1, matrix%n
+         associate (row => matrix%start(i), first => matrix%first(i))
+            x(i) = (x(i) - dot(matrix%a(row + first:row + i - 1), x(first:i - 1))) / matrix%a(row + i)
+         end associate
+      end do
+      do i = matrix%n, 1, -1
+         associate (row => matrix%start(i), first => matrix%first(i))
+            x(i) = x(i) / matrix%a(row + i)
+            x(first:i - 1) = x(first:i - 1) - x(i) * matrix%a(row + first:row + i - 1)
+         end associate
+      end do
+   end subroutine skyline_solve
+
+   !> Dot product in four sums: they do not wait for each other
+   pure function dot(x, y) result(total)
+      real(wp), intent(in), contiguous :: x(:)
+      real(wp), intent(in), contiguous :: y(:)
+      real(wp) :: total
+      real(wp) :: s1, s2, s3, s4
+      integer :: k, n
+      n = size(x)
+      s1 = 0.0_wp
+      s2 = 0.0_wp
+      s3 = 0.0_wp
+      s4 = 0.0_wp
+      do k = 1, n - 3, 4
+         s1 = s1 + x(k) * y(k)
+         s2 = s2 + x(k + 1) * y(k + 1)
+         s3 = s3 + x(k + 2) * y(k + 2)
+         s4 = s4 + x(k + 3) * y(k + 3)
+      end do
+      do k = n - mod(n, 4) + 1, n
+         s1 = s1 + x(k) * y(k)
+      end do
+      total = (s1 + s2) + (s3 + s4)
+   end function dot
+
+end module nonsmooth_skyline

@@ -1,0 +1,78 @@
+"""Bars and ties of a wall made into groups of the core."""
+
+import numpy as np
+
+from extrados.analyses.sla.tables import Sla
+from extrados.building.errors import BadGeometry
+from extrados.building.mesh.mesh import Mesh
+from extrados.building.mesh.rods import Corners, Rod, bonded
+from extrados.building.properties import Material
+from extrados.building.templates.walls import Bar
+from extrados.building.ties import Tie
+from extrados.core import sla as core
+
+#: Stiffness of a rigid tie over that of a square of wall, E t
+RIGID = 100.0
+#: Strain at which a tie of [[ties]] breaks, which says none: far beyond what a building bears. At least so many times
+#: that at which it yields
+LONG, LONGER = 0.2, 1e3
+
+
+def yielding(strength: float, young: float, ultimate: float, options: Sla) -> core.Softening:
+    """A plateau at a strength [Pa] that ends at the strain `ultimate`; its energy is that of a band of 1 m."""
+    return core.Softening(strength, strength * (ultimate - 0.5 * strength / young), "yielding", options.ripple)
+
+
+def bar_group(
+    mesh: Mesh, bar: Bar, tension: core.Softening | None, crushing: core.Softening | None, options: Sla
+) -> core.Bars:
+    """One of the bars of a wall, between nodes or embedded; tension and crushing are those of its material."""
+    material: Material = mesh.named[bar.material]
+    what = f"a bar from {bar.start} to {bar.end}"
+    if material.tensile_strength_parallel is not None:
+        raise BadGeometry(
+            f"a bar of {bar.material!r}: tensile_strength_parallel is for masonry, a bar has one strength"
+        )
+    rod = None
+    if bar.bonded:
+        rod = bonded(Corners.of(mesh), np.array([bar.start, bar.end], dtype=float), what)
+        connect, length = rod.connect, rod.length
+    else:
+        ends = [int(np.hypot(*(mesh.xy - at).T).argmin()) for at in (bar.start, bar.end)]
+        if ends[0] == ends[1]:
+            raise BadGeometry(f"{what} begins and ends at the same node")
+        connect, length = np.array([ends]), np.array([float(np.hypot(*(mesh.xy[ends[1]] - mesh.xy[ends[0]])))])
+    band: float | np.ndarray = options.crack_band or length
+    if bar.yield_strength is not None:
+        if not bar.ultimate_strain > bar.yield_strength / material.young:
+            raise BadGeometry(
+                f"{what}: ultimate_strain {bar.ultimate_strain:g} is less than that at which it yields, "
+                f"{bar.yield_strength / material.young:g}"
+            )
+        band = 1.0
+        tension = crushing = yielding(bar.yield_strength, material.young, bar.ultimate_strain, options)
+    return core.Bars(
+        connect, bar.area, material.young, band, tension, crushing, *((None, None) if rod is None else _shape(rod))
+    )
+
+
+def tie_group(mesh: Mesh, tie: Tie, rod: Rod, options: Sla) -> core.Bars:
+    """One of [[ties]]: a bar of 1 m^2, so that its stress is its force."""
+    if tie.prestress:
+        raise BadGeometry(
+            f"{tie.name}: prestress is not reckoned with here; put the pair of its forces among the constant loads"
+        )
+    length = float(rod.length[0])
+    thickness = max(float(group.thickness.max()) for group in mesh.groups if group.joint is None)
+    young = (tie.stiffness or RIGID * mesh.materials[0].young * thickness) * length
+    law = None
+    if tie.yield_force is not None:
+        law = yielding(tie.yield_force, young, max(LONG, LONGER * tie.yield_force / young), options)
+    return core.Bars(
+        rod.connect, 1.0, young, 1.0, law if tie.most > 0.0 else None, law if tie.least < 0.0 else None, *_shape(rod),
+        tie.works_in,
+    )  # fmt: skip
+
+
+def _shape(rod: Rod) -> tuple[np.ndarray, np.ndarray]:
+    return rod.gradient, rod.length

@@ -1,0 +1,122 @@
+"""Bars that are embedded, ties that go slack, steel that yields."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from test_sla_events import run_deck
+
+from extrados.analyses.context import Context
+from extrados.analyses.run import run_analyses
+from extrados.core.sla import Softening, teeth
+from extrados.decks.reader import make_deck
+
+AREA, YIELD = 2e-4, 500e6
+ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
+BLOCK = {"kind": "block", "width": 1.0, "height": 4.0}
+
+
+def prism(bars: list[dict], **analysis) -> dict:
+    """1 m x 0.1 m x 0.1 m, pulled at its end."""
+    return {
+        "structure": {"kind": "panel", "width": 1.0, "height": 0.1, "thickness": 0.1, "bars": bars},
+        "material": {
+            "young": 30e9, "poisson": 0.0, "density": 2400, "tensile_strength": 2e6, "fracture_energy": 60.0,
+        },
+        "materials": {"steel": {"young": 200e9, "poisson": 0.3, "density": 7850}},
+        "supports": {"held": [{"edge": "left", "fix": "x"}, {"x": [0, 0], "y": [0.05, 0.05], "fix": "y"}]},
+        "analysis": {
+            "kind": "sla", "mesh": {"size": 0.05}, "constant": [], "target_displacement": 5e-3, "events": 300, "ripple": 0.2,
+            "reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "right"}]}], **analysis,
+        },
+    }  # fmt: skip
+
+
+def bar(start: float, end: float, height: float = 0.05, **more) -> dict:
+    return {"start": [start, height], "end": [end, height], "area": AREA, "material": "steel"} | more
+
+
+def test_teeth_of_steel_never_bear_more_than_its_yield_strength() -> None:
+    """They end at it; the last at the ultimate strain, their energy that of the plateau less the ripple."""
+    young, ultimate, ripple = 200e9, 0.02, 0.05
+    law = Softening(YIELD, YIELD * (ultimate - 0.5 * YIELD / young), "yielding", ripple)
+    modulus, strength = teeth(law, young, 1.0)
+    assert modulus[0] == young and (strength[:-1] == YIELD).all() and strength[-1] <= YIELD
+    assert strength[-1] / modulus[-1] == pytest.approx(ultimate, rel=1e-12)
+    assert np.diff(modulus).max() < 0.0
+    strain = strength / modulus
+    area = 0.5 * strength[0] * strain[0] + np.sum(
+        0.5 * (strength[1:] + modulus[1:] * strain[:-1]) * np.diff(strain)
+    )  # of the curve through the teeth
+    assert area == pytest.approx(law.energy, rel=1.1 * ripple) and area < law.energy
+
+
+def test_an_embedded_bar_moves_with_the_wall() -> None:
+    """Along a mesh line it is the bars from node to node; askew and between nodes it has the stiffness of its section."""
+    steel = {"yield_strength": YIELD, "ultimate_strain": 0.02}
+    whole = run_deck(prism([bar(0, 1, bonded=True, **steel)]))
+    places = np.linspace(0.0, 1.0, 21).round(6)
+    pieces = run_deck(prism([bar(a, b, **steel) for a, b in pairwise(places.tolist())]))
+    np.testing.assert_allclose(whole["event_load"], pieces["event_load"], rtol=1e-6)
+    stiffness = whole["event_load"][0] / whole["event_displacement"][0]
+    assert stiffness == pytest.approx(30e9 * 0.01 + 200e9 * AREA, rel=1e-9)
+    # Askew, through the sides of elements: its strain is that of the prism times the square of a cosine, its force along
+    # the prism has one more, and it is longer than that
+    cosine = 1.0 / np.hypot(1.0, 0.06)
+    for mesh in ({"size": 0.04}, {"size": 0.04, "pattern": "random", "element": "T3"}):
+        deck = prism([bar(0, 1, bonded=True) | {"end": [1.0, 0.11]}], mesh=mesh, events=1)
+        deck["structure"]["height"] = 0.2
+        deck["supports"]["held"] = [{"edge": "left", "fix": "x"}, {"x": [0, 1], "y": [0, 0.2], "fix": "y"}]
+        askew = run_deck(deck)
+        stiffness = askew["event_load"][0] / askew["event_displacement"][0]
+        assert stiffness == pytest.approx(30e9 * 0.02 + 200e9 * AREA * cosine**3, rel=1e-3)
+
+
+def test_a_bar_yields_and_breaks() -> None:
+    """What is left of the concrete's teeth carries a few per cent beside it."""
+    found = run_deck(
+        prism([bar(0, 1, bonded=True, yield_strength=YIELD, ultimate_strain=0.02)], ripple=0.1, events=3000)
+    )
+    load, moved = found["event_load"], found["event_displacement"]
+    assert load.max() == pytest.approx(AREA * YIELD, rel=0.035)
+    yields = load > 0.9 * AREA * YIELD
+    # It yields where it is torn last, at least one element of 5 cm of it as far as it can
+    assert moved[yields].min() < 3e-3 and np.ptp(moved[yields]) > 0.02 * 0.05
+    assert found.results["stop"] == "mechanism" and found.results["energy_residual_ratio"] < 1e-9
+
+
+def capacity(kind: str, structure: dict, tie: dict, **more):
+    deck = {
+        "structure": structure,
+        "joints": {"friction": "no-sliding"},
+        "ties": [tie],
+        "analysis": {"kind": kind, **more},
+    }
+    return run_analyses(Context(make_deck(deck)))[0]
+
+
+@pytest.mark.parametrize(
+    ("structure", "tie"),
+    [
+        (BLOCK, {"start": [0.1, 3.5], "ground": [-3.0, 0.0], "yield_force": 5e3, "stiffness": 1e8}),
+        (BLOCK, {"start": [0.1, 3.5], "ground": [3.0, 0.0], "yield_force": 5e3}),  # slack
+        (BLOCK, {"start": [0.1, 3.5], "ground": [3.0, 0.0], "yield_force": 5e3, "works_in": "compression"}),
+        (ARCH, {"start": [-7.03, 7.03], "end": [7.03, 7.03], "yield_force": 1e5}),
+        (ARCH, {"start": [-7.03, 7.03], "end": [3.81, 9.19], "yield_force": 2e4, "works_in": "both"}),
+        (ARCH, {"start": [-3.81, 9.19], "end": [9.19, 3.81], "yield_force": 1e5}),  # slack in the mechanism
+    ],
+)
+def test_ties_as_limit_analysis_has_them(structure: dict, tie: dict) -> None:
+    limit = capacity("tilt", structure, tie).results["collapse_acceleration_g"]
+    found = capacity("sla", structure, tie)
+    assert found.results["peak_acceleration_g"] == pytest.approx(limit, rel=3e-4)
+    without = 0.25 if structure is BLOCK else 0.37001
+    if limit > 1.001 * without:
+        assert capacity("sla", structure, tie | {"yield_force": 1.0}).results["peak_acceleration_g"] < 0.99 * limit
+
+
+def test_bars_that_make_no_sense_are_told() -> None:
+    assert "ultimate_strain" in run_deck(prism([bar(0, 1, yield_strength=YIELD, ultimate_strain=1e-4)])).reason
+    assert "runs through no element" in run_deck(prism([bar(2, 3, bonded=True)])).reason
+    tie = {"start": [0.1, 3.5], "ground": [-3.0, 0.0], "prestress": 1e3}
+    assert "prestress" in capacity("sla", BLOCK, tie).reason
