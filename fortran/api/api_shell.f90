@@ -48,8 +48,8 @@ contains
       else if (info /= 0) then
          status = status_out_of_memory
       else
-         call shell_points_new(kind, shell_section(section(1), section(2), section(3) /= 0), section(4) /= 0, model%xy, &
-            frame, flat, connect, property, choice, model%teeth, model%options, new_shells, bad, status)
+         call shell_points_new(kind, shell_section(section(1), section(2), section(3) /= 0), section(4) /= 0, &
+            model%xy, frame, flat, connect, property, choice, model%teeth, model%options, new_shells, bad, status)
       end if
       call move_alloc(new_shells, group)
       call group_added(handle, model, connect, 6, group, status)
