@@ -38,9 +38,8 @@ format: setup
 	@.venv/bin/ruff check --fix python tests tools
 	@.venv/bin/ruff format python tests tools
 
-docs: setup  ## the references of decks and results, from their models
-	@.venv/bin/extrados explain --manual > docs/decks.md
-	@.venv/bin/extrados explain --results > docs/results.md
+docs: setup  ## the references of decks and results, and what `explain` tells, from their models
+	@$(PYTHON) tools/references.py
 
 table-5-3: setup  ## refit the assessment criterion (thesis Table 5.3); RULE=inelastic prints it by another impact rule
 	@$(PYTHON) -m extrados.analyses.rocking.criterion $(RULE)

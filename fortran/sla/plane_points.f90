@@ -487,8 +487,8 @@ contains
                end if
                f = group%limit(3, p)
                more = group%confinement(e)
-               if (f < unbounded) call lower(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, share, lambda, &
-                  least)
+               if (f < unbounded) call lower(f / (1.0_wp + more), (more - 1.0_wp) / (more + 1.0_wp), sa, sb, share, &
+                  lambda, least)
                cycle
             end if
             do k = 1, merge(1, 2, group%axis(e) /= axis_free)

@@ -423,16 +423,17 @@ def explain(
     ] = False,
 ) -> None:
     """Say what a deck key, a kind or a result means: unit, default, bounds, source."""
+    told: Any
     if results or (key or "").split(".")[0] == "results":
-        from extrados.results import explain as explanation
+        from extrados.results import manual as told
     else:
-        from extrados.decks import explain as explanation
+        from extrados.decks import manual as told
 
     if manual or results or key is None:
-        print(explanation.manual())
+        print(told.manual(told.stored()))
         return
     try:
-        print(explanation.explain(key))
+        print(told.explain(key, told.stored()))
     except KeyError as error:
         err_console.say(error.args[0])
         raise typer.Exit(WRONG_DECK) from None

@@ -70,14 +70,14 @@ ANALYSES: dict[str, AnalysisKind] = {
     "tilt": AnalysisKind(
         "analyses.limit.tables:Tilt", "analyses.limit.tilt:run", "results.solids:Tilt", "plots.solids:draw_tilt", "limit/oppenheim.toml"
     ),
-    "thrust": _analysis("limit", "Thrust", "thrust", "limit:draw_thrust", "vault/dejong-a"),
-    "sweep": _analysis("limit", "Sweep", "sweep", "limit:draw_sweep", "vault/vezelay-sweep"),
-    "survey": _analysis("limit", "Survey", "survey", "limit:draw_survey", "limit/survey"),
+    "thrust": _analysis("limit", "Thrust", "thrust", "limit.thrust:draw", "vault/dejong-a"),
+    "sweep": _analysis("limit", "Sweep", "sweep", "limit.sweep:draw_sweep", "vault/vezelay-sweep"),
+    "survey": _analysis("limit", "Survey", "survey", "limit.sweep:draw_survey", "limit/survey"),
     "imperfections": _analysis(
-        "limit", "Imperfections", "imperfections", "limit:draw_imperfections", "limit/church"
+        "limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "limit/church"
     ),
-    "supports": _analysis("limit", "Supports", "supports", "limit:draw_supports", "limit/oppenheim"),
-    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit:draw_moving_load", "limit/oppenheim"),
+    "supports": _analysis("limit", "Supports", "supports", "limit.supports:draw", "limit/oppenheim"),
+    "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "limit/oppenheim"),
     "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),
     "failure-domain": _analysis(
         "rocking", "FailureDomain", "failure_domain", "arch:draw_failure_domain", "arch/oppenheim-domain"

@@ -70,7 +70,7 @@ def test_mp4_is_made_or_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         extrados.run(deck, tmp_path / "out", figures=True)
         content = (tmp_path / "out" / "figures" / "tilt.mp4").read_bytes()
         assert content[4:8] == b"ftyp"
-    monkeypatch.setattr("extrados.analyses.run.ffmpeg", lambda: None)
+    monkeypatch.setattr("extrados.analyses.needs.ffmpeg", lambda: None)
     (result,) = extrados.run(deck).results
     assert result.status == "refused"
     assert "ffmpeg" in result.reason

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from extrados.decks import explain
+from extrados.decks import explain, manual
 from extrados.decks.positions import key_lines
 from extrados.decks.reader import DeckError, make_deck, read_deck, read_text
 from extrados.schema.quantities import parse
@@ -188,18 +188,26 @@ def test_explain_schema_and_starters() -> None:
 
     from extrados import kinds
 
+    def told(word: str) -> str:
+        return manual.explain(word, tables)
+
+    tables = explain.facts()
     schema = explain.json_schema()
     assert "arch" in str(schema["$defs"]["structure-arch"]["properties"]["kind"])
-    assert "R_A" in explain.explain("radius") and "thesis" in explain.explain("restitution")
+    assert "R_A" in told("radius") and "thesis" in told("restitution")
     with pytest.raises(KeyError, match="radius"):
-        explain.explain("raduis")
-    assert 'or "no-sliding", default 0.7' in explain.explain("joints.friction")
-    assert "joints.types.cohesion: " in explain.explain("joints.types")
-    assert explain.explain("analysis.tilt").startswith('[analysis] kind = "tilt"')
-    assert explain.explain("tilt.fracture").startswith("analysis.fracture (tilt): ")
+        told("raduis")
+    assert 'or "no-sliding", default 0.7' in told("joints.friction")
+    assert "joints.types.cohesion: " in told("joints.types")
+    assert told("analysis.tilt").startswith('[analysis] kind = "tilt"')
+    assert told("tilt.fracture").startswith("analysis.fracture (tilt): ")
     for kind in kinds.ANALYSES:
         assert tomllib.loads(explain.starter(kind))["analysis"][0]["kind"] == kind
-    assert "`radius`" in explain.manual()
+    assert "`radius`" in manual.manual(tables)
+
+
+def test_what_explain_tells_is_what_the_tables_say() -> None:
+    assert manual.stored() == explain.facts(), "run `make docs`"
 
 
 def test_decks_from_python() -> None:

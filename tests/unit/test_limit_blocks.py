@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import extrados
 from extrados.building.files import LARGEST_FILE, read
 from extrados.building.geometry import dxf
 from extrados.building.geometry.assembly import GROUND
@@ -309,3 +310,12 @@ def test_not_a_drawing(tmp_path: Path) -> None:
 
 def test_overlap_is_a_complaint_about_geometry() -> None:
     assert issubclass(Overlap, BadGeometry)
+
+
+def test_a_long_row_of_stones_is_answered() -> None:
+    """500 squares side by side slide together, each under its own friction: the joints between them are idle."""
+    row = [{"name": f"s{i}", "points": [[i, 0], [i + 1, 0], [i + 1, 1], [i, 1]]} for i in range(500)]
+    run = extrados.run(
+        {"structure": {"kind": "blocks", "block": row}, "joints": {"friction": 0.7}, "analysis": {"kind": "tilt"}}
+    )
+    assert run["tilt"].collapse_acceleration_g == pytest.approx(0.7, abs=1e-8)

@@ -233,3 +233,20 @@ def test_same_run_same_bits() -> None:
     one, two = (run(CHURCH, kind="tilt", joints={"friction": 0.6}) for _ in range(2))
     assert one.results == two.results
     assert all(np.array_equal(a.data, two.arrays[n].data) for n, a in one.arrays.items())
+
+
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [
+        ("buttress_width", "buttress width"),
+        ("structure.thickness", "thickness"),
+        ("ties.0.yield_force", "yield force of tie 1"),
+        ("spans.1.rise", "rise of span 2"),
+        ("right.buttress_width", "right buttress width"),
+        ("joints.friction", "friction of the joints"),
+    ],
+)
+def test_axes_call_keys_by_words(key: str, words: str) -> None:
+    from extrados.plots.limit.sweep import spoken
+
+    assert spoken(key) == words

@@ -7,9 +7,9 @@ import pytest
 
 import extrados
 from extrados import kinds
-from extrados.analyses import context as contexts
 from extrados.building.templates.arch import Arch
 from extrados.decks.reader import DeckError
+from extrados.motions import from_deck
 
 ARCH = {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9}
 RECORD = {"kind": "record", "file": "extrados:el-centro-1940", "scale": 0.7}
@@ -23,7 +23,7 @@ def deck(*analyses: str, **tables) -> dict:
 def calls(monkeypatch) -> Counter:
     """How often stones were made, a motion was read, and each analysis ran."""
     counted: Counter = Counter()
-    assembly, load, motion = Arch.assembly, kinds.load, contexts.make_motion
+    assembly, load, motion = Arch.assembly, kinds.load, from_deck.make_motion
 
     def count_stones(self, *args):
         counted["stones"] += 1
@@ -45,7 +45,7 @@ def calls(monkeypatch) -> Counter:
         return run
 
     monkeypatch.setattr(Arch, "assembly", count_stones)
-    monkeypatch.setattr(contexts, "make_motion", count_motion)
+    monkeypatch.setattr(from_deck, "make_motion", count_motion)
     monkeypatch.setattr(kinds, "load", count_driver)
     return counted
 

@@ -16,7 +16,7 @@ def column(stages: list[dict], **analysis) -> dict:
         "structure": {"kind": "panel", "width": 0.2, "height": 1.0, "thickness": 0.1},
         "material": {"young": YOUNG, "poisson": 0.0, "density": 0.0},
         "analysis": [{"kind": "sla", "mesh": {"size": 0.25}, "control": [{**MIDDLE, "direction": "y"}],
-                      "stages": stages, **analysis}],
+                      **({"stages": stages} if stages else {}), **analysis}],
     }  # fmt: skip
 
 
@@ -67,7 +67,7 @@ def wall(stages: list[dict], **analysis) -> dict:
         "material": {
             "young": 4e9, "poisson": 0.15, "density": 0.0, "tensile_strength": 0.25e6, "fracture_energy": 18.0,
         },
-        "analysis": [{"kind": "sla", "mesh": {"size": 0.125}, "ripple": 0.2, "events": 400, "stages": stages, **analysis}],
+        "analysis": [{"kind": "sla", "mesh": {"size": 0.125}, "ripple": 0.2, "events": 400, **({"stages": stages} if stages else {}), **analysis}],
     }  # fmt: skip
 
 

@@ -439,7 +439,7 @@ def test_check_makes_buildings_that_are_no_surveys_too(tmp_path: Path) -> None:
     text = '[structure]\nkind = "vault"\npreset = "dejong-a"\n{}[[analysis]]\nkind = "tilt"\n'
     deck.write_text(text.format("buttress_width = 0.1\nface = 30.0\n"))
     found = CliRunner().invoke(app, ["check", str(deck)])
-    assert found.exit_code == 2 and "vault.toml: structure: " in found.output
+    assert found.exit_code == 2 and "vault.toml:1: structure: buttress: " in found.output
     deck.write_text(text.format("") + '[[joints.types]]\njoints = ["none"]\nfriction = 0.3\n')
     found = CliRunner().invoke(app, ["check", str(deck)])
     assert found.exit_code == 2 and "names no joint 'none'" in found.output

@@ -5,17 +5,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+from extrados.analyses.table import Analysis
 from extrados.building.building import Building
+from extrados.building.errors import BadGeometry, Key
 from extrados.decks.reader import Deck
-from extrados.motions.from_deck import make_motion
-from extrados.motions.motion import Motion
-from extrados.motions.records import RecordError
-from extrados.results.checkpoint import Checkpoint
+from extrados.motions import tables
+
+if TYPE_CHECKING:
+    from extrados.motions.motion import Motion
+    from extrados.results.checkpoint import Checkpoint
 
 
 class Refused(Exception):
-    """The question has no answer for this building or motion; the text says why and what would have one."""
+    """The question has no answer for this building or motion; the text says why and what would have one.
+
+    at: the key of the deck that is to blame, of the analysis' own table ("analysis", ...); empty where none is.
+    """
+
+    def __init__(self, text: str = "", at: Key = ()):
+        super().__init__(text)
+        self.at = at
 
 
 @dataclass
@@ -34,28 +45,51 @@ class Context:
     scheduler: str = ""
     warnings: list[str] = field(default_factory=list)
     building: Building = None  # type: ignore[assignment]
-    motions: dict[str, Motion] = field(default_factory=dict)
+    motions: "dict[str, Motion]" = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.building is None:
             self.building = self.deck.building
 
     @cached_property
-    def checkpoint(self) -> Checkpoint | None:
+    def checkpoint(self) -> "Checkpoint | None":
         """Where sweeps keep finished batches; None without a results folder."""
+        from extrados.results.checkpoint import Checkpoint
+
         return None if self.out is None else Checkpoint(self.out, self.deck.identity, self.resume)
 
     @cached_property
-    def motion(self) -> Motion:
+    def motion(self) -> "Motion":
         """The motion of the deck; Refused where its file is wrong."""
+        from extrados.motions.from_deck import make_motion
+        from extrados.motions.records import RecordError
+
         model = self.deck.motion
         known = f"{model.model_dump_json()} {self.deck.folder}"
         if known not in self.motions:
             try:
                 self.motions[known] = make_motion(model, self.deck.folder)
             except RecordError as error:
-                raise Refused(str(error)) from None
+                raise Refused(str(error), ("motion",)) from None
         return self.motions[known]
+
+    def refuse_motion(self) -> None:
+        """Refused where the motion of the deck cannot be made, or none of its set; pulses always can be."""
+        model, folder = self.deck.motion, self.deck.folder
+        if isinstance(model, tables.Record):
+            _ = self.motion
+        elif isinstance(model, tables.Suite | tables.Generated | tables.Compatible):
+            from extrados.motions.from_deck import refuse_set
+            from extrados.motions.records import RecordError
+
+            try:
+                refuse_set(model, folder)
+            except RecordError as error:
+                raise Refused(str(error), ("motion",)) from None
+
+    def complaint(self, options: Analysis, error: Refused | BadGeometry) -> str:
+        """What an analysis is refused for, with file, line and key where a key is to blame."""
+        return self.deck.complaint(options, error.at, str(error))
 
 
 def default_threads() -> int:

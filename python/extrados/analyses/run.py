@@ -6,6 +6,7 @@ from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
@@ -14,7 +15,6 @@ from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
-from extrados.schema.programs import ffmpeg
 
 
 def _check(result: Result) -> None:
@@ -41,30 +41,19 @@ def run_analyses(context: Context) -> list[Result]:
     return results
 
 
-def _who(what: str) -> str:
-    """Analyses that reckon with a thing, as words."""
-    able = [kind for kind, parts in kinds.ANALYSES.items() if what in kinds.load(parts.table).bears]
-    return " or ".join([", ".join(able[:3]), *able[3:4]]) if len(able) <= 4 else f"{', '.join(able[:3])} and others"
-
-
 def run_one(context: Context, options: Analysis, building: Building) -> Result:
     """One analysis of a building, without its verdict; what it refuses and what fails is told in its result."""
     begin, signals = time.perf_counter(), len(interrupts.asked)
     try:
-        context.warnings, context.building = [], building
-        for what, there in building.special.items() if options.view or options.uses else ():
-            if there and what not in options.bears:
-                raise Refused(
-                    f"{options.kind} does not reckon with {what}: leave it out of its deck, or ask {_who(what)}"
-                )
-        if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
-            raise Refused(
-                'animation = "mp4" needs the program ffmpeg or the package imageio-ffmpeg, and neither is here; "gif" needs nothing'
-            )
+        context.warnings = []
+        if wrong := complaints(context, options, building):
+            raise Refused("; ".join(wrong))
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]
-    except (Refused, BadGeometry, Immovable) as error:
+    except (Refused, BadGeometry) as error:
+        result = Result(options.kind, "refused", context.complaint(options, error))
+    except Immovable as error:
         result = Result(options.kind, "refused", str(error))
     except Unfinished as error:
         result = Result(options.kind, "interrupted" if error.interrupted else "failed", str(error))

@@ -2,6 +2,8 @@
 
 from typing import TYPE_CHECKING, ClassVar, Literal
 
+from pydantic import model_validator
+
 from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.schema.table import Table, key, override_of
 
@@ -30,6 +32,12 @@ class Animated(Table):
         le=10,
     )
 
+    @model_validator(mode="after")
+    def _moves(self) -> "Animated":
+        if "animation_speed" in self.model_fields_set and self.animation == "none":
+            raise ValueError('animation_speed: needs animation = "gif" or "mp4"')
+        return self
+
 
 class Analysis(Table):
     """Base of the analysis kinds.
@@ -38,7 +46,7 @@ class Analysis(Table):
     it takes, None any that has the view. solid: whether it takes solids, where there is no plane section. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
     starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
-    Building.special it reckons with; one that looks at a building with more is refused.
+    Building.special_keys it reckons with; one that looks at a building with more is refused.
     """
 
     kind: str

@@ -8,15 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from extrados.building.devices import AddedHinge, Damper
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.geometry.anchors import Anchored, stone_at
+from extrados.building.errors import BadGeometry, Key, NoView
+from extrados.building.geometry.anchors import Anchored, moved_joints, stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
-from extrados.building.geometry.rigid import RigidBodies, rigid_bodies
-from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.building.mesh.mesh import Mesh
-from extrados.building.mesh.options import MeshOptions
-from extrados.building.mesh.rods import rods_of
-from extrados.building.mesh.shells import ShellMesh, ShellOptions
 from extrados.building.properties import (
     NO_SLIDING,
     NO_SLIDING_COEFFICIENT,
@@ -30,7 +24,12 @@ from extrados.building.structure import Structure
 from extrados.building.ties import Tie
 from extrados.schema.table import Table
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # views are loaded when they are asked for
+    from extrados.building.geometry.rigid import RigidBodies
+    from extrados.building.geometry.solids.assembly import SolidAssembly
+    from extrados.building.mesh.mesh import Mesh
+    from extrados.building.mesh.options import MeshOptions
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
     from extrados.building.rockers.rocker import Rocker
 
 
@@ -65,14 +64,24 @@ class Building:
         return (*self.ties, *self.dampers, *self.hinges)
 
     @property
-    def special(self) -> dict[str, bool]:
-        """What only some strategies reckon with, as decks call it -> is there any?"""
-        return {
-            "[[ties]]": bool(self.ties), "[[dampers]]": bool(self.dampers), "[[hinges]]": bool(self.hinges),
-            "[supports] abutting_wall": self.supports.abutting_wall is not None,
-            "[supports] foundation": "foundation" in self.supports.model_fields_set,
-            "[supports] damping_ratio": self.supports.damping_ratio is not None,
-        }  # fmt: skip
+    def restraint_keys(self) -> tuple[Key, ...]:
+        """The table of the deck that says each of its restraints."""
+        sections = {"ties": self.ties, "dampers": self.dampers, "hinges": self.hinges}
+        return tuple((section, k) for section, tables in sections.items() for k in range(len(tables)))
+
+    @property
+    def special_keys(self) -> dict[str, Key]:
+        """What of it only some strategies reckon with, as decks call it, with the key that says so; what it has not is
+        left out."""
+        found: dict[str, Key] = {
+            f"[[{section}]]": (section, 0) for section in ("ties", "dampers", "hinges") if getattr(self, section)
+        }
+        there = {
+            "abutting_wall": self.supports.abutting_wall is not None,
+            "foundation": "foundation" in self.supports.model_fields_set,
+            "damping_ratio": self.supports.damping_ratio is not None,
+        }
+        return found | {f"[supports] {name}": ("supports", name) for name, given in there.items() if given}
 
     def having(self, **tables: Any) -> "Building":
         """The same building with other tables: structure, material, joints, supports, initial, ties, dampers, hinges."""
@@ -86,7 +95,7 @@ class Building:
         """Stones and joints."""
         return self._view("blocks", self._stones, self._blocks)
 
-    def solids(self) -> SolidAssembly:
+    def solids(self) -> "SolidAssembly":
         """Blocks in space and the polygons along which they touch."""
         return self._view("solids", self._stones, lambda: self._structure().solids(self))
 
@@ -113,9 +122,11 @@ class Building:
             lambda: self._structure().pier_assembly(self.material.density),
         )
 
-    def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> RigidBodies:
+    def rigid(self, groups: tuple[tuple[int, ...], ...] = (), floor: float | None = None) -> "RigidBodies":
         """Rigid bodies of convex parts on supports; `groups` of stones move as one, a floor at a height [m] catches
         what falls."""
+        from extrados.building.geometry.rigid import rigid_bodies
+
         self.refuse_mixture()
         worn = self.joints.worn_corners
         return self._view(
@@ -146,17 +157,18 @@ class Building:
             if more:
                 raise BadGeometry(
                     f"[materials.{name}] gives stones another {more[0]}; discrete and finite elements know one elastic "
-                    "material for all stones, that of [material]: leave it out, or give the joints their stiffness"
+                    "material for all stones, that of [material]: leave it out, or give the joints their stiffness",
+                    ("materials", name, more[0]),
                 )
 
-    def friction(self, assembly: SolidAssembly | None = None) -> float | np.ndarray | None:
+    def friction(self, assembly: "SolidAssembly | None" = None) -> float | np.ndarray | None:
         """Coefficient of friction of the joints, one for each where they differ; None excludes sliding. `assembly`: of
         solids, in place of the plane stones."""
         if all(t.friction is None for t in self.joints.types):
             return self.joints.coefficient
         return self.joint_property("friction", assembly)
 
-    def joint_property(self, name: str, assembly: SolidAssembly | None = None) -> np.ndarray:
+    def joint_property(self, name: str, assembly: "SolidAssembly | None" = None) -> np.ndarray:
         """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given), of
         the plane stones or of the solids given.
 
@@ -174,14 +186,15 @@ class Building:
                 values[joints] = number(given)
         return values
 
-    def _typed_joints(self, assembly: Assembly | SolidAssembly) -> Iterator[tuple[np.ndarray, JointType]]:
+    def _typed_joints(self, assembly: "Assembly | SolidAssembly") -> Iterator[tuple[np.ndarray, JointType]]:
         """The joints that each of [[joints.types]] speaks of."""
         index = {name: j for j, name in enumerate(assembly.joint_names)}
         named: dict[str, int] = {}
         for k, kind in enumerate(self.joints.types, start=1):
+            key = ("joints", "types", k - 1, "joints")
             for name in kind.joints:
                 if name in named:
-                    raise BadGeometry(f"joint '{name}' is named twice, in joints.types {named[name]} and {k}")
+                    raise BadGeometry(f"joint '{name}' is named twice, in joints.types {named[name]} and {k}", key)
                 named[name] = k
                 if name == "ground":
                     yield np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)), kind
@@ -192,7 +205,7 @@ class Building:
                 else:
                     known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(index) > 8 else "")
                     groups = ", ".join([*assembly.groups, "ground"])
-                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}")
+                    raise BadGeometry(f"joints.types {k} names no joint '{name}'; there are {known}, and {groups}", key)
 
     def anchored(self) -> Anchored:
         """The stones at the ends of its ties, in their order; BadGeometry where an end is in none, or in several."""
@@ -200,30 +213,40 @@ class Building:
         block, point = np.full((len(self.ties), 2), GROUND), np.zeros((len(self.ties), 2, 2))
         for k, tie in enumerate(self.ties):
             point[k] = tie.start, tie.far
-            block[k, 0] = stone_at(assembly, point[k, 0], tie.start_stone, f"{tie.name}, start")
+            block[k, 0] = stone_at(assembly, point[k, 0], tie.start_stone, f"{tie.name}, start", ("ties", k), "start")
             if tie.ground is None:
-                block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end")
+                block[k, 1] = stone_at(assembly, point[k, 1], tie.end_stone, f"{tie.name}, end", ("ties", k), "end")
             if block[k, 0] == block[k, 1]:
                 raise BadGeometry(
-                    f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'"
+                    f"{tie.name}: both of its ends are in the stone '{assembly.block_names[block[k, 0]]}'", ("ties", k)
                 )
         return Anchored(block, point)
 
-    def mesh(self, options: MeshOptions | None = None, seed: int | None = None) -> Mesh:
+    def moved(self) -> list[int]:
+        """The joints that [[initial.movements]] name, in their order; BadGeometry where one is not on the ground."""
+        return moved_joints(self.blocks(), [one.joint for one in self.initial.movements])
+
+    def mesh(self, options: "MeshOptions | None" = None, seed: int | None = None) -> "Mesh":
         """Finite elements: of a wall, or of the stones with a row of elements along every joint; `seed` replaces that
         of a random pattern."""
+        from extrados.building.mesh.options import MeshOptions
+
         options = options or MeshOptions()
         tables = (
             self.structure, self.material, *self.materials.items(), self.joints, self.supports, *self.ties, options, seed
         )  # fmt: skip
         return self._view("mesh", tables, lambda: self._meshed(options, seed))
 
-    def _meshed(self, options: MeshOptions, seed: int | None) -> Mesh:
+    def _meshed(self, options: "MeshOptions", seed: int | None) -> "Mesh":
+        from extrados.building.mesh.rods import rods_of
+
         mesh = self._structure().mesh(self, options, seed)
         return replace(mesh, rods=rods_of(self, mesh))
 
-    def shell(self, options: ShellOptions | None = None) -> ShellMesh:
+    def shell(self, options: "ShellOptions | None" = None) -> "ShellMesh":
         """Flat shells in space: walls on a plan with the floors between them."""
+        from extrados.building.mesh.shells import ShellOptions
+
         options = options or ShellOptions()
         tables = (self.structure, self.material, *self.materials.items(), options)
         return self._view("shell", tables, lambda: self._structure().shell(self, options))

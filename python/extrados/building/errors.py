@@ -1,9 +1,22 @@
 """What can be wrong with a building."""
 
+#: The key of a deck that is to blame: its names and, within lists, numbers from 0
+Key = tuple[str | int, ...]
+
 
 class BadGeometry(ValueError):
-    """The building cannot be made as described; the text names the part, what is wrong and the bound."""
+    """The building cannot be made as described; the text names the part, what is wrong and the bound.
+
+    at: the key of the deck that says so, of the running analysis' own table ("analysis", ...).
+    """
+
+    def __init__(self, text: str = "", at: Key = ("structure",)):
+        super().__init__(text)
+        self.at = at
 
 
 class NoView(BadGeometry):
     """A strategy cannot look at this building; the text says why and what would help."""
+
+    def __init__(self, text: str = "", at: Key = ()):
+        super().__init__(text, at)

@@ -1,13 +1,13 @@
-"""What the deck models say of themselves: JSON Schema, `explain`, starter decks, the reference manual."""
+"""What the deck models say of themselves: their facts, JSON Schema, starter decks."""
 
 import difflib
-import textwrap
-from collections.abc import Iterator, Mapping
-from typing import Any, get_args
+from collections.abc import Mapping
+from typing import Any
 
 from extrados import kinds
 from extrados.analyses.table import OVERRIDES
 from extrados.building.properties import Initial, Joints, Material, Supports
+from extrados.decks.manual import KeyFacts, TableFacts
 from extrados.decks.plural import PLURAL
 from extrados.schema import quantities
 from extrados.schema.table import Table
@@ -104,22 +104,6 @@ def _keys(
     return found
 
 
-def _names(model: type[Table]) -> set[str]:
-    """The names of all keys of a table and of the tables within it."""
-    names = set(model.model_fields) - ({"kind", *OVERRIDES} if "kind" in model.model_fields else set())
-    for name in tuple(names):
-        for inner in _tables_in(model.model_fields[name].annotation):
-            names |= _names(inner)
-    return names
-
-
-def _tables_in(annotation: Any) -> Iterator[type[Table]]:
-    if isinstance(annotation, type) and issubclass(annotation, Table):
-        yield annotation
-    for part in get_args(annotation):
-        yield from _tables_in(part)
-
-
 def _facts(about: dict[str, Any]) -> str:
     """Type, unit, choices, bounds and default of one key in a few words."""
     facts = []
@@ -146,58 +130,23 @@ def _facts(about: dict[str, Any]) -> str:
     return ", ".join(facts)
 
 
-def _entry(section: str, kind: str, name: str, about: dict[str, Any]) -> str:
-    source = f" [{about['source']}]" if about.get("source") else ""
-    facts = _facts(about)
-    of = f" ({kind})" if kind else ""
-    return f"{section}.{name}{of}: {about.get('description', '')}{source}" + (f"\n    {facts}" if facts else "")
+def facts() -> list[TableFacts]:
+    """All that the tables say of themselves, in the order of the manual."""
+    return [
+        _table_facts(section, kind, model) for section, there in sections().items() for kind, model in there.items()
+    ]
 
 
-def explain(word: str) -> str:
-    """What a key, a kind or a section means; KeyError with the nearest known word where there is none.
-
-    A key may follow its table or its kind: "friction", "joints.friction", "analysis.tilt", "tilt.fracture".
-    """
-    everything = sections()
-    if word == "materials":
-        return "[materials.NAME]: Further materials, with the keys of [material], for the parts that name them."
-    if word in kinds.TABLES:
-        rows = [f"{kind:16} {_summary(model)}" for kind, model in everything[word].items()]
-        return f"[{word}] takes kind =\n  " + "\n  ".join(rows)
-    found = []
-    known: set[str] = set(everything)
-    for section, there in everything.items():
-        for kind, model in there.items():
-            names = _names(model)
-            known |= {kind, *names}
-            itself = word in (kind or section, f"{section}.{kind}")
-            if not itself and word.rsplit(".", 1)[-1] not in names:
-                continue  # to work out what it says takes long
-            keys = {name: about for name, about in _keys(model.model_json_schema()).items() if name != "kind"}
-            if itself:
-                rows = [textwrap.indent(_entry(section, kind, name, about), "  ") for name, about in keys.items()]
-                head = f'[{section}] kind = "{kind}"' if kind else _header(section)
-                found.append(f"{head}: {_summary(model)}\n" + "\n".join(rows))
-            asked = {name for name in keys if word in _called(section, kind, name)}
-            found += [
-                _entry(section, kind, name, about)
-                for name, about in keys.items()
-                if any(name == one or name.startswith(f"{one}.") for one in asked)
-            ]
-    if not found:
-        close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
-        raise KeyError(f"no key or kind '{word}'" + (f"; near are {', '.join(close)}" if close else ""))
-    return "\n".join(found)
-
-
-def _called(section: str, kind: str, name: str) -> set[str]:
-    """What a user may call a key."""
-    return {name, name.rsplit(".", 1)[-1], f"{section}.{name}", f"{kind}.{name}", f"{section}.{kind}.{name}"}
-
-
-def _header(section: str) -> str:
-    """The header of a section in a deck."""
-    return f"[[{section}]]" if section in PLURAL else f"[{section}]"
+def _table_facts(section: str, kind: str, model: type[Table]) -> TableFacts:
+    schema = model.model_json_schema()
+    unless_preset = {name for way in schema.get("anyOf", []) for name in way["required"] if name != "preset"}
+    keys = {}
+    for name, about in _keys(schema).items():
+        required = "required" if about["required"] else "required without a preset" if name in unless_preset else ""
+        keys[name] = KeyFacts(about.get("description", ""), about.get("source", ""), _facts(about), required)
+    keys.pop("kind", None)
+    header = f"[[{section}]]" if section in PLURAL else f"[{section}]"
+    return TableFacts(section, header, kind, _summary(model), keys)
 
 
 def _summary(model: type[Table]) -> str:
@@ -271,40 +220,3 @@ def _toml(value: Any) -> str:
     if isinstance(value, list):
         return f"[{', '.join(_toml(v) for v in value)}]"
     return f"{value:g}" if isinstance(value, float) and abs(value) >= 1e6 else repr(value)
-
-
-def manual() -> str:
-    """The reference manual of all deck keys, in Markdown."""
-    lines = [
-        "# Deck reference",
-        "",
-        "Generated from the deck models (`extrados explain --manual`); do not edit.",
-        "",
-    ]
-    for section, there in sections().items():
-        lines += [f"## {_header(section)}", ""]
-        for kind, model in there.items():
-            lines += [
-                *([f'### kind = "{kind}"', ""] if kind else []),
-                _summary(model),
-                "",
-                "| key | meaning | type and default |",
-                "|---|---|---|",
-            ]
-            schema = model.model_json_schema()
-            unless_preset = {name for way in schema.get("anyOf", []) for name in way["required"] if name != "preset"}
-            for name, about in _keys(schema).items():
-                if name == "kind":
-                    continue
-                source = f" ({about['source']})" if about.get("source") else ""
-                text = f"{about.get('description', '')}{source}".replace("|", "\\|")
-                required = (
-                    ", required"
-                    if about["required"]
-                    else ", required without a preset"
-                    if name in unless_preset
-                    else ""
-                )
-                lines.append(f"| `{name}` | {text} | {_facts(about).replace('|', chr(92) + '|')}{required} |")
-            lines.append("")
-    return "\n".join(lines)

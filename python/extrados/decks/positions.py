@@ -1,6 +1,8 @@
 """Where in a TOML text each key stands; tomllib tells values, not lines."""
 
 import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 _HEADER = re.compile(r"^\s*(\[\[?)\s*([^\]]+?)\s*\]\]?")
 _KEY = re.compile(r"""^\s*((?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[A-Za-z0-9_-]+|"[^"]*"|'[^']*'))*)\s*=""")
@@ -69,8 +71,29 @@ def _scan(line: str, quote: str, depth: int) -> tuple[str, int]:
     return (quote if len(quote) == 3 else ""), depth
 
 
-def line_of(path: Path, lines: dict[Path, int]) -> int:
+def line_of(path: Path, lines: Mapping[Path, int]) -> int:
     """Line of the nearest known ancestor of a path."""
     while path not in lines:
         path = path[:-1]
     return lines[path]
+
+
+@dataclass(frozen=True)
+class Positions:
+    """The keys of one deck by their lines, all 0 where it has no text."""
+
+    name: str = "deck"
+    lines: Mapping[Path, int] = field(default_factory=lambda: {(): 0})
+
+    def line(self, path: Path) -> int:
+        """Line of a key, or of the nearest table around it; 0 without a text."""
+        return line_of(path, self.lines)
+
+    def tell(self, path: Path, what: str) -> str:
+        """A complaint: "deck.toml:LINE: section.key: what is wrong"."""
+        line = self.line(path)
+        shown = ".".join(str(part) for part in path if not isinstance(part, int))
+        named, colon, rest = what.partition(": ")
+        if colon and f".{named}." in f".{shown}.":  # the words name the key themselves
+            what = rest
+        return f"{self.name}:{f'{line}:' if line else ''} {f'{shown}: ' if shown else ''}{what}"

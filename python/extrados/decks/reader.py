@@ -18,7 +18,8 @@ from extrados.building.properties import Initial, Joints, Material, Supports
 from extrados.building.structure import Structure
 from extrados.decks.moved import MOVED
 from extrados.decks.plural import MOST, PLURAL
-from extrados.decks.positions import key_lines, line_of
+from extrados.decks.positions import Path as Key
+from extrados.decks.positions import Positions, key_lines
 from extrados.schema import files
 from extrados.schema.table import Motion, Table
 from extrados.schema.text import printable
@@ -45,7 +46,7 @@ class Deck:
     """A checked deck. `data` is what stood in it; folder is where its files are looked for.
 
     building: what [structure], [material], [joints], [supports] and [initial] say; buildings: as each analysis sees it,
-    with what it overrides.
+    with what it overrides. positions: where its keys stand; tables: the place of each analysis among them.
     """
 
     title: str
@@ -61,6 +62,8 @@ class Deck:
     project: str = ""
     author: str = ""
     date: str = ""
+    positions: Positions = field(default_factory=Positions)
+    tables: list[Key] = field(default_factory=list)
 
     def __repr__(self) -> str:
         structure = self.structure.kind if self.structure else "no structure"
@@ -80,6 +83,21 @@ class Deck:
     def default_out(self) -> Path:
         """results/<deck name> below the current folder."""
         return Path("results") / (Path(self.path).stem or "deck")
+
+    def complaint(self, analysis: Analysis | None, at: Key, what: str) -> str:
+        """Words about a key as a complaint with file and line; about a key of an analysis' table where `at` begins with
+        "analysis"; as they are where `at` is empty."""
+        if not at:
+            return what
+        own = next(
+            (table for a, table in zip(self.analyses, self.tables, strict=False) if a is analysis), ("analysis",)
+        )
+        override = getattr(analysis, str(at[0]), None) if at[0] in OVERRIDES else None
+        if at[0] == "analysis":
+            at = (*own, *at[1:])
+        elif override is not None and at[1:2] and at[1] in override.model_fields_set:
+            at = (*own, *at)
+        return self.positions.tell(at, what)
 
     def resolved(self) -> dict[str, Any]:
         """All keys with their defaults, in SI."""
@@ -122,13 +140,12 @@ def read_text(raw: bytes, name: str = "deck.toml", folder: Path | None = None) -
         raise DeckError([f"{name}: is nested too deeply for a deck"]) from None
     except ValueError as error:  # integers of more digits than Python converts
         raise DeckError([f"{name}: {error}"]) from None
-    lines = key_lines(text)
-    return _Checker(name, lines).deck(data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest())
+    return _Checker(Positions(name, key_lines(text))).deck(data, folder or Path.cwd(), hashlib.sha256(raw).hexdigest())
 
 
 def make_deck(data: dict[str, Any], folder: Path | None = None) -> Deck:
     """A deck from Python dictionaries, checked like a file."""
-    return _Checker("deck", {(): 0}).deck(data, folder or Path.cwd(), "")
+    return _Checker(Positions()).deck(data, folder or Path.cwd(), "")
 
 
 def _syntax(message: str, text: str) -> tuple[int, str]:
@@ -148,16 +165,12 @@ def _syntax(message: str, text: str) -> tuple[int, str]:
 
 
 class _Checker:
-    def __init__(self, name: str, lines: dict):
-        self.name = name
-        self.lines = lines
+    def __init__(self, positions: Positions):
+        self.positions = positions
         self.complaints: list[tuple[int, str]] = []
 
-    def complain(self, path: tuple, what: str) -> None:
-        line = line_of(path, self.lines)
-        shown = ".".join(str(p) for p in path if not isinstance(p, int))
-        where = f"{self.name}:{line}: " if line else f"{self.name}: "
-        self.complaints.append((line, f"{where}{shown + ': ' if shown else ''}{what}"))
+    def complain(self, path: Key, what: str) -> None:
+        self.complaints.append((self.positions.line(path), self.positions.tell(path, what)))
 
     def deck(self, data: dict[str, Any], folder: Path, sha256: str) -> Deck:
         for word in data:
@@ -176,18 +189,20 @@ class _Checker:
         several = isinstance(given, list)
         building = self.building(structure, data, folder)
         analyses, buildings = [], []
+        tables_of: list[Key] = []
         for i, table in enumerate(tables):
             path = ("analysis", i) if several else ("analysis",)
             analysis = self.section("analysis", table, path)
             if analysis is not None:
                 self.fits(analysis, data, path)
                 analyses.append(analysis)
+                tables_of.append(path)
                 buildings.append(self.overridden(building, data, table, path))
         if self.complaints:
             found = [text for _, text in sorted(self.complaints, key=lambda c: c[0])]
             if len(found) > MOST_COMPLAINTS:
                 more = len(found) - MOST_COMPLAINTS
-                found = [*found[:MOST_COMPLAINTS], f"{self.name}: and {more} more"]
+                found = [*found[:MOST_COMPLAINTS], f"{self.positions.name}: and {more} more"]
             raise DeckError(found)
         return Deck(
             data.get("title", ""),
@@ -196,11 +211,15 @@ class _Checker:
             motion,
             analyses,
             buildings,
-            self.name,
+            self.positions.name,
             folder,
             sha256,
             data,
-            *(data.get(word, "") for word in ("project", "author", "date")),
+            project=data.get("project", ""),
+            author=data.get("author", ""),
+            date=data.get("date", ""),
+            positions=self.positions,
+            tables=tables_of,
         )
 
     def building(self, structure: Structure | None, data: dict[str, Any], folder: Path) -> Building:
@@ -300,7 +319,9 @@ class _Checker:
             self.complain(at[:-1], f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
         elif sort == "value_error":
             text = str(problem.get("ctx", {}).get("error", problem["msg"]))
-            if not place:  # a rule over several keys: shown at the first one that it names
+            if not place and (inner := _leads(text, problem["input"])):
+                at, text = (*path, *inner), text.partition(": ")[2]
+            elif not place:  # a rule over several keys: shown at the first one that it names
                 given = problem["input"]
                 found = (
                     (re.search(rf"\b{re.escape(key)}\b", text), key)
@@ -334,6 +355,16 @@ class _Checker:
                 self.complain(path, f"{kind} cannot look at a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")
+
+
+def _leads(text: str, given: Any) -> Key:
+    """The key of a table that words begin with, as "hazard.intensities: expected ..." do; empty where it has none."""
+    named = text.partition(": ")[0].split(".")
+    for part in named:
+        if not isinstance(given, dict) or part not in given:
+            return ()
+        given = given[part]
+    return tuple(named)
 
 
 def _place(problem: ErrorDetails) -> tuple:

@@ -18,7 +18,7 @@ import numpy as np
 from extrados import kinds
 from extrados._build_info import VERSION
 from extrados.analyses.context import Refused
-from extrados.analyses.limit.common import block_under
+from extrados.analyses.limit.applied import block_under
 from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
 from extrados.analyses.rocking.tables import FailureDomain, Rocking
 from extrados.building.errors import BadGeometry, NoView

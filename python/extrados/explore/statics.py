@@ -14,7 +14,7 @@ from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import CannotStand, assess
-from extrados.limit.graphic import force_polygon, thrust_of
+from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
 from extrados.limit.lines import thrust_paths
 from extrados.limit.motion import finite_motion
 from extrados.limit.places import place_of
@@ -120,10 +120,11 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     if chain is not None and quick:
         try:
             least, most = limit.thrust(chains[chain], view.gamma)
+            told = thrust_joint(assembly, limit.loads, chains[chain])
             for name, state in (("least", least), ("most", most)):
                 if name in view.lines:
                     _line(made, name, state, anchor)
-                words[f"{name}_N"] = thrust_of(assembly, state, chains[chain])
+                words[f"{name}_N"] = thrust_of(assembly, state, chains[chain], told)
                 words[f"{name}_touches"] = _touches(assembly, state, anchor)
             shown = least
             if view.through is not None and "through" in view.lines and view.through[0] < len(assembly.a):
@@ -134,7 +135,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
                 words["through"] = {
                     "joint": joint, "name": assembly.joint_names[joint], "wanted": view.through[1],
                     "reached": float(shown.position[joint]), "at": at.tolist(),
-                    "thrust_N": thrust_of(assembly, shown, chains[chain]),
+                    "thrust_N": thrust_of(assembly, shown, chains[chain], told),
                 }  # fmt: skip
         except (NoEquilibrium, NoAnswer) as error:
             words["remark"] = str(error)

@@ -18,6 +18,8 @@ __all__ = ["StoreError", "forms", "shown", "unit_of"]
 MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
 #: Sections of the form, those of the building first
 SECTIONS = ("structure", "motion", "joints", "material", "supports", "initial")
+#: Arrays of supports that move: those of a film, or of the states that figures show, and how each calls its thrust lines
+FILM, SHOWN = ("film", "line"), ("shown", "point")
 Arrays = dict[str, np.ndarray]
 Chart = dict[str, Any]
 
@@ -264,22 +266,11 @@ class _Maker:
                     cursor=True,
                 )
             )
-        if "film_movement" in self.arrays:
-            self._moving(
-                1e3 * self.arrays["film_movement"],
-                self.arrays["film_pose"],
-                "mm",
-                "movement",
-                line=self.arrays["film_line"],
-            )
-        elif "shown_pose" in self.arrays:
-            self._moving(
-                1e3 * self.arrays["shown_movement"],
-                self.arrays["shown_pose"],
-                "mm",
-                "movement",
-                line=self.arrays["shown_point"],
-            )
+        film = next((f for f in (FILM, SHOWN) if f"{f[0]}_movement" in self.arrays), None)
+        if film is not None:
+            which, line = film
+            movement, pose = self.arrays[f"{which}_movement"], self.arrays[f"{which}_pose"]
+            self._moving(1e3 * movement, pose, "mm", "movement", line=self.arrays[f"{which}_{line}"])
         elif "settled_pose" in self.arrays:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)

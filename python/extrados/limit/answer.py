@@ -8,9 +8,10 @@ from typing import TypeVar
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.chains import inner_stones
 from extrados.limit.equilibrium import hanging_stones
 from extrados.limit.graphic import force_polygon, funicular
-from extrados.limit.lines import ThrustPath, inner_stones, thrust_paths
+from extrados.limit.lines import ThrustPath, thrust_paths
 from extrados.limit.loads import Loads
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
 from extrados.limit.systems import Sparse

@@ -6,6 +6,7 @@ four unknowns: (H, V, M) and the load multiplier gamma (thesis 3.3; the reductio
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -41,11 +42,22 @@ class Tree:
 
 def spanning_tree(assembly: Assembly) -> Tree:
     """Breadth first from the ground, which keeps the chains short and the numbers well conditioned."""
-    blocks = len(assembly.mass)
+    tree, lost = _tree(assembly.a.astype(int).tobytes(), assembly.b.astype(int).tobytes(), len(assembly.mass))
+    if tree is None:
+        names = [assembly.block_names[i] for i in lost]
+        more = f" and {len(names) - 5} more" if len(names) > 5 else ""
+        raise Disconnected(f"not connected to the ground by any joint: {', '.join(names[:5])}{more}")
+    return tree
+
+
+@lru_cache(maxsize=8)
+def _tree(a: bytes, b: bytes, blocks: int) -> tuple[Tree | None, list[int]]:
+    """The tree of joints between blocks a and b, or the blocks that none reaches: all sections of a sweep have one."""
+    joint_a, joint_b = np.frombuffer(a, dtype=int).tolist(), np.frombuffer(b, dtype=int).tolist()
     touching: list[list[tuple[int, int]]] = [[] for _ in range(blocks + 1)]
-    for j, (a, b) in enumerate(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True)):
-        touching[a].append((j, b))  # GROUND = -1 is the last list
-        touching[b].append((j, a))
+    for j, (one, two) in enumerate(zip(joint_a, joint_b, strict=True)):
+        touching[one].append((j, two))  # GROUND = -1 is the last list
+        touching[two].append((j, one))
     parent = [-1] * blocks
     children: list[list[int]] = [[] for _ in range(blocks + 1)]
     order: list[int] = []
@@ -61,11 +73,8 @@ def spanning_tree(assembly: Assembly) -> Tree:
         order += reached
         front = reached
     if len(order) < blocks:
-        lost = [assembly.block_names[i] for i in range(blocks) if parent[i] < 0]
-        more = f" and {len(lost) - 5} more" if len(lost) > 5 else ""
-        raise Disconnected(f"not connected to the ground by any joint: {', '.join(lost[:5])}{more}")
+        return None, [i for i in range(blocks) if parent[i] < 0]
     size = [1] * blocks
-    joint_a, joint_b = assembly.a.tolist(), assembly.b.tolist()
     for block in reversed(order):
         j = parent[block]
         below = joint_b[j] if joint_a[j] == block else joint_a[j]
@@ -78,7 +87,7 @@ def spanning_tree(assembly: Assembly) -> Tree:
         preorder.append(block)
         stack += children[block][::-1]
     pre = np.array(preorder)
-    return Tree(np.array(parent), order, pre, np.array(size)[pre])
+    return Tree(np.array(parent), order, pre, np.array(size)[pre]), []
 
 
 @dataclass(frozen=True)

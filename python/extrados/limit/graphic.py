@@ -3,6 +3,7 @@
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.chains import inner_stones, is_stack
 from extrados.building.geometry.polygons import below, signed_area
 from extrados.limit.loads import Loads
 from extrados.limit.states import State
@@ -19,10 +20,18 @@ def force_polygon(assembly: Assembly, state: State, joints: list[int]) -> np.nda
     return state.force(assembly)[joints] * senses(assembly, joints)[:, None]
 
 
-def thrust_of(assembly: Assembly, state: State, joints: list[int]) -> float:
-    """Horizontal thrust of a chain across the first of its joints [N]; negative where it would pull."""
-    thrust = float(force_polygon(assembly, state, joints)[0, 0])
+def thrust_of(assembly: Assembly, state: State, joints: list[int], at: int = 0) -> float:
+    """Horizontal thrust of a chain across its first joint, or the one `at` [N]; negative where it would pull."""
+    thrust = float(force_polygon(assembly, state, joints)[at, 0])
     return thrust if abs(thrust) > ROUNDING * state.normal.max() else 0.0
+
+
+def thrust_joint(assembly: Assembly, loads: Loads, joints: list[int]) -> int:
+    """Which joint of a chain its thrust is told at: the first, an arch's left springing; or, where ties hold its stones
+    and so take of the thrust before it reaches the springing, the highest, its crown."""
+    if is_stack(assembly, joints) or not loads.tied & inner_stones(assembly, joints):
+        return 0
+    return int(assembly.middle[joints, 1].argmax())
 
 
 def senses(assembly: Assembly, joints: list[int]) -> np.ndarray:

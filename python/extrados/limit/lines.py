@@ -1,11 +1,11 @@
 """The thrust line drawn through every stone: along chains, down piers, and between the joints of any other stone."""
 
-import itertools
 from dataclasses import dataclass
 
 import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.chains import inner_stones
 from extrados.building.geometry.polygons import reach
 from extrados.limit.graphic import section_forces
 from extrados.limit.loads import Loads
@@ -53,12 +53,6 @@ def thrust_paths(assembly: Assembly, loads: Loads, state: State, sway: float = 1
         for line, carried in _through(assembly, loads, state, block, loaded, points, force, sway):
             found.append(ThrustPath(name, line, carried))
     return found
-
-
-def inner_stones(assembly: Assembly, joints: list[int]) -> set[int]:
-    """Voussoirs of a chain: blocks between two of its joints."""
-    ends = [{int(assembly.a[j]), int(assembly.b[j])} for j in joints]
-    return {b for one, two in itertools.pairwise(ends) for b in one & two} - {GROUND}
 
 
 def _through(

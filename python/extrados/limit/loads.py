@@ -14,11 +14,12 @@ from extrados.schema.constants import GRAVITY
 @dataclass(frozen=True)
 class Loads:
     """dead and live: (nb, 3) force x, force y [N] and moment about the origin [N m] on each block; what else
-    answers where blocks move, ties behind pressures."""
+    answers where blocks move, ties behind pressures. tied: the blocks that ties hold."""
 
     dead: np.ndarray
     live: np.ndarray
     resistance: Resistance | None = None
+    tied: frozenset[int] = frozenset()
 
     @cached_property
     def scale(self) -> float:

@@ -9,7 +9,7 @@ from scipy import sparse
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.coulomb import CoulombProblem, CoulombState
 from extrados.limit.equilibrium import hanging_stones, spanning_tree
-from extrados.limit.graphic import senses
+from extrados.limit.graphic import senses, thrust_joint
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.solver import (
@@ -51,6 +51,16 @@ HAIR = 1e-9
 
 # Of the joints' length: to which the most central line of a wall is found.
 LEAST_PART = 1e-3
+
+
+# Bounds and mechanism agree this closely, relative to gamma, or an answer is none; in walls of so many joints, whose forces
+# round at that, so closely
+GAP, VERY_MANY, GAP_OF_MANY = 1e-8, 5000, 1e-7
+
+
+def closed(joints: int, gamma: float) -> float:
+    """How far the bounds of an answer may lie apart [g]."""
+    return (GAP if joints < VERY_MANY else GAP_OF_MANY) * max(1.0, abs(gamma))
 
 
 def _mixed(one: State, two: State, gamma: float, part: float) -> State | None:
@@ -224,13 +234,22 @@ class LimitAnalysis:
     def _interior(self, direction: int) -> tuple[State, Mechanism] | None:
         """Collapse by the interior-point method; None where it does not settle."""
         problem = CollapseProblem(self._equations, self._mu, direction, self._crush, dilates=True)
+        allowed = RESIDUAL if problem.joints < MANY else 10.0 * RESIDUAL * np.sqrt(problem.joints / MANY)
         point, misfit = problem.state()
-        if misfit > (RESIDUAL if problem.joints < MANY else 10.0 * RESIDUAL * np.sqrt(problem.joints / MANY)):
+        if (
+            misfit > allowed and problem.joints >= MANY
+        ):  # another start is another way; a linear programme takes ten times as long
+            point, misfit = problem.state(np.random.default_rng(1))
+        if misfit > allowed:
             return None
         motion = problem.motion(point.u)
         # No forces the joints bear take more work than these and what is left of the gap (weak duality).
         taken = point.gap_of_joints - float((point.corners * motion).sum())
-        return self._read(direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken)
+        state, mechanism = self._read(
+            direction * point.gamma, point.corners, point.share, point.u.reshape(-1, 3), motion, taken
+        )
+        apart = abs(state.gamma - mechanism.upper_bound)
+        return None if apart > closed(len(self.assembly.a), state.gamma) else (state, mechanism)
 
     def _coulomb(self, direction: int) -> tuple[State, Mechanism]:
         """The least collapse load found without dilatancy, from rest on; its residuals stay in `coulomb`."""
@@ -355,9 +374,9 @@ class LimitAnalysis:
         return True
 
     def thrust(self, joints: list[int], gamma: float = 0.0) -> tuple[State, State]:
-        """States of least and greatest horizontal thrust of a chain, across the first of its joints, at a fixed gamma."""
-        a, joint = self.assembly, joints[0]
-        sense = senses(a, joints)[0]
+        """States of least and greatest horizontal thrust of a chain, across its `thrust_joint`, at a fixed gamma."""
+        a, at = self.assembly, thrust_joint(self.assembly, self.loads, joints)
+        joint, sense = joints[at], senses(a, joints)[at]
         corner_cost = np.zeros((len(a.a), 3))
         corner_cost[joint] = a.normal[joint, 0], a.normal[joint, 0], a.tangent[joint, 0]
         cost = self.system.cost(corner_cost * sense)

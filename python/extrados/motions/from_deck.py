@@ -66,6 +66,21 @@ def suite_motions(model: models.Suite, folder: Path) -> Iterator[Motion | Record
             yield error
 
 
+def refuse_set(model: Sets, folder: Path) -> None:
+    """RecordError where a set has no motion: no record of a suite can be read, or a spectrum is wrong."""
+    if isinstance(model, models.Suite):
+        wrong = []
+        for found in suite_motions(model, folder):
+            if isinstance(found, Motion):
+                return
+            wrong.append(found)
+        raise RecordError(f"none of the {len(wrong)} records of the suite can be read; the first: {wrong[0]}")
+    if isinstance(model, models.Generated):
+        generated_set(model, folder)
+    else:
+        compatible_set(model, folder)
+
+
 def suite_members(model: models.Suite, folder: Path) -> list[models.Components]:
     """The records of a suite, not yet read."""
     if model.records is not None:

@@ -205,26 +205,31 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> None:
         rotation.set_xlabel("time [s]")
         rotation.set_xlim(0.0, float(time[-1]))
         cursors = [a.axvline(0.0, color=style.THRUST, linewidth=1.0) for a in (ground, rotation)]
-        title = ax.set_title("0.00 s")
-        frames, rate = pictures(time, kind, speed)
 
-        def draw(k: int) -> None:
+        def show(k: int) -> None:
             stones.place(pose[k])
             if line is not None:
                 thrust.set_data(*line.data[k].T)
-            for cursor in cursors:
-                cursor.set_xdata([time[k], time[k]])
-            title.set_text(_clock(time[k], speed))
 
-        write(
-            fig,
-            folder / "figures" / f"{name}.{kind}",
-            kind,
-            rate,
-            frames,
-            draw,
-            [stones.drawn, thrust, *cursors, title],
-        )
+        _history(ax, folder / "figures" / f"{name}.{kind}", time, speed, show, cursors, [stones.drawn, thrust])
+
+
+def _history(
+    ax: Axes, target: Path, time: np.ndarray, speed: float, show: Callable[[int], None], cursors: list, moving: list
+) -> None:
+    """The film of a history beside its charts: `show` puts what moves, `moving`, to a step of time [s]; the cursors of
+    the charts and a clock over `ax` go with it."""
+    kind = target.suffix[1:]
+    frames, rate = pictures(time, kind, speed)
+    title = ax.set_title("0.00 s")
+
+    def draw(k: int) -> None:
+        show(k)
+        for cursor in cursors:
+            cursor.set_xdata([time[k], time[k]])
+        title.set_text(_clock(time[k], speed))
+
+    write(ax.get_figure(), target, kind, rate, frames, draw, [*moving, *cursors, title])
 
 
 def draw_tilt(run: Stored, name: str, folder: Path) -> None:
@@ -413,7 +418,7 @@ def draw_dem(run: Stored, name: str, folder: Path) -> None:
     from extrados.plots.dem import Scene
 
     time, rotation = run.array(name, "time"), run.array(name, "rotation")
-    frames, rate = pictures(time, kind, speed)
+    frames, _ = pictures(time, kind, speed)
     scene = Scene(run, name, frames.tolist())
     tracked = run.array(name, "tracked")
     most = tracked[np.argsort(-np.abs(rotation[:, tracked]).max(axis=0), kind="stable")[:FOLLOWED]]
@@ -437,21 +442,9 @@ def draw_dem(run: Stored, name: str, folder: Path) -> None:
         ax.set_xlim(left, right)
         ax.set_ylim(bottom, top)
         style.section_axes(ax)
-        title = ax.set_title("")
 
-        def draw(k: int) -> None:
+        def show(k: int) -> None:
             stones.place(scene.place[k])
             hinges.set_data(*scene.hinges(k).T)
-            for cursor in cursors:
-                cursor.set_xdata([time[k], time[k]])
-            title.set_text(_clock(time[k], speed))
 
-        write(
-            fig,
-            folder / "figures" / f"{name}.{kind}",
-            kind,
-            rate,
-            frames,
-            draw,
-            [stones.drawn, hinges, *cursors, title],
-        )
+        _history(ax, folder / "figures" / f"{name}.{kind}", time, speed, show, cursors, [stones.drawn, hinges])

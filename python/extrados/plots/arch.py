@@ -43,11 +43,13 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             )
         for sign in (1, -1):
             rotation.axhline(1e3 * sign * r.critical_rotation_rad, color=style.EDGE, linestyle=":", linewidth=0.8)
-        limit = 1.15e3 * np.abs(run.array(name, "rotation")).max(initial=0.0)
-        if r.stack:
-            limit = max(limit, 1.15e3 * np.abs(run.array(name, "rotation_upper")).max(initial=0.0))
-        limit = limit or 1.15e3 * r.critical_rotation_rad  # it has not rocked
-        rotation.set_ylim(-limit, limit)
+        reached = 1e3 * np.concatenate(
+            [run.array(name, what) for what in ("rotation", *(["rotation_upper"] if r.stack else []))]
+        )
+        low, high = reached.min(initial=0.0), reached.max(initial=0.0)
+        if low == high:  # it has not rocked
+            low, high = -1e3 * r.critical_rotation_rad, 1e3 * r.critical_rotation_rad
+        rotation.set_ylim(low - 0.1 * (high - low), high + 0.1 * (high - low))
         rotation.plot(
             run.array(name, "impact_time"),
             np.zeros(len(run.array(name, "impact_time"))),
@@ -56,12 +58,12 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             label="impacts",
         )
         rotation.set_ylabel("rotation [mrad]\n+ to +x")
-        rotation.legend(loc="upper right")
+        style.legend_above(rotation)
         style.energies(energy, "energy", [
             (t, run.array(name, "kinetic"), {"label": "kinetic"}), (t, run.array(name, "potential"), {"label": "potential"}),
             (t, run.array(name, "ledger"), {"label": "supplied less lost", "color": "k", "linestyle": "--", "linewidth": 0.8}),
         ])  # fmt: skip
-        energy.legend(ncols=3, loc="upper right")
+        style.legend_above(energy)
         needed = run.array(name, "required_friction").max(axis=1) if len(t) else t
         friction.plot(t, np.minimum(needed, 2.0), color=style.HINGE, linewidth=0.8)
         friction.set_ylabel("friction\nneeded")
@@ -132,7 +134,7 @@ def _draw_restraints(run: Stored, name: str, folder: Path, t: np.ndarray) -> tup
                 ax.plot(t, a.data / 1e3, linewidth=0.9, label=a.about)
             ax.set_ylabel("force [kN]\n+ tension" if unit == "N" else "moment [kN m]")
             if len({a.about for a in here}) <= 6:
-                ax.legend(*_once(ax), loc="upper right", ncols=2)
+                style.legend_above(ax, *_once(ax))
         axes[-1].set_xlabel("time [s]")
         if len(moving):
             axes[-1].set_xlim(max(0.0, t[moving[0]] - 0.2), min(t[-1], t[moving[-1]] + 0.2))
@@ -236,8 +238,9 @@ def draw_failure_domain(run: Stored, name: str, folder: Path) -> list[tuple[str,
         ax.set_ylabel("amplitude [g]")
         ax.set_ylim(0.0, a[-1])
         ax.set_xlim(*((d[0], d[-1]) if len(d) > 1 else (0.5 * d[0], 1.5 * d[0])))
-        ax.legend(loc="upper right", frameon=True)
         ax.grid(False)
+        handles, labels = ax.get_legend_handles_labels()
+        fig.legend(handles, labels, loc="outside lower center", ncols=3)
         title = f"Failure domain of {r.pulse} pulses"
         ax.set_title(title)
         return [(style.save(fig, folder, name), "Outcome of each pulse, and the lowest failing amplitudes.")]

@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from extrados.plots import style
-from extrados.plots.limit import outlines, stone
+from extrados.plots.limit.section import outlines, stone
 from extrados.results.store import Stored
 
 NAME = "building"

@@ -165,7 +165,7 @@ def _histories(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         for i in most:
             top.plot(time, 1e3 * rotation[:, i], label=label[int(i)])
         top.set_ylabel("rotation [mrad], positive to +x")
-        top.legend(loc="best", ncols=2)
+        style.legend_above(top)
         low.plot(time, run.array(name, "ground") / GRAVITY, color=style.EDGE)
         low.set_ylabel("ground [g]")
         low.set_xlabel("time [s]")
@@ -190,7 +190,7 @@ def _energies(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         style.energies(low, "energy", lines)
         low.set_xlabel("time [s]")
         low.set_xlim(0.0, time[-1])
-        low.legend(loc="best", ncols=2)
+        style.legend_above(low)
         saved = style.save(fig, folder, f"{name}-energy")
     return saved, (
         f"Kinetic energy, and the whole ledger; it closes to {100 * run[name].energy_residual_ratio:.2g} % of the energy that went round."
@@ -232,9 +232,9 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                         times[k].data, 1e3 * turns[k].data,
                         label=f"{'' if kind == 'friction' else 'x '}{row.value:g} ({row.outcome})", linewidth=0.9,
                     )  # fmt: skip
-            ax.set_title(kind)
+            ax.set_title(kind, loc="left")
             ax.set_ylabel("rotation [mrad]")
-            ax.legend(loc="best", ncols=2)
+            style.legend_above(ax)
         axes[-1].set_xlabel("time [s]")
         saved = style.save(fig, folder, f"{name}-sensitivity")
     return saved, "Sensitivity of the rotation of the first tracked block to damping, stiffness and friction."

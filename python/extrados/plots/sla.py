@@ -21,6 +21,7 @@ MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 #: What the names of the figures of each sense of the load have in them
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
+NOTHING = 1e-3  # of the greatest stress: less is drawn as none
 
 
 def _polygons(run: Stored, name: str, xy: np.ndarray) -> list[np.ndarray]:
@@ -306,13 +307,13 @@ def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
     load = run.array(name, f"{prefix}state_load")
     s = _peak(run, name, prefix)
     span = np.ptp(xy, axis=0)
+    # Where one of both is all but nothing, the scale of the other keeps it from showing how it is rounded
+    stresses = [run.array(name, f"{prefix}state_{key}")[s] / 1e6 for key in ("stress_1", "stress_2")]
+    least = max(NOTHING * max(float(np.abs(np.percentile(v, [2, 98])).max()) for v in stresses), 1e-9)
     with _panels(span, 2) as (fig, axes):
-        for ax, key, title, cmap in zip(
-            axes, ("stress_1", "stress_2"), ("greater", "lesser"), ("Reds", "Blues_r"), strict=True
-        ):
-            value = run.array(name, f"{prefix}state_{key}")[s] / 1e6
+        for ax, value, title, cmap in zip(axes, stresses, ("greater", "lesser"), ("Reds", "Blues_r"), strict=True):
             low, high = np.percentile(value, [2, 98])
-            limits = (0.0, max(high, 1e-9)) if key == "stress_1" else (min(low, -1e-9), 0.0)
+            limits = (0.0, max(high, least)) if title == "greater" else (min(low, -least), 0.0)
             _wall(ax, _polygons(run, name, xy), facecolors="none", linewidths=0.1)
             size = np.clip(9000.0 / len(at), 0.3, 40.0)
             drawn = ax.scatter(*at.T, c=value, s=size, cmap=cmap, vmin=limits[0], vmax=limits[1], linewidths=0)

@@ -8,7 +8,8 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import LinearSegmentedColormap, Normalize, to_rgb
 
-from extrados.plots import animation, limit, scene, style
+from extrados.plots import animation, scene, style
+from extrados.plots.limit import tilt
 from extrados.results.solid_files import rotations
 from extrados.results.solids import SolidTilt
 from extrados.results.store import Stored
@@ -22,7 +23,7 @@ SPEED = LinearSegmentedColormap.from_list("speed", [style.STONE, "#f2c28b", "#c8
 def draw_tilt(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """The figures of a plane section, or of solids."""
     r = run[name]
-    return _draw_solids(run, name, folder, r) if isinstance(r, SolidTilt) else limit.draw_tilt(run, name, folder)
+    return _draw_solids(run, name, folder, r) if isinstance(r, SolidTilt) else tilt.draw(run, name, folder)
 
 
 def faces_of(run: Stored, name: str, pose: np.ndarray | None = None) -> scene.Faces:

@@ -71,6 +71,16 @@ def legend_below(fig: Figure, ax: Axes) -> None:
     fig.legend(handles, labels, loc="outside lower center", ncols=len(labels))
 
 
+def legend_above(ax: Axes, handles: list | None = None, labels: list[str] | None = None) -> None:
+    """The legend of `ax` over its upper right corner, in rows of four, where curves fill all of it."""
+    if handles is None or labels is None:
+        handles, labels = ax.get_legend_handles_labels()
+    ax.legend(
+        handles, labels, ncols=min(max(1, len(labels)), 4), loc="lower right", bbox_to_anchor=(1.0, 1.0), borderaxespad=0.0,
+        borderpad=0.1,
+    )  # fmt: skip
+
+
 def numbers(axis: Axis) -> None:
     """Ticks at whole numbers only: joints, events."""
     axis.set_major_locator(MaxNLocator(integer=True))
@@ -96,7 +106,7 @@ def section_axes(ax: Axes) -> None:
     ax.set_aspect("equal")
     slender = np.ptp(ax.get_xlim()) / np.ptp(ax.get_ylim())
     if slender < 0.5:  # the labels below a narrow drawing must not run into each other
-        ax.xaxis.set_major_locator(MaxNLocator(nbins=2 if slender < 0.3 else 3))
+        ax.xaxis.set_major_locator(MaxNLocator(1 if slender < 0.15 else 2 if slender < 0.3 else 3, min_n_ticks=1))
     ax.grid(False)
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")

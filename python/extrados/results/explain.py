@@ -1,8 +1,6 @@
-"""What the result models say of themselves: JSON Schema of summary.json, `explain results.KIND`, the manual."""
+"""What the result models say of themselves: their facts, and the JSON Schema of summary.json."""
 
-import difflib
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, get_args
 
 from pydantic import TypeAdapter
@@ -11,22 +9,9 @@ from pydantic.fields import FieldInfo
 from extrados import kinds
 from extrados.results.assumptions import Assumption
 from extrados.results.fields import ResultModel
+from extrados.results.manual import Fact, ResultFacts, ShapeFacts
 from extrados.results.typed import shapes
 from extrados.results.verdict import Verdict
-
-#: How `explain` knows the results from the deck
-SECTION = "results"
-
-
-@dataclass(frozen=True)
-class Fact:
-    """One key of the results: dotted, [] for the rows of a list, NAME for those of a table of names."""
-
-    key: str
-    about: str
-    unit: str
-    source: str
-    always: bool
 
 
 def facts(model: type[ResultModel], before: str = "") -> Iterator[Fact]:
@@ -59,76 +44,16 @@ def summary(model: type[ResultModel]) -> str:
     return " ".join((model.__doc__ or "").split())
 
 
-#: What every analysis gives beside its results
-BESIDE: dict[str, type[ResultModel]] = {"verdict": Verdict, "assumptions": Assumption}
+def everything() -> ResultFacts:
+    """All that the models say of themselves."""
 
+    def told(model: type[ResultModel]) -> ShapeFacts:
+        return ShapeFacts(summary(model), list(facts(model)))
 
-def explain(word: str) -> str:
-    """What "results", "results.KIND" or "results.KIND.KEY" mean, or "results.verdict"; KeyError with the nearest known word where there is none."""
-    path = word.split(".", 2)[1:]
-    if not path:
-        rows = [
-            f"{kind:16} {summary(model).removeprefix(f'{kind}: ')}" for kind in kinds.ANALYSES for model in shapes(kind)
-        ]
-        return "Results of an analysis, in summary.json and as run[NAME]:\n  " + "\n  ".join(rows)
-    kind, *rest = path
-    if path[-1] in BESIDE:
-        model = BESIDE[path[-1]]
-        return f"{path[-1]}: {summary(model)}\n" + "\n".join(f"  {_line(f)}" for f in facts(model))
-    if kind not in kinds.ANALYSES:
-        raise KeyError(f"no results of a kind '{kind}'" + _near(kind, list(kinds.ANALYSES)))
-    if not rest:
-        parts = [f"{summary(model)}\n" + "\n".join(f"  {_line(f)}" for f in facts(model)) for model in shapes(kind)]
-        return "\n".join(parts)
-    known = {f.key: f for model in shapes(kind) for f in facts(model)}
-    within = (f"{rest[0]}.", f"{rest[0]}[].")
-    found = [f for key, f in known.items() if key == rest[0] or key.startswith(within)]
-    found = found or [f for key, f in known.items() if key.rsplit(".", 1)[-1] == rest[0]]
-    if not found:
-        raise KeyError(f"the results of {kind} have no key '{rest[0]}'" + _near(rest[0], list(known)))
-    return "\n".join(f"{SECTION}.{kind}.{_line(f)}" for f in found)
-
-
-def _near(word: str, known: list[str]) -> str:
-    close = difflib.get_close_matches(word, known, n=3, cutoff=0.4)
-    return f"; near are {', '.join(close)}" if close else ""
-
-
-def _line(f: Fact) -> str:
-    unit, source = f" [{f.unit}]" if f.unit else "", f" ({f.source})" if f.source else ""
-    return f"{f.key}{unit}: {f.about}{source}" + ("" if f.always else "; where it applies")
-
-
-def manual() -> str:
-    """The reference manual of all results, in Markdown."""
-    lines = [
-        "# Results reference",
-        "",
-        "Generated from the result models (`extrados explain --results`); do not edit. Keys are those of `summary.json`;",
-        "`[]` stands for the rows of a list, `.NAME` for the entries of a table of names. From Python they read as",
-        '`run["tilt"].collapse_acceleration_g` or `run["tilt"]["collapse_acceleration_g"]`.',
-        "",
-        "## Every analysis",
-        "",
-        "Beside its results each analysis gives these.",
-        "",
-    ]
-    of_each: dict[str, type[ResultModel]] = {"verdict": Verdict, "assumptions.KEY": Assumption}
-    for head, model in of_each.items():
-        lines += [f"### {head}", "", summary(model), "", *_table(model)]
-    for kind in kinds.ANALYSES:
-        lines += [f"## {kind}", ""]
-        for shape in shapes(kind):
-            lines += [summary(shape), "", *_table(shape)]
-    return "\n".join(lines).rstrip() + "\n"
-
-
-def _table(model: type[ResultModel]) -> list[str]:
-    rows = ["| key | meaning | unit | given |", "|---|---|---|---|"]
-    for f in facts(model):
-        about = (f.about + (f" ({f.source})" if f.source else "")).replace("|", "\\|")
-        rows.append(f"| `{f.key}` | {about} | {f.unit} | {'always' if f.always else 'where it applies'} |")
-    return [*rows, ""]
+    return ResultFacts(
+        {"verdict": told(Verdict), "assumptions": told(Assumption)},
+        {kind: [told(model) for model in shapes(kind)] for kind in kinds.ANALYSES},
+    )
 
 
 def json_schema() -> dict[str, Any]:

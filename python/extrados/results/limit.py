@@ -51,7 +51,7 @@ class TieForce(ResultModel):
 
 
 class ChainThrust(ResultModel):
-    """Horizontal thrust of an arch of the structure, upright."""
+    """Horizontal thrust of an arch of the structure, upright, at its left springing; at its crown where ties hold it."""
 
     min_N: float = fact("least", "N")
     max_N: float = fact("greatest", "N")
@@ -120,8 +120,12 @@ class Tilt(KindResults):
     reactions: list[Reaction] = fact("forces of the ground at collapse")
     ties: list[TieForce] = maybe("forces of the ties at collapse")
     ties_opposite: list[TieForce] = maybe("forces of the ties at collapse to -x")
-    thrust_min_N: float = maybe("least horizontal thrust upright, of the first arch", "N")
-    thrust_max_N: float = maybe("greatest horizontal thrust upright, of the first arch", "N")
+    thrust_min_N: float = maybe(
+        "least horizontal thrust upright, of the first arch; where ties hold it that at its crown", "N"
+    )
+    thrust_max_N: float = maybe(
+        "greatest horizontal thrust upright, of the first arch; where ties hold it that at its crown", "N"
+    )
     thrusts: dict[str, ChainThrust] = maybe("least and greatest thrust upright of each arch, by its name")
     clear_span_m: float = maybe("clear span", "m")
     rise_m: float = maybe("rise of the intrados", "m")
@@ -147,12 +151,21 @@ class ThrustLine(ResultModel):
 
     horizontal_N: float = maybe("horizontal thrust of the chain at its left springing, or its base", "N")
     horizontal_kN_per_m: float = maybe("horizontal thrust per metre of depth", "kN/m")
+    crown_N: float = maybe(
+        "horizontal thrust at the crown of an arch whose stones ties hold: what the left springing and the ties take "
+        "together; the lines of least and greatest thrust are those of the crown then",
+        "N",
+    )
     over_weight: float = maybe("horizontal thrust over the weight of the structure")
     required_friction: float | None = fact("greatest coefficient of friction it needs")
     required_friction_joint: str = fact("the joint that needs it")
     greatest_eccentricity_ratio: float = fact("greatest distance from the middle of a joint over its length")
     reactions: list[Reaction] = fact("forces of the ground")
     ties: list[TieForce] = maybe("forces of the ties")
+
+    def told_kN_per_m(self, depth_m: float) -> float:
+        """The horizontal thrust that answers and figures tell: that at the crown where ties hold the arch below."""
+        return self.horizontal_kN_per_m if self.crown_N is None else self.crown_N / depth_m / 1e3
 
 
 class Thrust(KindResults):

@@ -6,15 +6,20 @@ import os
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.building.errors import BadGeometry, NoView
-from extrados.building.geometry.inspection import Inspection
-from extrados.building.geometry.solids.assembly import SolidAssembly
-from extrados.building.mesh.shells import ShellMesh
+from extrados.analyses.context import Context
+from extrados.analyses.needs import complaints, stones_of
+from extrados.building.errors import BadGeometry
+from extrados.building.geometry.assembly import Assembly
 from extrados.decks.reader import Deck
-from extrados.results import written
+
+if TYPE_CHECKING:
+    from extrados.building.geometry.inspection import Inspection
+    from extrados.building.geometry.solids.assembly import SolidAssembly
+    from extrados.building.mesh.shells import ShellMesh
 
 
 @dataclass(frozen=True)
@@ -39,45 +44,47 @@ class Checked:
     remarks: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
-    inspection: Inspection | None = None
-    solids: SolidAssembly | None = None
-    plan: ShellMesh | None = None
+    inspection: "Inspection | None" = None
+    solids: "SolidAssembly | None" = None
+    plan: "ShellMesh | None" = None
 
 
 def check_building(deck: Deck) -> Checked:
-    """Make the building as the analyses will, without computing anything."""
-    inspection, complaints, solids, plan = None, [], None, None
+    """Make the building as the analyses will, and whatever else they need, without computing anything."""
+    inspection, found = None, []
+    context = Context(deck)
     try:
         if deck.structure is not None:
             inspection = deck.structure.inspection(deck.folder)
-            complaints = [] if inspection is None else inspection.complaints()
-        if not complaints:
-            for analysis, building in zip(deck.analyses, deck.buildings, strict=True):
-                if analysis.view == "shell":
-                    plan = building.shell(getattr(analysis, "mesh", None))
-                if analysis.view != "blocks":
-                    continue
-                try:
-                    building.blocks()
-                    building.friction()
-                except NoView:
-                    if not analysis.solid:
-                        raise
-                    solids = building.solids()
-                    building.friction(solids)
-                if getattr(analysis, "direction", None) is not None:
-                    solids = building.solids()
+            if inspection is not None:
+                found = [deck.complaint(None, ("structure",), text) for text in inspection.complaints()]
     except BadGeometry as error:
-        complaints = [str(error)]
-    complaints = [f"{deck.path or 'deck'}: structure: {text}" for text in dict.fromkeys(complaints)]
-    if solids is not None and not complaints:
+        found = [deck.complaint(None, error.at, str(error))]
+    if not found:
+        for options, building in zip(deck.analyses, deck.buildings, strict=True):
+            found += complaints(context, options, building)
+    found = list(dict.fromkeys(found))
+    solids, plan = (None, None) if found else _in_space(deck)
+    if solids is not None:
         return Checked(remarks=list(solids.remarks), notes=list(solids.notes), solids=solids)
     if inspection is None:
-        return Checked(complaints, plan.warnings if plan else [], plan=plan)
-    return Checked(complaints, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
+        return Checked(found, plan.warnings if plan else [], plan=plan)
+    return Checked(found, inspection.remarks(), inspection.notes(), _places(inspection), inspection)
 
 
-def _places(inspection: Inspection) -> list[Place]:
+def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":
+    """What of a sound deck's building stands in space, as one of its analyses looks at it."""
+    solids, plan = None, None
+    for options, building in zip(deck.analyses, deck.buildings, strict=True):
+        if options.view == "shell":
+            plan = building.shell(options.mesh)  # type: ignore[attr-defined]
+        elif options.view == "blocks":
+            stones = stones_of(building, options)
+            solids = solids if isinstance(stones, Assembly) else stones
+    return solids, plan
+
+
+def _places(inspection: "Inspection") -> list[Place]:
     rows = []
     for status in ("overlap", "open", "closed"):
         for flaw in inspection.of(status):
@@ -101,6 +108,7 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
     A file there that extrados did not write, or that was changed since, stays, and the new one is put beside it.
     """
     from extrados.plots.geometry import Mark, draw_survey  # matplotlib takes a third of a second to load
+    from extrados.results import written
 
     assert checked.inspection is not None
     folder = Path(os.path.abspath(folder))
@@ -123,9 +131,10 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
     return folder / names["geometry.png"], folder / names["geometry.csv"]
 
 
-def write_plan(mesh: ShellMesh, folder: Path) -> Path:
+def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
     """Plan and elevations of a building with its mesh into a folder: plan.png (and .svg), under the rule of write_check."""
     from extrados.plots.plan import Elevation, draw_plan
+    from extrados.results import written
 
     folder = Path(os.path.abspath(folder))
     folder.mkdir(parents=True, exist_ok=True)
@@ -143,9 +152,10 @@ def write_plan(mesh: ShellMesh, folder: Path) -> Path:
     return folder / names["plan.png"]
 
 
-def write_solids(solids: SolidAssembly, folder: Path) -> Path:
+def write_solids(solids: "SolidAssembly", folder: Path) -> Path:
     """The picture of solids into a folder: geometry.png (and .svg). What extrados did not write there stays."""
     from extrados.plots.geometry import draw_stones
+    from extrados.results import written
 
     folder = Path(os.path.abspath(folder))
     folder.mkdir(parents=True, exist_ok=True)

@@ -185,7 +185,15 @@ class _Seen:
         own, given = _WatchedBuilding(**vars(self.building)), _WatchedBuilding(**vars(self.whole.building))
         _watch(own, lambda name: self.parts.add(f"own.{name}"))
         _watch(given, lambda name: self.parts.add(f"deck.{name}"))
-        parts = {**vars(self.whole), "building": given, "analyses": [options], "buildings": [own], "data": data}
+        tables = [t for a, t in zip(self.whole.analyses, self.whole.tables, strict=False) if a is options]
+        parts = {
+            **vars(self.whole),
+            "building": given,
+            "analyses": [options],
+            "buildings": [own],
+            "data": data,
+            "tables": tables,
+        }
         deck = _WatchedDeck(**parts)
         _watch(deck, self.parts.add)
         return deck

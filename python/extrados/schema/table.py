@@ -47,6 +47,12 @@ def key(default: Any = ..., about: str = "", *, source: str = "", **limits: Any)
     return Field(default, description=about, json_schema_extra=extra, **limits)
 
 
+class _Built(Table):
+    """A table whose validator is built at once: one that many tables hold would be built anew for each of them."""
+
+    model_config = ConfigDict(defer_build=False)
+
+
 def override_of(model: type[Table]) -> type[Table]:
     """The table by which an analysis replaces values of a building's table for itself: every key optional.
 
@@ -57,4 +63,4 @@ def override_of(model: type[Table]) -> type[Table]:
         bounded: Any = Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation
         asked = Field(None, description=field.description, json_schema_extra=field.json_schema_extra)
         fields[name] = (bounded | None, asked)
-    return create_model(f"{model.__name__}Override", __base__=Table, __doc__=model.__doc__, **fields)
+    return create_model(f"{model.__name__}Override", __base__=_Built, __doc__=model.__doc__, **fields)

@@ -49,7 +49,7 @@ class Asker:
     def cannot_bear(self, kind: str) -> tuple[str, ...]:
         """What the deck has that an analysis of this kind does not reckon with, as decks call it."""
         bears = kinds.load(kinds.ANALYSES[kind].table).bears
-        return tuple(what for what, there in self.context.building.special.items() if there and what not in bears)
+        return tuple(what for what in self.context.building.special_keys if what not in bears)
 
     def data(
         self, kind: str, keys: dict[str, Any], motion: dict[str, Any], changes: dict[str, Any], without: tuple[str, ...]

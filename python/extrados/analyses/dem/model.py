@@ -131,8 +131,7 @@ def make_model(context: Context, options: DemTable) -> Model:
     assembly = building.blocks()
     groups: tuple[tuple[int, ...], ...] = ()
     if options.merge == "three-bars":
-        if not isinstance(assembly, ArchAssembly):
-            raise Refused('merge = "three-bars" needs an arch')
+        assert isinstance(assembly, ArchAssembly)
         joint = ArchModel(assembly).four_hinge.joint
         groups = tuple(tuple(range(a, b)) for a, b in itertools.pairwise(joint))
     return Model(assembly, building.rigid(groups, options.floor), joint_values(building))

@@ -47,15 +47,11 @@ def core_options(context: Context, options: Dem, model: Model) -> dem.Options:
 
 def _moves(context: Context, model: Model) -> tuple[dem.SupportMove, ...]:
     """Movements of supports, by the names of joints on them."""
-    names = model.assembly.joint_names
     found = []
-    for one in context.building.initial.movements:
-        if one.joint not in names:
-            raise Refused(f"initial.movements names no joint '{one.joint}'; there are {', '.join(names[:8])}")
-        j = names.index(one.joint)
+    for k, (j, one) in enumerate(zip(context.building.moved(), context.building.initial.movements, strict=True)):
         pair = model.rigid.joints[j]
         if pair is None or max(pair) < model.rigid.count:
-            raise Refused(f"initial.movements: joint '{one.joint}' is not on the ground")
+            raise Refused(f"joint '{one.joint}' is not on the ground", ("initial", "movements", k, "joint"))
         found.append(dem.SupportMove(max(pair), one.dx, one.dy, float(np.radians(one.turn)), one.start, one.duration))
     return tuple(found)
 
@@ -64,7 +60,7 @@ def start(context: Context, model: Model) -> np.ndarray | None:
     """Initial displacements (bodies, 3) [m, m, rad] of a structure that starts rotated; None: from rest.
 
     A block turns about a toe, any other structure takes the pose of its collapse mechanism to that side. Refused
-    where it has none, or where the bodies are not the blocks of the structure (glued voussoirs).
+    where it has none.
     """
     ratio = context.building.initial.rotation_ratio
     block = model.assembly
@@ -73,8 +69,6 @@ def start(context: Context, model: Model) -> np.ndarray | None:
     side = 0 if ratio > 0.0 else 1
     if isinstance(block, BlockAssembly):
         return about_a_toe(block, side, ratio, len(model.rigid.mass))
-    if model.rigid.count != len(block.mass):
-        raise Refused('[initial] rotation_ratio: glued voussoirs do not start rotated; merge = "none" does')
     try:
         mechanism = MechanismModel(block)
         pose = mechanism.pose([ratio * mechanism.critical[side]])[0]

@@ -1,6 +1,5 @@
 """What the drivers of limit analysis share: loads, refusals, arrays of geometry, lines and polygons."""
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -8,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Refused
+from extrados.analyses.limit.applied import pieces
+from extrados.analyses.limit.needs import refuse_fracture
 from extrados.analyses.limit.tables import AppliedLoad, LimitAnalysisTable
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.geometry.anchors import stones_at
-from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
 from extrados.limit.answer import Answer, CannotStand, assess
@@ -22,76 +22,17 @@ from extrados.limit.fracture import Fracture, NoCrack, fractured_collapse
 from extrados.limit.lines import ThrustPath
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.places import place_of
-from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State
+from extrados.limit.programme import Immovable, LimitAnalysis, NoAnswer, NoEquilibrium, State, closed
 from extrados.limit.resistance import Resistance, together
 from extrados.limit.ties import pulls, tensions
 from extrados.results.limit import Hinge, Reaction, TieForce
 from extrados.results.model import Array
 
-#: Bounds and mechanism must agree this closely, relative to gamma, or the answer is not given.
-GAP = 1e-8
-#: The same for walls of so many joints, whose forces round at that
-VERY_MANY, GAP_OF_MANY = 5000, 1e-7
 #: Length over which a point load on earth presses [m]
 CONTACT = 0.3
 #: Of its yield force, or of the weight: less in a tie is none
 SLACK = 1e-6
 MOST_TIES = 6  # told in words
-
-
-def chain_of(assembly: Assembly, name: str | None) -> str | None:
-    """The chain of a name, the first where none is given, None where the assembly has no chain."""
-    if name is not None and name not in assembly.chains:
-        known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no stones form one here"
-        raise Refused(f"chain: there is no '{name}'; {known}")
-    return name or next(iter(assembly.chains), None)
-
-
-def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
-    """The block with the highest surface at x, and that height [m]."""
-    best, height = -1, -np.inf
-    for i, outline in enumerate(assembly.outlines):
-        x0, y0 = outline.T
-        x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
-        met = (np.minimum(x0, x1) <= x) & (x <= np.maximum(x0, x1)) & (x0 != x1)
-        if met.any():
-            top = float((y0[met] + (x - x0[met]) / (x1[met] - x0[met]) * (y1[met] - y0[met])).max())
-            if top > height:
-                best, height = i, top
-    if best < 0:
-        low = min(float(o[:, 0].min()) for o in assembly.outlines)
-        high = max(float(o[:, 0].max()) for o in assembly.outlines)
-        raise Refused(
-            f"a load at x = {x:.4g} m stands beside the structure, which reaches from {low:.4g} to {high:.4g} m"
-        )
-    return best, height
-
-
-def _block_at(assembly: Assembly, x: float, y: float) -> int:
-    """The block that holds a point, or has it on its face."""
-    if found := stones_at(assembly, np.array([x, y])):
-        return found[0]
-    raise Refused(f"a load at x = {x:.4g}, y = {y:.4g} m acts on no block")
-
-
-def _pieces(assembly: Assembly, load: AppliedLoad) -> list[tuple[int, np.ndarray, float]]:
-    """Blocks, points and shares of a load: one, or of a spread load a piece for each block it rests on.
-
-    A spread load is cut where the outlines below have their vertices; on each piece it acts at the middle.
-    """
-    if load.x_end is None:
-        block, y = block_under(assembly, load.x) if load.y is None else (_block_at(assembly, load.x, load.y), load.y)
-        return [(block, np.array([load.x, y]), 1.0)]
-    vertices = np.concatenate(assembly.outlines)[:, 0]
-    cuts = np.unique(np.concatenate([[load.x, load.x_end], vertices[(vertices > load.x) & (vertices < load.x_end)]]))
-    cuts = cuts[np.append(True, np.diff(cuts) > 1e-9 * assembly.size)]
-    cuts[-1] = load.x_end
-    found = []
-    for left, right in itertools.pairwise(cuts.tolist()):
-        x = 0.5 * (left + right)
-        block, y = block_under(assembly, x) if load.y is None else (_block_at(assembly, x, load.y), load.y)
-        found.append((block, np.array([x, y]), (right - left) / (load.x_end - load.x)))
-    return found
 
 
 def ties_of(building: Building, scale: float) -> Resistance | None:
@@ -104,16 +45,18 @@ def loads_of(assembly: Assembly, options: Any, building: Building) -> Loads:
     """Weight, fill, the loads of an analysis and the ties of a building, on its stones, which `assembly` may vary; what
     sways is the weight, the fill and the loads that say so."""
     loads = tilt_loads(assembly)
-    loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)))
+    if building.ties:
+        held = frozenset(building.anchored().block.ravel().tolist()) - {GROUND}
+        loads = replace(loads, resistance=together(loads.resistance, ties_of(building, loads.scale)), tied=held)
     dead, live = np.zeros_like(loads.dead), np.zeros_like(loads.live)
-    for load in getattr(options, "load", []):
+    for k, load in enumerate(getattr(options, "load", [])):
         spreads = assembly.earth is not None and load.y is None and load.force != 0.0
         if spreads:
             middle, length = (
                 (load.x, CONTACT) if load.x_end is None else (0.5 * (load.x + load.x_end), load.x_end - load.x)
             )
             dead += under_load(assembly.earth, len(dead), middle, load.force, length)
-        for block, point, share in _pieces(assembly, load):
+        for block, point, share in pieces(assembly, load, k):
             down = 0.0 if spreads else -share * load.force
             dead += forces_at(len(dead), block, point, (share * load.horizontal, down))
             if load.sways:
@@ -149,24 +92,16 @@ def answer_of(building: Building, options: LimitAnalysisTable, limit: LimitAnaly
         raise Refused(f"the structure cannot stand under its own weight: {error}") from None
     except NoEquilibrium as error:
         raise Refused(str(error)) from None
-    allowed = GAP if len(assembly.a) < VERY_MANY else GAP_OF_MANY
-    if limit.associated and answer.gap > allowed * max(1.0, abs(answer.gamma)):
+    if limit.associated and answer.gap > closed(len(assembly.a), answer.gamma):
         raise NoAnswer(f"the bounds from equilibrium and from the mechanism differ by {answer.gap:.2e} g")
     return answer
 
 
 def fracture_of(building: Building, options: LimitAnalysisTable) -> Fracture | None:
     """Collapse to +x with the leeward buttress cracked; None where it does not crack."""
+    refuse_fracture(building, options)
     assembly = building.blocks()
-    if not assembly.buttresses:
-        raise Refused("fracture needs a buttress that stands on the ground: a vault or an aisled vault")
-    if building.material.compressive_strength is not None or options.friction_rule != "associated":
-        raise Refused("fracture is computed without crushing and with associated friction")
     leeward = assembly.buttresses[-1]
-    if building.ties and (building.anchored().block == leeward).any():
-        raise Refused(
-            f"fracture: a tie is anchored in {assembly.block_names[leeward]}; whether its wedge holds the anchor is not known"
-        )
     try:
         return fractured_collapse(
             assembly, leeward, 1, building.friction(), lambda cracked: loads_of(cracked, options, building)
@@ -234,7 +169,7 @@ def load_arrays(assembly: Assembly, loads: Sequence[AppliedLoad]) -> dict[str, A
     """The loads of an analysis at rest as figures show them, spread ones in pieces; nothing without them."""
     point, force, whole = [], [], []
     for k, load in enumerate(loads):
-        for _, at, share in _pieces(assembly, load):
+        for _, at, share in pieces(assembly, load, k):
             point.append(at)
             force.append((share * load.horizontal, -share * load.force))
             whole.append(k)

@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.asked import deviation_of
 from extrados.analyses.limit.common import answer_of, geometry_arrays, loads_of
 from extrados.analyses.limit.tables import Imperfections
 from extrados.building.building import Building
@@ -54,19 +55,7 @@ class Surveys:
 def run(context: Context, options: Imperfections) -> Result:
     """Capacities of all surveys, their median and the band that holds nine tenths."""
     building = context.building
-    assembly, deviation = building.blocks(), options.deviation
-    if deviation is None:
-        deviation = getattr(building.structure, "contact_tolerance", None)
-    if deviation is None:
-        raise Refused(
-            "imperfections: give the deviation of a survey; only `blocks` have a contact_tolerance that tells it"
-        )
-    shortest = float(assembly.length.min())
-    if 4.0 * deviation > shortest:
-        raise Refused(
-            f"imperfections: a deviation of {1e3 * deviation:.3g} mm is more than a quarter of the shortest joint, "
-            f"'{assembly.joint_names[int(assembly.length.argmin())]}' ({1e3 * shortest:.3g} mm)"
-        )
+    assembly, deviation = building.blocks(), deviation_of(building, options)
     nominal = answer_of(building, options)
     job = Surveys(assembly, building.friction(), building.material.compressive_strength, options, deviation, building)
     swept = sweep(context, "imperfections", job, options.count, "random surveys", slow=True).whole()

@@ -6,10 +6,9 @@ import numpy as np
 
 from extrados.analyses.batches import stacked, sweep
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.applied import block_under, chain_of
 from extrados.analyses.limit.common import (
     answer_of,
-    block_under,
-    chain_of,
     geometry_arrays,
     limit_of,
     line_arrays,
@@ -22,7 +21,7 @@ from extrados.analyses.limit.common import (
     zone_arrays,
 )
 from extrados.analyses.limit.tables import MovingLoad, PartialFactors
-from extrados.analyses.limit.trains import Train, train_of
+from extrados.analyses.limit.trains import Train, fitting_train
 from extrados.analyses.limit.variation import signature, spoken
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
@@ -217,11 +216,7 @@ def run(context: Context, options: MovingLoad) -> Result:
     if not limit_of(building, options).stands():
         answer_of(building, options)  # refuses, and says why it cannot stand
     low, high = _way(assembly, chain)
-    train = train_of(options, assembly.depth)
-    if options.width is not None and options.width > assembly.depth:
-        raise Refused(
-            f"width: {options.width:g} m is more than the depth of the {structure.word}, {assembly.depth:g} m"
-        )
+    train = fitting_train(building, options)
     dead = factored(assembly, loads_of(assembly, options, building), factors)
     # The whole depth stands for the strip that carries the load: as much heavier is the load on all of it.
     strip = assembly.depth / (options.width or assembly.depth)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.asked import movements_of, refuse_still
 from extrados.analyses.limit.common import geometry_arrays, spoken_ties, state_arrays, tie_arrays, tie_rows, ties_of
 from extrados.analyses.limit.tables import Supports
 from extrados.building.errors import BadGeometry
@@ -37,9 +38,8 @@ def run(context: Context, options: Supports) -> Result:
     """Joints that open; of an arch without ties the states on the way to its fall, how the thrust and the hinges change."""
     assembly = context.building.blocks()
     if context.building.initial.movements:
-        return _any_structure(context, _asked(context))
-    if options.spread == 0.0 and options.settle == 0.0:
-        raise Refused("supports: with spread = 0 and settle = 0 nothing moves")
+        return _any_structure(context, movements_of(context.building))
+    refuse_still(context.building, options)
     try:
         arch = None if context.building.ties else in_order(assembly)
     except BadGeometry:
@@ -122,34 +122,15 @@ def _right_support(assembly: Assembly, options: Supports) -> np.ndarray:
     apart = ends[0, order[:-1]] - ends[1, order[1:]] > APART * assembly.size
     if not apart.any():
         raise Refused(
-            "supports: it stands on one support, which carries all of it along; say by [[initial.movements]] which joints "
-            "on the ground give way"
+            "it stands on one support, which carries all of it along; say by [[initial.movements]] which joints on the "
+            "ground give way",
+            ("analysis",),
         )
     right = grounded[order[: int(apart.argmax()) + 1]]
     width = float(np.ptp(np.concatenate(assembly.outlines)[:, 0]))
     along = np.array([options.spread, -options.settle])
     movement = np.zeros((len(assembly.a), 3))
     movement[right, :2] = along / np.hypot(*along) * (options.movement or SMALL * width)
-    return movement
-
-
-def _asked(context: Context) -> np.ndarray:
-    """The movements (joints, 3) of the deck: dx, dy [m] and turn [rad]."""
-    building = context.building
-    assembly = building.blocks()
-    movement = np.zeros((len(assembly.a), 3))
-    for one in building.initial.movements:
-        if one.joint not in assembly.joint_names:
-            names = [n for j, n in enumerate(assembly.joint_names) if GROUND in (assembly.a[j], assembly.b[j])]
-            raise Refused(
-                f"initial.movements names no joint '{one.joint}'; on the ground there are {', '.join(names[:8])}"
-            )
-        j = assembly.joint_names.index(one.joint)
-        if GROUND not in (assembly.a[j], assembly.b[j]):
-            raise Refused(f"initial.movements: joint '{one.joint}' is not on the ground")
-        movement[j] += one.dx, one.dy, np.radians(one.turn)
-    if not movement.any():
-        raise Refused("initial.movements: nothing moves")
     return movement
 
 

@@ -1,7 +1,5 @@
 """survey: many sections from a table, one line of results each."""
 
-import csv
-import io
 import time
 from dataclasses import dataclass
 from typing import Any
@@ -9,43 +7,15 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import stacked, sweep
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.changes import changed, read_table
+from extrados.analyses.context import Context
+from extrados.analyses.limit.asked import sections_of
 from extrados.analyses.limit.tables import Survey
-from extrados.analyses.limit.variation import Outcome, changed, evaluate, outcomes_of, spoken
-from extrados.analyses.limit.variation import read_table as read_section
+from extrados.analyses.limit.variation import Outcome, evaluate, outcomes_of, spoken
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.files import read
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
-from extrados.schema.files import BadFile, File
-
-LARGEST_FILE = 50_000_000  # bytes
-MOST_ROWS = 200_000
-
-
-def read_table(file: File) -> tuple[list[str], list[list[str]]]:
-    """Header and rows of a CSV file; Refused with file and line where it is wrong."""
-    path = file.path
-    try:
-        reader = csv.reader(io.StringIO(file.text(), newline=""))
-        header = [name.strip() for name in next(reader, [])]
-        rows = []
-        for row in reader:
-            if not any(cell.strip() for cell in row):
-                continue
-            if len(row) != len(header):
-                raise Refused(f"{path.name}:{reader.line_num}: {len(row)} cells, the header has {len(header)}")
-            rows.append([cell.strip() for cell in row])
-            if len(rows) > MOST_ROWS:
-                raise Refused(f"{path.name}: more than {MOST_ROWS} sections")
-    except (BadFile, csv.Error) as error:
-        raise Refused(f"{path.name}: is not a CSV table in UTF-8: {error}") from None
-    if not header or not rows:
-        raise Refused(f"{path.name}: expected a header of [structure] keys and at least one row")
-    if len(set(header)) < len(header):
-        raise Refused(f"{path.name}:1: a column name stands twice")
-    return header, rows
 
 
 def _value(cell: str) -> Any:
@@ -83,7 +53,7 @@ class Sections:
             if name != "name" and cell:
                 data = changed(data, name, _value(cell))
         try:
-            building = self.building.apart().having(structure=read_section(type(self.building.structure), data))
+            building = self.building.apart().having(structure=read_table(type(self.building.structure), data))
         except BadGeometry as error:
             return Outcome(reason=str(error))
         return evaluate(building, self.options, fracture=self.options.fracture)
@@ -91,14 +61,7 @@ class Sections:
 
 def run(context: Context, options: Survey) -> Result:
     """The deck's structure with the keys of each row in their place; empty cells leave the deck's value."""
-    model = type(context.deck.structure)
-    header, rows = read_table(read(options.file, LARGEST_FILE, context.deck.folder))
-    for name in header:
-        if name != "name" and name.split(".")[0] not in model.model_fields:
-            raise Refused(
-                f"{options.file}:1: [structure] of kind '{context.deck.structure.kind}' has no key '{name}'; "
-                f"it has {', '.join(k for k in model.model_fields if k != 'kind')}, and 'name'"
-            )
+    header, rows = sections_of(context, options)
     begin = time.perf_counter()
     names = [cell or f"section {i + 1}" for i, cell in enumerate(_column(header, rows, "name"))]
     job = Sections(context.building, context.deck.data["structure"], header, rows, options)

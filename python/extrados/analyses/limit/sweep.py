@@ -8,28 +8,24 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import stacked, stop_if_asked, sweep
+from extrados.analyses.changes import changed, read_table
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.asked import values_of
 from extrados.analyses.limit.common import packed
 from extrados.analyses.limit.tables import Sweep
 from extrados.analyses.limit.variation import (
     LOCKED,
     Outcome,
     Signature,
-    changed,
     evaluate,
     outcomes_of,
-    read_table,
     spoken,
 )
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.structure import Structure
 from extrados.limit.motion import finite_motion
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
-from extrados.schema.constants import GRAVITY
-from extrados.schema.quantities import parse, unit_of
-from extrados.schema.table import Table
 
 # Of the range: how closely changes of mechanism and the optimum are found.
 CLOSE = 1e-7
@@ -79,73 +75,9 @@ class Values:
         return stacked(lambda k: self.ask.at(self.values[k], beside=True, explain=True).row(), first, count)
 
 
-def _placed(vary: str) -> tuple[str, str]:
-    """Table and key that `vary` names; a key alone is one of [structure]."""
-    table, _, path = vary.partition(".")
-    return (table, path) if table in ("structure", "material", "joints", "ties") and path else ("structure", vary)
-
-
-def _is_whole(model: Table | tuple[Table, ...], table: str, path: str) -> bool:
-    """True where the key takes whole numbers; Refused where there is no such key, or it holds no number."""
-    place: Any = type(model)
-    held: Any = list(model) if isinstance(model, tuple) else model
-    for part in path.split("."):
-        if isinstance(held, list):
-            if not part.isdigit() or int(part) >= len(held):
-                raise Refused(f"vary: '{path}': expected a number from 0 to {len(held) - 1} in place of '{part}'")
-            held = held[int(part)]
-            place = type(held)
-            continue
-        known = getattr(place, "model_fields", {})
-        if part not in known:
-            kind = f" of kind '{model.kind}'" if isinstance(model, Structure) else ""
-            raise Refused(f"vary: [{table}]{kind} has no key '{path}'; it has {', '.join(known)}")
-        annotation = known[part].annotation
-        inner = [a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")]
-        place, held = inner[0] if inner else annotation, getattr(held, part, None)
-    text = str(known[part].annotation)
-    if not ("float" in text or "int" in text) or part == "kind":
-        raise Refused(f"vary: '{path}' holds no number")
-    return "int" in text and "float" not in text
-
-
-def _unit(table: type[Table], path: str) -> str:
-    """Unit of a key, dotted for one of a table within the table, or of one in a list of tables."""
-    place: Any = table
-    *way, last = path.split(".")
-    for part in way:
-        if part.isdigit():
-            continue
-        annotation = place.model_fields[part].annotation
-        place = next((a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")), annotation)
-    return unit_of(place, last)
-
-
-def _number(value: float | str | None, unit: str) -> float:
-    """A value of a sweep in the unit of its key; Refused where its text is no quantity of it."""
-    if not isinstance(value, str):
-        return float(value or 0.0)
-    if not unit:
-        raise Refused(f"'{value}': the key that varies has no unit, give a number")
-    try:
-        return parse(value, "m/s^2" if unit == "g" else unit) / (GRAVITY if unit == "g" else 1.0)
-    except ValueError as error:
-        raise Refused(str(error)) from None
-
-
 def run(context: Context, options: Sweep) -> Result:
     """All values in order, then the places between them where something changes."""
-    table, path = _placed(options.vary)
-    model = getattr(context.building, table)
-    if model == ():
-        raise Refused("vary: the deck has no [[ties]]")
-    whole = _is_whole(model, table, path)
-    unit = _unit(type(model[0] if isinstance(model, tuple) else model), path)
-    if options.values:
-        values = np.array([_number(value, unit) for value in options.values])
-    else:
-        values = np.linspace(_number(options.start, unit), _number(options.stop, unit), options.count)
-    values = np.unique(np.round(values)) if whole else np.sort(values)
+    table, path, unit, whole, values = values_of(context.building, options)
     data = context.deck.data.get(table, {})
     if isinstance(data, dict):
         data = {**data, **(options.model_dump(exclude_none=True).get(table) or {})}
@@ -369,7 +301,7 @@ def _words(options: Sweep, r: out.Sweep) -> str:
     if r.locked_limits:
         where = "greatest where it is nearly locked, at"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}: {where} {best} with "
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{f' {r.unit}' if r.unit else ''}: {where} {best} with "
         f"{r.optimum_collapse_acceleration_g:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
         f"{len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )

@@ -3,8 +3,8 @@
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.applied import chain_of
 from extrados.analyses.limit.common import (
-    chain_of,
     geometry_arrays,
     graphic_arrays,
     limit_of,
@@ -19,7 +19,7 @@ from extrados.analyses.limit.tables import Thrust
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import Answer, CannotStand, assess, safety_factor
-from extrados.limit.graphic import thrust_of
+from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium, State
 from extrados.results import limit as out
 from extrados.results.model import Result, TableData
@@ -96,14 +96,17 @@ def _with_central(
 
 
 def _horizontal(answer: Answer, state: State, chain: str | None) -> dict[str, float]:
-    """Horizontal thrust of a chain; nothing where there is none."""
+    """Horizontal thrust of a chain, of one that ties hold at its crown too; nothing where there is none."""
     if chain is None:
         return {}
-    thrust = thrust_of(answer.assembly, state, answer.assembly.chains[chain])
+    assembly, joints = answer.assembly, answer.assembly.chains[chain]
+    thrust, at = thrust_of(assembly, state, joints), thrust_joint(assembly, answer.loads, joints)
+    crown = {"crown_N": thrust_of(assembly, state, joints, at)} if at else {}
     return {
         "horizontal_N": thrust,
-        "horizontal_kN_per_m": thrust / answer.assembly.depth / 1e3,
+        "horizontal_kN_per_m": thrust / assembly.depth / 1e3,
         "over_weight": thrust / answer.loads.scale,
+        **crown,
     }
 
 
@@ -124,7 +127,8 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
             "a least and a greatest thrust."
         )
     else:
-        least, most = (line.horizontal_kN_per_m for line in (r.least, r.most))
+        tied = r.least.crown_N is not None
+        least, most = (line.told_kN_per_m(r.depth_m) for line in (r.least, r.most))
         if central is not None and is_stack(
             assembly, assembly.chains[r.chain]
         ):  # determinate: all lines are one at its base
@@ -135,11 +139,14 @@ def _words(r: out.Thrust, assembly: Assembly) -> str:
         else:
             text = (
                 f"At {r.gamma_g:g} g the thrust of the {r.chain} lies between {least:.4g} and {most:.4g} kN per metre of "
-                "depth at its left springing"
+                f"depth at its {'crown' if tied else 'left springing'}"
             )
-            text += (
-                "." if central is None else f"; the most central line ({central.horizontal_kN_per_m:.4g} kN/m) {needs}."
-            )
+            if central is not None:
+                text += f"; the most central line ({central.told_kN_per_m(r.depth_m):.4g} kN/m) {needs}"
+            text += "."
+            if tied:
+                shown = central or r.least
+                text += f" Of it {shown.horizontal_kN_per_m:.4g} kN/m reach its left springing, the ties take the rest."
     low, high = r.admissible_interval_g
     shown = central or r.least
     text += spoken_ties(None if shown is None else shown.ties)

@@ -24,7 +24,7 @@ from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.limit.answer import Answer
 from extrados.limit.fracture import Fracture
-from extrados.limit.graphic import thrust_of
+from extrados.limit.graphic import thrust_joint, thrust_of
 from extrados.limit.motion import finite_motion
 from extrados.limit.programme import LimitAnalysis, NoEquilibrium
 from extrados.results import limit as out
@@ -145,10 +145,11 @@ def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
     if not answer.least or answer.gamma <= 0.0:
         return {}
     joints = answer.assembly.chains[next(iter(answer.least))]
+    at = thrust_joint(answer.assembly, answer.loads, joints)
     rows = []
     for gamma in np.linspace(0.0, answer.gamma * (1.0 - 1e-6), FILM).tolist():
         pair = limit.thrust(joints, gamma)
-        rows.append([(s.points(answer.assembly)[joints], thrust_of(answer.assembly, s, joints)) for s in pair])
+        rows.append([(s.points(answer.assembly)[joints], thrust_of(answer.assembly, s, joints, at)) for s in pair])
     about = "of the first chain as the ground is tilted to collapse"
     return {
         "film_tilt": Array(np.linspace(0.0, degrees(answer.gamma), FILM), ("film",), "deg", "tilt of the ground in the animation"),
@@ -165,16 +166,12 @@ def _film(limit: LimitAnalysis, answer: Answer) -> dict[str, Array]:
 
 def _thrusts(answer: Answer) -> dict[str, object]:
     """Least and greatest horizontal thrust upright of each chain [N]; the first also by the common names."""
-
-    table = {
-        name: out.ChainThrust(
-            **{
-                f"{end}_N": thrust_of(answer.assembly, states[name], answer.assembly.chains[name])
-                for end, states in (("min", answer.least), ("max", answer.most))
-            }
-        )
-        for name in answer.least
-    }
+    table = {}
+    for name in answer.least:
+        joints = answer.assembly.chains[name]
+        at = thrust_joint(answer.assembly, answer.loads, joints)
+        least, most = (thrust_of(answer.assembly, states[name], joints, at) for states in (answer.least, answer.most))
+        table[name] = out.ChainThrust(min_N=least, max_N=most)
     if not table:
         return {}
     first = next(iter(table.values()))

@@ -6,6 +6,7 @@ import numpy as np
 
 from extrados.analyses.context import Refused
 from extrados.analyses.limit.tables import MovingLoad
+from extrados.building.building import Building
 
 KN = 1e3
 FOR_EVER = 1e6  # m: even loads without an end
@@ -75,9 +76,23 @@ def _lm1(width: float, lanes: int | None) -> tuple[float, float]:
     """Weight of an axle of the tandem systems [N] and even load [N/m] of LM1 over a carriageway [m] (Tables 4.1, 4.2)."""
     most = 1 if width < 5.4 else 2 if width < 6.0 else int(width / 3.0)
     if lanes is not None and lanes > most:
-        raise Refused(f"lanes: a carriageway of {width:g} m holds {most}, not {lanes} (EN 1991-2 Table 4.1)")
+        raise Refused(
+            f"lanes: a carriageway of {width:g} m holds {most}, not {lanes} (EN 1991-2 Table 4.1)",
+            ("analysis", "lanes"),
+        )
     count = most if lanes is None else lanes
     lane = min(width, 0.5 * width if 5.4 <= width < 6.0 else 3.0)
     axle = sum((300.0, 200.0, 100.0)[:count])
     even = 9.0 * lane + 2.5 * (width - lane if lanes is None else (count - 1) * lane)
     return axle * KN, even * KN
+
+
+def fitting_train(building: Building, options: MovingLoad) -> Train:
+    """The train of a deck on its structure; Refused where it is wider."""
+    depth, structure = building.blocks().depth, building.structure
+    if options.width is not None and options.width > depth and structure is not None:
+        raise Refused(
+            f"width: {options.width:g} m is more than the depth of the {structure.word}, {depth:g} m",
+            ("analysis", "width"),
+        )
+    return train_of(options, depth)

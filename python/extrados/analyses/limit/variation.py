@@ -1,12 +1,9 @@
 """One section among many: its structure from changed deck keys, its capacity, mechanism or the reason for none."""
 
-import copy
 import json
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from extrados.analyses.batches import Swept
 from extrados.analyses.context import Refused
@@ -18,7 +15,6 @@ from extrados.building.geometry.builder import BadGeometry
 from extrados.limit.answer import CannotStand, why_not
 from extrados.limit.programme import LimitAnalysis, Mechanism, NoEquilibrium
 from extrados.limit.solver import Immovable, NoAnswer
-from extrados.schema.table import Table
 
 Signature = tuple[tuple[str, str], ...]
 #: Stands for a structure that no load of the kind brings down
@@ -90,37 +86,6 @@ def spoken(found: Signature) -> str:
         return "none: it cannot be brought down"
     words = {"i": "intrados", "e": "extrados", "s": "slide"}
     return "; ".join(f"{name}: {'-'.join(words[m] for m in marks.split('-'))}" for name, marks in found)
-
-
-def changed(data: Any, path: str, value: Any) -> Any:
-    """A structure's table with one key, dotted for a table within it or one of a list, set to another value."""
-    data = copy.deepcopy(data)
-    place: Any = data
-    *way, last = path.split(".")
-    for part in way:
-        if isinstance(place, list) and part.isdigit() and int(part) < len(place):
-            place = place[int(part)]
-        elif isinstance(place, dict):
-            place = place.setdefault(part, {})
-        if not isinstance(place, dict | list):
-            raise Refused(f"'{path}' is no key of the deck")
-    if not isinstance(place, dict):
-        raise Refused(f"'{path}' is no key of the deck")
-    place[last] = value
-    return data
-
-
-def read_table(model: type[Table], data: dict[str, Any]) -> Any:
-    """The checked table; BadGeometry with the first complaint."""
-    try:
-        return model.model_validate(data)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(p) for p in first["loc"])
-        text = str(first.get("ctx", {}).get("error", first["msg"]))
-        if first["type"] == "extra_forbidden":
-            text = f"unknown key; known are {', '.join(model.model_fields)}"
-        raise BadGeometry(f"{where}: {text}" if where else text) from None
 
 
 def evaluate(

@@ -16,8 +16,6 @@ from extrados.schema.constants import GRAVITY
 
 def run(context: Context, options: ShakeTable) -> Result:
     """Capacity of the table; with a [motion], whether and how it can be played."""
-    if options.highest <= options.lowest:
-        raise Refused(f"highest {options.highest:g} Hz is not above lowest {options.lowest:g} Hz")
     velocity = options.max_velocity if options.max_velocity is not None else options.flow / options.piston_area
     table = Table(options.stroke, velocity, options.max_force)
     frequency = np.geomspace(options.lowest, options.highest, 400)

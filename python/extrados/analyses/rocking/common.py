@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.tables import RockingTable
+from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.rockers.rocker import Rocker
 from extrados.motions.supports import Shift, with_shifts
@@ -11,44 +12,56 @@ from extrados.motions.supports import Shift, with_shifts
 
 def rocker_of(context: Context, options: RockingTable) -> Rocker:
     """The building as one rocking mechanism; its warnings go to the context."""
-    if context.building.initial.movements:
-        raise Refused(
-            "supports that move while it rocks are followed by `rocking` and `dem`: leave out [[initial.movements]]"
-        )
+    refuse_movements(context)
     rocker = context.building.rocker(options.form == "linear")
     context.warnings += rocker.warnings
     return rocker
 
 
-def with_moving_supports(context: Context) -> Context:
-    """The context with a motion that holds the movements of [[initial.movements]], where there are any.
+def refuse_movements(context: Context) -> None:
+    """Refused where supports move."""
+    if context.building.initial.movements:
+        raise Refused(
+            "supports that move while it rocks are followed by `rocking` and `dem`: leave out [[initial.movements]]",
+            ("initial", "movements"),
+        )
 
-    All supports must move alike, and not turn: then the structure feels one more acceleration of its ground. Refused else.
+
+def shifts_of(building: Building) -> list[Shift]:
+    """The movements of [[initial.movements]] in their order in time: all supports move alike, and none turns.
+
+    Then the structure feels one more acceleration of its ground. Refused or BadGeometry else.
     """
-    movements = context.building.initial.movements
+    movements = building.initial.movements
     if not movements:
-        return context
-    assembly = context.building.blocks()
+        return []
+    assembly = building.blocks()
+    building.moved()
     names = assembly.joint_names
     grounded = {n for n, a, b in zip(names, assembly.a, assembly.b, strict=True) if GROUND in (a, b)}
-    for one in movements:
-        if one.joint not in grounded:
-            raise Refused(
-                f"initial.movements: '{one.joint}' is no joint on the ground; there are {', '.join(sorted(grounded)[:8])}"
-            )
+    for k, one in enumerate(movements):
         if one.turn:
             raise Refused(
-                f"initial.movements: the support at '{one.joint}' turns; what rocks meanwhile is followed by `dem`"
+                f"the support at '{one.joint}' turns; what rocks meanwhile is followed by `dem`",
+                ("initial", "movements", k, "turn"),
             )
     shifts = {Shift(one.dx, one.dy, one.start, one.duration) for one in movements}
     for shift in shifts:
         moved = {m.joint for m in movements if Shift(m.dx, m.dy, m.start, m.duration) == shift}
         if moved != grounded:
             raise Refused(
-                f"initial.movements: the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the others; "
-                "what rocks while its supports part is followed by `dem`"
+                f"the supports at {', '.join(sorted(grounded - moved)[:4])} do not move with the others; "
+                "what rocks while its supports part is followed by `dem`",
+                ("initial", "movements"),
             )
+    return sorted(shifts, key=lambda s: (s.start, s.duration, s.dx, s.dy))
+
+
+def with_moving_supports(context: Context) -> Context:
+    """The context with a motion that holds the movements of [[initial.movements]], where there are any."""
+    order = shifts_of(context.building)
+    if not order:
+        return context
     made = replace(context)
-    order = sorted(shifts, key=lambda s: (s.start, s.duration, s.dx, s.dy))
     vars(made)["motion"] = with_shifts(context.motion, order)
     return made

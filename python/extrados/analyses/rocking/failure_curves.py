@@ -8,12 +8,12 @@ import numpy as np
 
 from extrados.analyses.batches import computed
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.variation import changed, read_table
 from extrados.analyses.motion_source import source_of
 from extrados.analyses.rocking.doubts import OFTEN, too_fast
 from extrados.analyses.rocking.failure_domain import LowestAmplitudes, natural_durations
+from extrados.analyses.rocking.needs import structures_of
 from extrados.analyses.rocking.tables import FailureCurves
-from extrados.building.errors import BadGeometry, NoView
+from extrados.building.errors import BadGeometry
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
 from extrados.core.rocking import FAILED, OUTCOMES, ensemble
@@ -128,23 +128,15 @@ def _slender(variant: Variant) -> bool:
 
 def _variants(context: Context, options: FailureCurves) -> list[Variant]:
     """One for each change of the structure and number of cycles."""
-    building, data = context.building, context.deck.data["structure"]
-    linear = options.form == "linear"
+    building, linear = context.building, options.form == "linear"
     found = []
     names = list(dict.fromkeys(name for change in options.variants for name in change))
-    for number, change in enumerate(options.variants or [{}]):
-        table = data
-        for name, value in change.items():
-            if name == "kind":
-                raise Refused(
-                    f"variants[{number}]: a variant changes keys of a {building.structure.kind}, not its kind"
-                )
-            table = changed(table, name, value)
+    for number, structure in enumerate(structures_of(context, options)):
         try:
-            structure = read_table(type(building.structure), table)
             rocker = building.apart().having(structure=structure).rocker(linear)
-        except (BadGeometry, NoView, ValueError) as error:
-            raise Refused(f"variants[{number}]: {error}" if options.variants else str(error)) from None
+        except BadGeometry as error:
+            key = ("analysis", "variants", number) if options.variants else error.at
+            raise Refused(f"variant {number + 1}: {error}" if options.variants else str(error), key) from None
         parts = [_said(structure, name) for name in names]
         told = f"{', '.join(parts)}: " if parts else ""
         context.warnings += [told + warning for warning in rocker.warnings]

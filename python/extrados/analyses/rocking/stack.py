@@ -24,19 +24,6 @@ def run(context: Context, options: Rocking) -> Result:
     """History, impacts, modes, energies, and the friction needed at both joints."""
     building = context.building
     model = StackModel(building.blocks())
-    if building.restraints or building.supports.abutting_wall is not None:
-        raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out")
-    if building.supports.stiffness is not None:
-        raise Refused(
-            "[supports] stiffness: two stacked blocks rock on rigid ground here; leave it out, or ask `dem`, which follows a base "
-            "that gives way under any stones"
-        )
-    if options.form == "linear":
-        raise Refused('form = "linear" is known of blocks and columns only')
-    if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):
-        raise Refused(
-            "two stacked blocks take impacts without rebound at all edges: leave out restitution and energy_ratio"
-        )
     context.warnings += context.motion.notes
     alpha, unit = model.whole
     end_time = options.end_time or context.motion.end + SETTLE * max(unit, model.alone[1])

@@ -10,6 +10,7 @@ from extrados.results import sla as out
 from extrados.results.model import Array
 from extrados.schema import files
 
+KEY = ("analysis", "measured")  # of the deck
 LARGEST = 10_000_000  # bytes
 LENGTHS = {"m": 1.0, "mm": 1e-3}
 FORCES = {"N": 1.0, "kN": 1e3}
@@ -36,33 +37,33 @@ def read_measured(context: Context, file: str) -> Measured:
     try:
         text = files.read(file, LARGEST, context.deck.folder).text()
     except files.BadFile as error:
-        raise Refused(f"measured: {error}") from None
+        raise Refused(str(error), KEY) from None
     lines = [(k, line) for k, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if len(lines) < 3:
-        raise Refused(f"measured: {file}: expected a line of names and at least two of numbers")
+        raise Refused(f"{file}: expected a line of names and at least two of numbers", KEY)
     rows = list(csv.reader(line for _, line in lines))
     names, scales = zip(*(_column(file, title) for title in rows[0]), strict=True)
     wanted = ("displacement", "load") if "load" in names else ("displacement", "least", "greatest")
     if sorted(names) != sorted(wanted):
         raise Refused(
-            f"measured: {file}: has the columns {', '.join(names)}; expected displacement with load, or with least and "
-            "greatest"
+            f"{file}: has the columns {', '.join(names)}; expected displacement with load, or with least and greatest",
+            KEY,
         )
     values = np.empty((len(rows) - 1, len(names)))
     for k, row in enumerate(rows[1:]):
         try:
             values[k] = [float(cell) for cell in row]
         except ValueError:
-            raise Refused(f"measured: {file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {row}") from None
+            raise Refused(f"{file}:{lines[k + 1][0]}: expected {len(names)} numbers, found {row}", KEY) from None
     if not np.isfinite(values).all():
-        raise Refused(f"measured: {file}: holds a number that is not finite")
+        raise Refused(f"{file}: holds a number that is not finite", KEY)
     columns = dict(zip(names, (values * scales).T, strict=True))
     displacement = columns["displacement"]
     if not (np.diff(displacement) > 0.0).all():
-        raise Refused(f"measured: {file}: the displacements must rise from line to line")
+        raise Refused(f"{file}: the displacements must rise from line to line", KEY)
     least, greatest = columns.get("least", columns.get("load")), columns.get("greatest", columns.get("load"))
     if (least > greatest).any():
-        raise Refused(f"measured: {file}: a least load is above the greatest")
+        raise Refused(f"{file}: a least load is above the greatest", KEY)
     return Measured(displacement, least, greatest)
 
 
@@ -71,7 +72,7 @@ def _column(file: str, title: str) -> tuple[str, float]:
     name, _, unit = title.strip().rstrip(")").partition(" (")
     units = LENGTHS if name == "displacement" else FORCES
     if unit not in units:
-        raise Refused(f"measured: {file}: column '{title.strip()}': expected a unit, as '{name} ({next(iter(units))})'")
+        raise Refused(f"{file}: column '{title.strip()}': expected a unit, as '{name} ({next(iter(units))})'", KEY)
     return name, units[unit]
 
 

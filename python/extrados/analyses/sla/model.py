@@ -1,5 +1,6 @@
 """A wall and the options of its deck made into a model of the core: freedoms, groups, nodal loads."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -8,7 +9,7 @@ import numpy as np
 from extrados.analyses.context import Refused
 from extrados.analyses.sla.bars import bar_group, tie_group
 from extrados.analyses.sla.tables import CrackOptions, Load, Sla
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, Key
 from extrados.building.mesh.mesh import ElementGroup, Mesh, corner_count, element_areas
 from extrados.building.places import Placed
 from extrados.building.properties import Material
@@ -103,7 +104,16 @@ def build(mesh: Mesh, options: Sla, strength: np.ndarray | None = None) -> SlaMo
     try:
         return _build(mesh, options, strength)
     except BadGeometry as error:
-        raise Refused(str(error)) from None
+        raise refusal(error) from None
+
+
+def refusal(error: BadGeometry) -> Refused:
+    """What a wall is refused for, with the key that its words begin with: "stages[0].free[1]: no node ..."."""
+    named = re.match(r"((?:\w|\.|\[\d+\])+)(?: is|:) ", str(error))
+    key: Key = tuple(int(part) if part.isdigit() else part for part in re.findall(r"\w+", named[1] if named else ""))
+    if key[:2] == ("supports", "held"):
+        return Refused(str(error), key)
+    return Refused(str(error), ("structure", *key) if key[:1] == ("ties",) else ("analysis", *key))
 
 
 def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:

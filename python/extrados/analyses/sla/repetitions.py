@@ -48,11 +48,20 @@ class Repetitions:
         }
 
 
+def refuse_alike(building: Building, options: Sla) -> bool:
+    """Whether seeds change the mesh; Refused where they change neither mesh nor strength."""
+    random_mesh = options.mesh.pattern == "random" or bool(getattr(building.structure, "outline", None))
+    if not random_mesh and options.strength_variation == 0.0:
+        raise Refused(
+            'seeds ask for a random mesh (mesh.pattern = "random") or for strength_variation above 0',
+            ("analysis", "seeds"),
+        )
+    return random_mesh
+
+
 def repeat(context: Context, options: Sla, result: Result) -> dict[str, out.Scatter]:
     """The curve again with other seeds of mesh and strength: its key, the band into `result`."""
-    random_mesh = options.mesh.pattern == "random" or bool(getattr(context.deck.structure, "outline", None))
-    if not random_mesh and options.strength_variation == 0.0:
-        raise Refused('seeds ask for a random mesh (mesh.pattern = "random") or for strength_variation above 0')
+    random_mesh = refuse_alike(context.building, options)
     swept = sweep(
         context, "sla-seeds", Repetitions(context.building, options, random_mesh), len(options.seeds), "repetitions",
         slow=True, parallel=True,

@@ -15,9 +15,10 @@ from extrados.analyses.sla.tables import Sla
 from extrados.core import sla as core
 from extrados.results.checkpoint import fingerprint
 from extrados.results.sla import Makeup
-from extrados.results.store import StoreError, read
+from extrados.results.store import Stored, StoreError, read
 from extrados.schema.files import BadFile, locate
 
+RESUME = ("analysis", "resume_from")  # the key of the deck
 LEDGER = ("external", "dissipated", "crack")
 
 
@@ -90,12 +91,20 @@ def _refuse_other(there: Makeup | None, here: Makeup) -> None:
         )
 
 
+def read_earlier(context: Context, options: Sla) -> Stored:
+    """The run that the deck names; Refused where there is none."""
+    try:
+        return read(locate(str(options.resume_from), context.deck.folder))
+    except (StoreError, BadFile) as error:
+        raise Refused(f"resume_from: {error}", RESUME) from None
+
+
 def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarray | None, Earlier | None]:
     """The damage stored by an earlier run before the event asked for, and what had been counted at that event."""
     if options.resume_from is None:
         return None, None
+    stored = read_earlier(context, options)
     try:
-        stored = read(locate(options.resume_from, context.deck.folder))
         get = {name: array.data for name, array in stored.arrays["sla"].items()}
         there, here = get["point_xy"], model.point_xy
         if len(there) != len(here):
@@ -130,8 +139,8 @@ def start_of(context: Context, options: Sla, model: SlaModel) -> tuple[np.ndarra
         lost = "joints that slide" if model.slides else "cracks that turn"
         by_events = not model.slides and stored["sla"].get("cracking") != "rotating"
         return _damage_at(event, get, None if by_events else lost), earlier
-    except (StoreError, BadFile, KeyError) as error:
-        raise Refused(f"resume_from: {error}") from None
+    except KeyError as error:
+        raise Refused(f"resume_from: {error}", RESUME) from None
 
 
 def _damage_at(event: int, get: dict[str, np.ndarray], traceless: str | None) -> np.ndarray:

@@ -10,9 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from extrados.analyses.batches import Chain
-from extrados.analyses.context import Refused
 from extrados.analyses.sla.events import Curve, bring_on_constant_loads, run_reference_loads
-from extrados.analyses.sla.model import AXES, SlaModel, acceleration_of, control_of, nodal_forces, resultant
+from extrados.analyses.sla.model import AXES, SlaModel, acceleration_of, control_of, nodal_forces, refusal, resultant
 from extrados.analyses.sla.tables import Hold, Sla, Stage
 from extrados.building.errors import BadGeometry
 from extrados.core import sla as core
@@ -132,7 +131,7 @@ def run_stages(
         try:
             staged, stop, own = _prepare(supports, wall, stage, options, f"stages[{k}]", threads, k == options.main)
         except BadGeometry as error:
-            raise Refused(str(error)) from None
+            raise refusal(error) from None
         told = lambda done, total, text, name=name: progress(done, total, f"stage {name}, {text}")  # noqa: E731
         with staged.open(own, threads) as core_model:
             core_model.set_damage(wall.damage)

@@ -15,6 +15,8 @@ from extrados.results.model import Array, Result
 from extrados.schema import files
 
 LARGEST = 10_000_000  # bytes of a file
+#: The key of the deck that names it
+FILE = ("analysis", "hazard", "file")
 #: Share of the rate beyond the ends of the hazard curve that is told
 TOLD = 0.05
 GRID = 300
@@ -27,7 +29,7 @@ def hazard_curve(options: Hazard, folder: Path) -> HazardCurve:
     try:
         text = files.read(options.file, LARGEST, folder).text()
     except files.BadFile as error:
-        raise Refused(f"hazard: {error}") from None
+        raise Refused(str(error), FILE) from None
     rows = []
     for k, line in enumerate(text.splitlines(), 1):
         if not line.strip() or line.startswith("#"):
@@ -36,7 +38,7 @@ def hazard_curve(options: Hazard, folder: Path) -> HazardCurve:
             x, rate = (float(cell) for cell in next(csv.reader([line])))
         except ValueError:
             raise Refused(
-                f"hazard: {options.file}:{k}: expected an intensity and an annual rate, found {line[:60]!r}"
+                f"{options.file}:{k}: expected an intensity and an annual rate, found {line[:60]!r}", FILE
             ) from None
         rows.append((x, rate))
     try:
@@ -44,7 +46,7 @@ def hazard_curve(options: Hazard, folder: Path) -> HazardCurve:
             raise ValueError(f"holds {len(rows)} pairs of finite numbers; expected two or more")
         check_hazard(*map(list, zip(*rows, strict=True)))
     except ValueError as error:
-        raise Refused(f"hazard: {options.file}: {error}") from None
+        raise Refused(f"{options.file}: {error}", FILE) from None
     return HazardCurve(*np.array(rows).T)
 
 

@@ -111,10 +111,12 @@ class Fragility(RockingTable):
             return data
         hazard = data.get("hazard")
         found = (
-            {**data, "levels": _numbers(data.get("levels"), data.get("intensity", "pga"))} if "levels" in data else data
+            {**data, "levels": _numbers(data.get("levels"), data.get("intensity", "pga"), "levels")}
+            if "levels" in data
+            else data
         )
         if isinstance(hazard, dict) and "intensities" in hazard:
-            numbers = _numbers(hazard["intensities"], data.get("intensity", "pga"))
+            numbers = _numbers(hazard["intensities"], data.get("intensity", "pga"), "hazard.intensities")
             found = {**found, "hazard": {**hazard, "intensities": numbers}}
         return found
 
@@ -152,14 +154,17 @@ class Fragility(RockingTable):
         return self
 
 
-def _numbers(values: Any, intensity: str) -> Any:
+def _numbers(values: Any, intensity: str, key: str) -> Any:
     """Numbers in the unit of a measure for those given as text with a unit; anything else stays for pydantic to judge."""
     if not isinstance(values, list) or not any(isinstance(v, str) for v in values):
         return values
     if intensity not in LEVELS:
-        raise ValueError(f"levels of intensity = {intensity!r} are numbers without a unit")
+        raise ValueError(f"{key}: those of intensity = {intensity!r} are numbers without a unit")
     si, unit = LEVELS[intensity]
-    return [parse(v, si) / factor(unit, si) if isinstance(v, str) else v for v in values]
+    try:
+        return [parse(v, si) / factor(unit, si) if isinstance(v, str) else v for v in values]
+    except ValueError as error:
+        raise ValueError(f"{key}: {error}") from None
 
 
 class Resonance(RockingTable):

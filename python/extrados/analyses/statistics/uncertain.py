@@ -85,7 +85,7 @@ def sampled(context: Context, options: Fragility, base: Rocker, count: int) -> B
 
 def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndarray) -> Bodies:
     """One structure for each row of draws from the unit cube, see `Sample`; Unfinished where some are missing."""
-    _refuse_unknown(context.building, sorted(options.uncertain), base)
+    refuse_unknown(context.building, sorted(options.uncertain))
     job = Sample(context.building, options, draws).wide(base)
     rows = computed(context, "sample", job, len(draws), "buildings of the sample")
     bodies: list[Body | str] = [
@@ -95,22 +95,29 @@ def bodies_at(context: Context, options: Fragility, base: Rocker, draws: np.ndar
     return Bodies(bodies, rows["start"])
 
 
-def _refuse_unknown(building: Building, names: list[str], base: Rocker) -> None:
+def refuse_unknown(building: Building, names: list[str]) -> None:
+    """Refused where the structure does not have an uncertain value."""
     structure = building.structure
-    known = UNCERTAIN.get(base.what, ("restitution",) if structure.rocks_as == "piers" else STONES)
+    assert structure is not None
+    what = structure.kind
+    known = UNCERTAIN.get(what, ("restitution",) if structure.rocks_as == "piers" else STONES)
     for name in names:
-        if name == "density" and base.what == "block":
-            raise Refused("uncertain.density: the rocking of one rigid block does not depend on it")
+        key = ("analysis", "uncertain", name)
+        if name == "density" and what == "block":
+            raise Refused("the rocking of one rigid block does not depend on it", key)
         sized = name not in (*STONES, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
-            raise Refused(f"uncertain.{name} does not belong to this {base.word}; it has {', '.join(known) or 'none'}")
-    if base.what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
+            raise Refused(f"does not belong to this {structure.word}; it has {', '.join(known) or 'none'}", key)
+    if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
         raise Refused(
             "uncertain stones make an arch unsymmetric, where the balance of the thesis says nothing: give another "
-            "joints.restitution"
+            "joints.restitution",
+            ("analysis", "uncertain"),
         )
-    if "corners" in names and structure.thickness_factor == 1.0:
-        raise Refused("uncertain.corners: thickness_factor is 1, so no thickness is lost that could vary")
+    if "corners" in names and getattr(structure, "thickness_factor", 1.0) == 1.0:
+        raise Refused(
+            "thickness_factor is 1, so no thickness is lost that could vary", ("analysis", "uncertain", "corners")
+        )
 
 
 def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> Rocker:

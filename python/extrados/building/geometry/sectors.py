@@ -2,6 +2,8 @@
 
 import numpy as np
 
+SHARES = np.linspace(0.0, 1.0, 7)  # of the angle of a sector, where its outline has vertices
+
 
 def ring_sector(inner: float, outer: float, angle: float) -> tuple[float, float, float]:
     """Area, distance of the centroid from the centre, and polar moment of area about the centroid.
@@ -16,8 +18,7 @@ def ring_sector(inner: float, outer: float, angle: float) -> tuple[float, float,
 
 def sector_outlines(centre: np.ndarray, inner: float, outer: float, angle: np.ndarray) -> np.ndarray:
     """Counter-clockwise outlines (n, 14, 2) of ring sectors between the joint angles, which fall from left to right."""
-    share = np.linspace(0.0, 1.0, 7)
     first, step = angle[:-1, None], np.diff(angle)[:, None]
-    along = first + step * share
+    along = first + step * SHARES
     up = np.stack([np.cos(along), np.sin(along)], axis=-1)
     return np.concatenate([centre + inner * up, centre + outer * up[:, ::-1]], axis=1)

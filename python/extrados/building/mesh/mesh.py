@@ -9,7 +9,7 @@ from extrados.building.errors import BadGeometry
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.places import Placed
 from extrados.building.properties import Held, Material
-from extrados.building.templates.walls import Bar, MeshedWall, Tie
+from extrados.building.templates.walls import Bar, MeshedWall, TiedNodes
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
@@ -65,7 +65,7 @@ class Mesh:
     materials: list[Material]
     size: float
     held: list[Held]
-    ties: list[Tie] = field(default_factory=list)
+    ties: list[TiedNodes] = field(default_factory=list)
     bars: list[Bar] = field(default_factory=list)
     named: dict[str, Material] = field(default_factory=dict)
     selective: bool = False

@@ -1,6 +1,7 @@
 """What holds a rocking structure besides its weight, as the core wants it: ties, dampers, added hinges, a wall."""
 
-from collections.abc import Sequence
+import functools
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -9,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados.building.devices import AddedHinge, Damper
-from extrados.building.errors import BadGeometry, NoView
+from extrados.building.errors import BadGeometry, Key, NoView
 from extrados.building.geometry.anchors import stone_at
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.rockers.block import BlockModel
@@ -181,42 +182,51 @@ def block_reach(block: BlockModel) -> tuple[tuple[float, float], tuple[float, fl
 def members_of(building: "Building", assembly: Assembly, linkages: tuple[Linkage, Linkage]) -> tuple[Restraint, ...]:
     """The ties, dampers and added hinges of a building, anchored in its stones; hinges at joints that stay shut are left out.
 
-    NoView where one cannot be followed.
+    NoView where one cannot be followed, BadGeometry where one is anchored nowhere.
     """
     number = [np.append(one.part, 0) for one in linkages]
-    found: list[Restraint] = []
-    for one in building.restraints:
-        what = f"{one.name}"
-        if isinstance(one, AddedHinge):
-            for j in joints_named(assembly, one.joints, what):
-                if all(part[assembly.a[j]] == part[assembly.b[j]] for part in number):
-                    continue
-                at = f"{what}, {assembly.joint_names[j]}"
-                found.append(
-                    Restraint(
-                        at, _law_of_hinge(one), TURN, (int(assembly.a[j]), int(assembly.b[j])), _twice(assembly, j)
-                    )
-                )
-            continue
-        points = np.array([one.start, one.far], dtype=float)
-        first = stone_at(assembly, points[0], one.start_stone, f"{what}: start")
-        last = GROUND if one.end is None else stone_at(assembly, points[1], one.end_stone, f"{what}: end")
-        found.append(Restraint(what, _law(one), LENGTH, (first, last), points))
-    return tuple(found)
+    found = [m for make in restraints_of(building, lambda: assembly) for m in make()]
+    return tuple(m for m in found if m.sort != TURN or any(part[m.blocks[0]] != part[m.blocks[1]] for part in number))
+
+
+def restraints_of(building: "Building", stones: Callable[[], Assembly]) -> Iterator[Callable[[], list[Restraint]]]:
+    """What holds a building, each made when it is called: a tie or damper one restraint, an added hinge one at each of
+    its joints."""
+    for key, one in zip(building.restraint_keys, building.restraints, strict=True):
+        yield functools.partial(_restraints, stones, one, key)
+
+
+def _restraints(stones: Callable[[], Assembly], one: Tie | Damper | AddedHinge, key: Key) -> list[Restraint]:
+    assembly, what = stones(), f"{one.name}"
+    if isinstance(one, AddedHinge):
+        law = _law_of_hinge(one)
+        return [
+            Restraint(
+                f"{what}, {assembly.joint_names[j]}", law, TURN, (int(assembly.a[j]), int(assembly.b[j])),
+                _twice(assembly, j),
+            )
+            for j in joints_named(assembly, one.joints, what, (*key, "joints"))
+        ]  # fmt: skip
+    points = np.array([one.start, one.far], dtype=float)
+    first = stone_at(assembly, points[0], one.start_stone, f"{what}, start", key, "start")
+    last = GROUND if one.end is None else stone_at(assembly, points[1], one.end_stone, f"{what}, end", key, "end")
+    if first == last:
+        raise BadGeometry(f"{what}: both of its ends are in the stone '{assembly.block_names[first]}'", key)
+    return [Restraint(what, _law(one, key), LENGTH, (first, last), points)]
 
 
 def _twice(assembly: Assembly, joint: int) -> np.ndarray:
     return np.array([assembly.middle[joint], assembly.middle[joint]])
 
 
-def _law(one: Tie | Damper) -> Law:
+def _law(one: Tie | Damper, key: Key) -> Law:
     if isinstance(one, Damper):
         if one.damping is not None:
             return Law(viscous=one.damping, power=one.power)
         assert one.slip_force is not None and one.stiffness is not None
         return Law(one.stiffness, 0.0, one.slip_force, -one.slip_force)
     if one.stiffness is None:
-        raise NoView(f"{one.name} is rigid until it yields; what rocks needs its stiffness, EA/L")
+        raise NoView(f"{one.name} is rigid until it yields; what rocks needs its stiffness, EA/L", key)
     slack = {"tension": 1, "compression": -1, "both": 0}[one.works_in]
     return Law(one.stiffness, one.prestress, min(one.most, FREE), max(one.least, -FREE), slack)
 
@@ -226,7 +236,7 @@ def _law_of_hinge(one: AddedHinge) -> Law:
     return Law(one.stiffness or 0.0, 0.0, bound, -bound, 0, one.damping or 0.0)
 
 
-def joints_named(assembly: Assembly, names: Sequence[str], what: str) -> list[int]:
+def joints_named(assembly: Assembly, names: Sequence[str], what: str, key: Key) -> list[int]:
     """Joints by their names, by those of groups, "ground" or "all"; BadGeometry, which begins with `what`, else."""
     found: list[int] = []
     for name in names:
@@ -240,7 +250,7 @@ def joints_named(assembly: Assembly, names: Sequence[str], what: str) -> list[in
             found += assembly.groups[name]
         else:
             known = ", ".join(assembly.joint_names[:8]) + (", ..." if len(assembly.joint_names) > 8 else "")
-            raise BadGeometry(f"{what}: there is no joint '{name}'; there are {known}, ground and all")
+            raise BadGeometry(f"{what}: there is no joint '{name}'; there are {known}, ground and all", key)
     return list(dict.fromkeys(found))
 
 

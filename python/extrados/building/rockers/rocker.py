@@ -12,6 +12,7 @@ from extrados.building.rockers.block import BlockModel, block_model
 from extrados.building.rockers.frame import FrameModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, block_linkages, block_reach, members_of, three_impacts
+from extrados.building.rockers.words import refuse_words, rocks_as_block
 from extrados.building.templates.arch import ArchAssembly
 from extrados.building.templates.frame import FrameAssembly
 from extrados.core.rocking import Body, limits
@@ -72,16 +73,9 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
     structure, ratio = building.structure, building.initial.rotation_ratio
     if structure is None:
         raise NoView("the deck has no [structure]")
-    if structure.rocks_as == "stack":
-        raise NoView("two stacked blocks rock in two coordinates, which only `rocking` and `dem` follow")
-    if building.supports.stiffness is not None:
-        raise NoView(
-            "[supports] stiffness: on a base that gives way a building moves in more than one coordinate, which `rocking` "
-            "(under one block, column or wall) and `dem` follow; leave it out, or give it to these analyses alone "
-            "([analysis.supports] below them)"
-        )
+    refuse_words(building, linear)
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
-    if structure.rocks_as == "block" or (piers is not None and len(piers.mass) == 1):
+    if rocks_as_block(building):
         block = block_model(building, linear, stones)
         alpha = block.alpha
         made = Rocker(
@@ -91,8 +85,6 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
         )  # fmt: skip
         return _restrained(made, building)
     given, stones = stones is not None, stones or (building.blocks() if piers is None else piers)
-    if linear:
-        raise NoView('form = "linear" is known of blocks and columns only')
     if not given and isinstance(stones, ArchAssembly) and not _is_restrained(building):
         arch = ArchModel(stones, building.joints.restitution)
         limits = arch.limits
@@ -139,8 +131,6 @@ def _restrained(free: Rocker, building: "Building") -> Rocker:
         reach = (float(right[0]), float(right[1])), (float(left[0]), float(left[1]))
         weight = np.array([t.gravity_moment for t in model.tables])
         drive = np.array([t.drive for t in model.tables])
-        if wall is not None and building.supports.rebound is None:
-            raise NoView("what throws it back from a wall is known of blocks only: give [supports] rebound")
     if building.supports.rebound is not None:
         rebound = (building.supports.rebound, building.supports.rebound)
     held = Restraints(members_of(building, stones, linkages), linkages, reach, sides, rebound)
@@ -148,8 +138,6 @@ def _restrained(free: Rocker, building: "Building") -> Rocker:
     body = held.hold(free.body)
     critical, _ = limits(body)
     ratio = building.initial.rotation_ratio
-    if ratio and not sides[0 if ratio > 0.0 else 1]:
-        raise NoView(f"it cannot start turned to the {wall}, where the wall stands")
     told = free.warnings
     if wall is not None and building.supports.rebound is None:
         told += (

@@ -8,6 +8,7 @@ import numpy as np
 
 from extrados.building.errors import BadGeometry, NoView
 from extrados.building.rockers.block import BlockModel, block_model
+from extrados.building.rockers.words import refuse_soft_base
 from extrados.building.templates.block import BlockAssembly
 from extrados.core.soft_base import SoftBase, base_contact
 from extrados.schema.constants import GRAVITY
@@ -203,25 +204,14 @@ def soft_base_model(building: "Building", linear: bool = False) -> SoftBaseModel
     building is none of these, or held by more."""
     supports, structure = building.supports, building.structure
     assert supports.stiffness is not None and structure is not None
-    single = structure.rocks_as == "block" or (structure.rocks_as == "piers" and len(building.pier_blocks().mass) == 1)
-    if not single:
-        raise NoView(
-            "[supports] stiffness: rocking follows a base that gives way under one block, column or wall; leave it out, or "
-            "give it to the analysis `dem` alone ([analysis.supports] below it), which follows it under any stones"
-        )
-    if building.restraints or supports.abutting_wall is not None:
-        raise NoView(
-            "on a base that gives way nothing but the base holds a block: leave out ties, dampers, hinges and the wall"
-        )
-    if building.joints.energy_ratio is not None or "restitution" in building.joints.model_fields_set:
-        raise NoView(
-            "on a base that gives way impacts follow from its springs and dashpots: leave out restitution and energy_ratio, "
-            "give [supports] damping_ratio"
-        )
+    refuse_soft_base(building)
     rigid = block_model(building, linear)
     block = rigid.block
     if block.slope:
-        raise NoView("a base that gives way must be level: leave out base_slope, or [supports] stiffness")
+        raise NoView(
+            "a base that gives way must be level: leave out base_slope, or [supports] stiffness",
+            ("structure", "base_slope"),
+        )
     mass, width = float(block.mass[0]), block.toe_left + block.toe_right
     stiffness = supports.stiffness * block.depth
     damping = 2.0 * (supports.damping_ratio or 0.0) * float(np.sqrt(stiffness * mass / width))

@@ -105,7 +105,8 @@ def make_block(
     turn = np.array([[c, s], [-s, c]])
     if not min(np.arctan2([toe_right, toe_left], centre_height) + slope * np.array([1.0, -1.0])) > 0.0:
         raise BadGeometry(
-            f"structure: on a base that slopes by {np.degrees(slope):.4g} degrees the block falls over by itself"
+            f"on a base that slopes by {np.degrees(slope):.4g} degrees the block falls over by itself",
+            ("structure", "base_slope"),
         )
     return BlockAssembly(
         outlines=[np.array([[-toe_left, 0.0], [toe_right, 0.0], [toe_right, top], [-toe_left, top]]) @ turn],

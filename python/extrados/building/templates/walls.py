@@ -43,7 +43,7 @@ class Region(Placed):
         return inside
 
 
-class Tie(Placed):
+class TiedNodes(Placed):
     """Nodes that move as one in a direction: an edge that stays planar."""
 
     direction: Literal["x", "y"] = key(about="direction of the common displacement")
@@ -70,7 +70,7 @@ class MeshedWall(Structure):
 
     thickness: Length = key(about="thickness out of plane", gt=0)
     regions: list[Region] = key([], "parts that differ; a later one overrides an earlier", max_length=1000)
-    ties: list[Tie] = key([], "nodes that move as one", max_length=100)
+    ties: list[TiedNodes] = key([], "nodes that move as one", max_length=100)
     bars: list[Bar] = key([], "bars between two places", max_length=1000)
 
 

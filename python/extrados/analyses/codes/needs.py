@@ -1,0 +1,43 @@
+"""What the code checks need of a deck: a motion and a spectrum that can be read, of a wall what makes it a pier."""
+
+from collections.abc import Iterator
+
+from extrados.analyses.codes.tables import CodeChecks
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.needs import Need
+from extrados.analyses.table import Analysis
+from extrados.building.building import Building
+
+
+def needs(context: Context, options: Analysis) -> Iterator[Need]:
+    """Steps that raise where the deck is wrong, see `analyses.needs`."""
+    if not isinstance(options, CodeChecks):
+        return
+    building, structure = context.building, context.building.structure
+    wall = structure is not None and structure.rocks_as == "piers"
+    if wall:
+        yield lambda: _refuse_wall(building, options)
+    else:
+        yield building.blocks
+        if context.deck.motion is not None:
+            yield context.refuse_motion
+        if options.spectrum is not None:
+            from extrados.analyses.codes.code_checks import spectrum_of
+
+            yield lambda: spectrum_of(context, options.spectrum)(0.0, 0.05)
+    if (wall or options.axial_load is not None) and building.material.compressive_strength is None:
+        yield lambda: _refuse_weak()
+
+
+def _refuse_wall(building: Building, options: CodeChecks) -> None:
+    if options.axial_load is None:
+        raise Refused("a wall is checked as a pier: give axial_load", ("analysis",))
+    if len(building.pier_blocks().mass) > 1:
+        raise Refused(
+            "the pier rules are for a rectangle without openings: check each pier between openings as its own panel",
+            ("structure",),
+        )
+
+
+def _refuse_weak() -> None:
+    raise Refused("the pier rules need [material] compressive_strength (f_m)", ("material",))

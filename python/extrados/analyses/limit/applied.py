@@ -1,0 +1,73 @@
+"""Where the loads of a deck act, and whose thrust it asks for: names and places on the stones."""
+
+import itertools
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.limit.tables import AppliedLoad
+from extrados.building.geometry.anchors import stones_at
+from extrados.building.geometry.assembly import Assembly
+
+
+def chain_of(assembly: Assembly, name: str | None) -> str | None:
+    """The chain of a name, the first where none is given, None where the assembly has no chain."""
+    if name is not None and name not in assembly.chains:
+        known = f"there are {', '.join(assembly.chains)}" if assembly.chains else "no stones form one here"
+        raise Refused(f"chain: there is no '{name}'; {known}", ("analysis", "chain"))
+    return name or next(iter(assembly.chains), None)
+
+
+def block_under(assembly: Assembly, x: float) -> tuple[int, float]:
+    """The block with the highest surface at x, and that height [m]."""
+    best, height = -1, -np.inf
+    for i, outline in enumerate(assembly.outlines):
+        x0, y0 = outline.T
+        x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
+        met = (np.minimum(x0, x1) <= x) & (x <= np.maximum(x0, x1)) & (x0 != x1)
+        if met.any():
+            top = float((y0[met] + (x - x0[met]) / (x1[met] - x0[met]) * (y1[met] - y0[met])).max())
+            if top > height:
+                best, height = i, top
+    if best < 0:
+        low = min(float(o[:, 0].min()) for o in assembly.outlines)
+        high = max(float(o[:, 0].max()) for o in assembly.outlines)
+        raise Refused(
+            f"a load at x = {x:.4g} m stands beside the structure, which reaches from {low:.4g} to {high:.4g} m"
+        )
+    return best, height
+
+
+def _block_at(assembly: Assembly, x: float, y: float) -> int:
+    """The block that holds a point, or has it on its face."""
+    if found := stones_at(assembly, np.array([x, y])):
+        return found[0]
+    raise Refused(f"a load at x = {x:.4g}, y = {y:.4g} m acts on no block")
+
+
+def pieces(assembly: Assembly, load: AppliedLoad, number: int) -> list[tuple[int, np.ndarray, float]]:
+    """Blocks, points and shares of a load: one, or of a spread load a piece for each block it rests on.
+
+    A spread load is cut where the outlines below have their vertices; on each piece it acts at the middle. number: of
+    the load in the deck, for a refusal.
+    """
+
+    def place(x: float) -> tuple[int, float]:
+        try:
+            return block_under(assembly, x) if load.y is None else (_block_at(assembly, x, load.y), load.y)
+        except Refused as error:
+            raise Refused(str(error), ("analysis", "load", number)) from None
+
+    if load.x_end is None:
+        block, y = place(load.x)
+        return [(block, np.array([load.x, y]), 1.0)]
+    vertices = np.concatenate(assembly.outlines)[:, 0]
+    cuts = np.unique(np.concatenate([[load.x, load.x_end], vertices[(vertices > load.x) & (vertices < load.x_end)]]))
+    cuts = cuts[np.append(True, np.diff(cuts) > 1e-9 * assembly.size)]
+    cuts[-1] = load.x_end
+    found = []
+    for left, right in itertools.pairwise(cuts.tolist()):
+        x = 0.5 * (left + right)
+        block, y = place(x)
+        found.append((block, np.array([x, y]), (right - left) / (load.x_end - load.x)))
+    return found

@@ -1,0 +1,62 @@
+"""What limit analyses need of a deck: places of loads, names of chains, tables and keys that are there."""
+
+import functools
+from collections.abc import Iterator
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit import tables
+from extrados.analyses.limit.asked import deviation_of, refuse_still, sections_of, values_of
+from extrados.analyses.needs import Need, stones_of
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
+from extrados.building.geometry.assembly import Assembly
+
+
+def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
+    """Steps that raise where the deck is wrong, see `analyses.needs`."""
+    building = context.building
+    try:
+        if not isinstance(stones_of(building, options), Assembly):
+            return  # solids have no loads, chains and trains
+    except BadGeometry:
+        return  # told already
+    if loads := getattr(options, "load", []):
+        from extrados.analyses.limit.applied import pieces
+
+        for k, load in enumerate(loads):
+            yield lambda k=k, load=load: pieces(building.blocks(), load, k)
+    if getattr(options, "fracture", False):
+        yield functools.partial(refuse_fracture, building, options)
+    if getattr(options, "chain", None) is not None:
+        from extrados.analyses.limit.applied import chain_of
+
+        yield lambda: chain_of(building.blocks(), options.chain)
+    match options:
+        case tables.Sweep():
+            yield lambda: values_of(building, options)
+        case tables.Survey():
+            yield lambda: sections_of(context, options)
+        case tables.Imperfections():
+            yield lambda: deviation_of(building, options)
+        case tables.MovingLoad():
+            from extrados.analyses.limit.trains import fitting_train
+
+            yield lambda: fitting_train(building, options)
+        case tables.Supports():
+            yield lambda: refuse_still(building, options)
+
+
+def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> None:
+    """Refused where fracture of the leeward buttress cannot be followed."""
+    key = ("analysis", "fracture")
+    assembly = building.blocks()
+    if not assembly.buttresses:
+        raise Refused("fracture needs a buttress that stands on the ground: a vault or an aisled vault", key)
+    if building.material.compressive_strength is not None or options.friction_rule != "associated":
+        raise Refused("fracture is computed without crushing and with associated friction", key)
+    leeward = assembly.buttresses[-1]
+    if building.ties and (building.anchored().block == leeward).any():
+        raise Refused(
+            f"a tie is anchored in {assembly.block_names[leeward]}; whether its wedge holds the anchor is not known",
+            key,
+        )

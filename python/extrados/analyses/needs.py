@@ -1,0 +1,97 @@
+"""What an analysis needs before it computes: `check` tells it and `run` refuses by it, so that the two cannot differ.
+
+A need is a step without mechanics that raises Refused or BadGeometry with the key that is to blame; those that all
+kinds share stand here, those of a room in its `needs.py`, which the steps load when they are taken.
+"""
+
+import importlib
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any
+
+from extrados import kinds
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.table import Analysis
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry, Key, NoView
+from extrados.building.geometry.assembly import Assembly
+from extrados.schema.programs import ffmpeg
+
+if TYPE_CHECKING:
+    from extrados.building.geometry.solids.assembly import SolidAssembly
+
+Need = Callable[[], Any]
+#: Keys that ask for solids
+SPATIAL = ("direction", "rose", "pyramids")
+#: Rooms whose kinds need more than all do
+ROOMS = ("limit", "rocking", "statistics", "codes", "motion", "dem", "sla")
+
+
+def complaints(context: Context, options: Analysis, building: Building) -> list[str]:
+    """All that keeps an analysis of a building from being begun, each with file, line and key; empty where it can be."""
+    context.building = building
+    found = []
+    for need in _needs(context, options):
+        try:
+            need()
+        except (Refused, BadGeometry) as error:
+            found.append(context.complaint(options, error))
+    return list(dict.fromkeys(found))
+
+
+def _needs(context: Context, options: Analysis) -> Iterator[Need]:
+    building = context.building
+    for what, key in building.special_keys.items() if options.view or options.uses else ():
+        if what not in options.bears:
+            yield _refused(
+                f"{options.kind} does not reckon with {what}: leave it out of its deck, or ask {_who(what)}", key
+            )
+    if getattr(options, "animation", "none") == "mp4" and ffmpeg() is None:
+        yield _refused(
+            '"mp4" needs the program ffmpeg or the package imageio-ffmpeg, and neither is here; "gif" needs nothing',
+            ("analysis", "animation"),
+        )
+    if options.needs_motion:
+        yield context.refuse_motion
+    if options.view == "blocks":
+        yield lambda: _bound(building, options)
+    elif options.view == "shell":
+        yield lambda: building.shell(options.mesh)
+    room = kinds.ANALYSES[options.kind].table.split(".")[1]
+    if room in ROOMS:
+        yield from importlib.import_module(f"extrados.analyses.{room}.needs").needs(context, options)
+
+
+def stones_of(building: Building, options: Analysis) -> "Assembly | SolidAssembly":
+    """What an analysis sees of the stones: solids where it asks for them, or there is no plane section."""
+    if options.solid and any(getattr(options, key, None) is not None for key in SPATIAL):
+        return building.solids()
+    try:
+        return building.blocks()
+    except NoView:
+        if not options.solid:
+            raise
+        return building.solids()
+
+
+def _bound(building: Building, options: Analysis) -> None:
+    """The stones with their joints and ties."""
+    stones = stones_of(building, options)
+    if isinstance(stones, Assembly):
+        building.friction()
+        if building.ties:
+            building.anchored()
+    else:
+        building.friction(stones)
+
+
+def _refused(text: str, key: Key) -> Need:
+    def refuse() -> None:
+        raise Refused(text, key)
+
+    return refuse
+
+
+def _who(what: str) -> str:
+    """Analyses that reckon with a thing, as words."""
+    able = [kind for kind, parts in kinds.ANALYSES.items() if what in kinds.load(parts.table).bears]
+    return " or ".join([", ".join(able[:3]), *able[3:4]]) if len(able) <= 4 else f"{', '.join(able[:3])} and others"

@@ -1,0 +1,77 @@
+"""What analyses of rocking need of a deck: what holds the structure, how its supports move, variants of it."""
+
+import functools
+from collections.abc import Iterator
+
+from extrados.analyses.changes import changed, read_table
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.needs import Need
+from extrados.analyses.rocking import tables
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
+from extrados.building.rockers.words import refuse_soft_base, refuse_words
+from extrados.building.structure import Structure
+
+
+def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
+    """Steps that raise where the deck is wrong, see `analyses.needs`."""
+    building, structure = context.building, context.building.structure
+    if structure is None or not options.view:
+        return
+    stones = building.pier_blocks if structure.rocks_as == "piers" else building.blocks
+    yield stones
+    if structure.rocks_as == "stack" and isinstance(options, tables.Rocking):
+        yield functools.partial(_refuse_stack, building, options)
+        return
+    if building.supports.stiffness is not None and isinstance(options, tables.Rocking):
+        yield functools.partial(refuse_soft_base, building)
+        return
+    yield functools.partial(refuse_words, building, options.form == "linear")
+    if building.restraints:
+        from extrados.building.rockers.restraints import restraints_of
+
+        yield from restraints_of(building, stones)
+    if building.initial.movements:
+        from extrados.analyses.rocking.common import refuse_movements, shifts_of
+
+        yield lambda: shifts_of(building) if isinstance(options, tables.Rocking) else refuse_movements(context)
+    if isinstance(options, tables.FailureCurves) and options.variants:
+        yield lambda: structures_of(context, options)
+
+
+def structures_of(context: Context, options: tables.FailureCurves) -> list[Structure]:
+    """The structure with each of the variants; Refused where one is wrong."""
+    building, data = context.building, context.deck.data["structure"]
+    found = []
+    for number, change in enumerate(options.variants or [{}]):
+        key = ("analysis", "variants", number)
+        if "kind" in change:
+            raise Refused(f"a variant changes keys of a {data['kind']}, not its kind", (*key, "kind"))
+        try:
+            table = functools.reduce(lambda table, name: changed(table, name, change[name]), change, data)
+            found.append(read_table(type(building.structure), table))
+        except (BadGeometry, Refused, ValueError) as error:
+            raise Refused(f"variant {number + 1}: {error}" if options.variants else str(error), key) from None
+    return found
+
+
+def _refuse_stack(building: Building, options: tables.Rocking) -> None:
+    """Refused where two stacked blocks are asked for what `rocking` does not know of them."""
+    if options.animation != "none":
+        raise Refused("rocking draws no film of a stack: dem does", ("analysis", "animation"))
+    for key in building.special_keys.values():
+        raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
+    if building.supports.stiffness is not None:
+        raise Refused(
+            "two stacked blocks rock on rigid ground here; leave it out, or ask `dem`, which follows a base that gives way "
+            "under any stones",
+            ("supports", "stiffness"),
+        )
+    if options.form == "linear":
+        raise Refused('form = "linear" is known of blocks and columns only', ("analysis", "form"))
+    if building.joints.energy_ratio is not None or not isinstance(building.joints.restitution, str):
+        name = "restitution" if building.joints.energy_ratio is None else "energy_ratio"
+        raise Refused(
+            "two stacked blocks take impacts without rebound at all edges: leave out restitution and energy_ratio",
+            ("joints", name),
+        )

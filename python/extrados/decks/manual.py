@@ -1,0 +1,123 @@
+"""What is told of deck keys: `explain` and the reference manual, from what the tables say of themselves.
+
+The facts are kept beside this file, since to load all tables takes longer than anyone waits for the meaning of a word;
+`make docs` writes them anew, and a test holds them to the tables.
+"""
+
+import difflib
+import json
+import textwrap
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from extrados import kinds
+
+STORED = Path(__file__).with_name("facts.json")
+
+
+@dataclass(frozen=True)
+class KeyFacts:
+    """One key: its meaning, the source of the formula behind it, type, unit, bounds and default in words, whether it must
+    be given."""
+
+    about: str
+    source: str
+    facts: str
+    required: str
+
+
+@dataclass(frozen=True)
+class TableFacts:
+    """A table of a deck, header that of its section; kind is "" in a section without kinds. keys: dotted for those of
+    tables within it."""
+
+    section: str
+    header: str
+    kind: str
+    summary: str
+    keys: dict[str, KeyFacts]
+
+
+def stored() -> list[TableFacts]:
+    """The facts as they were written last."""
+    return [
+        TableFacts(**{**t, "keys": {name: KeyFacts(**key) for name, key in t["keys"].items()}})
+        for t in json.loads(STORED.read_bytes())
+    ]
+
+
+def written(tables: Sequence[TableFacts]) -> str:
+    """Facts as they are stored."""
+    return json.dumps([asdict(table) for table in tables], indent=1, ensure_ascii=False) + "\n"
+
+
+def explain(word: str, tables: Sequence[TableFacts]) -> str:
+    """What a key, a kind or a section means; KeyError with the nearest known word where there is none.
+
+    A key may follow its table or its kind: "friction", "joints.friction", "analysis.tilt", "tilt.fracture".
+    """
+    if word == "materials":
+        return "[materials.NAME]: Further materials, with the keys of [material], for the parts that name them."
+    if word in kinds.TABLES:
+        rows = [f"{table.kind:16} {table.summary}" for table in tables if table.section == word]
+        return f"[{word}] takes kind =\n  " + "\n  ".join(rows)
+    found = []
+    known: set[str] = set(kinds.TABLES)
+    for table in tables:
+        known |= {table.kind or table.section, *(name.rsplit(".", 1)[-1] for name in table.keys)}
+        if word in (table.kind or table.section, f"{table.section}.{table.kind}"):
+            rows = [textwrap.indent(_entry(table, name), "  ") for name in table.keys]
+            head = f'[{table.section}] kind = "{table.kind}"' if table.kind else table.header
+            found.append(f"{head}: {table.summary}\n" + "\n".join(rows))
+        asked = [name for name in table.keys if word in _called(table, name)]
+        found += [
+            _entry(table, name)
+            for name in table.keys
+            if any(name == one or name.startswith(f"{one}.") for one in asked)
+        ]
+    if not found:
+        close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
+        raise KeyError(f"no key or kind '{word}'" + (f"; near are {', '.join(close)}" if close else ""))
+    return "\n".join(found)
+
+
+def _called(table: TableFacts, name: str) -> set[str]:
+    """What a user may call a key."""
+    section, kind = table.section, table.kind
+    return {name, name.rsplit(".", 1)[-1], f"{section}.{name}", f"{kind}.{name}", f"{section}.{kind}.{name}"}
+
+
+def _entry(table: TableFacts, name: str) -> str:
+    key = table.keys[name]
+    source = f" [{key.source}]" if key.source else ""
+    of = f" ({table.kind})" if table.kind else ""
+    return f"{table.section}.{name}{of}: {key.about}{source}" + (f"\n    {key.facts}" if key.facts else "")
+
+
+def manual(tables: Sequence[TableFacts]) -> str:
+    """The reference manual of all deck keys, in Markdown."""
+    lines = [
+        "# Deck reference",
+        "",
+        "Generated from the deck models (`extrados explain --manual`); do not edit.",
+        "",
+    ]
+    section = ""
+    for table in tables:
+        if table.section != section:
+            section = table.section
+            lines += [f"## {table.header}", ""]
+        lines += [
+            *([f'### kind = "{table.kind}"', ""] if table.kind else []),
+            table.summary,
+            "",
+            "| key | meaning | type and default |",
+            "|---|---|---|",
+        ]
+        for name, key in table.keys.items():
+            text = (key.about + (f" ({key.source})" if key.source else "")).replace("|", "\\|")
+            required = f", {key.required}" if key.required else ""
+            lines.append(f"| `{name}` | {text} | {key.facts.replace('|', chr(92) + '|')}{required} |")
+        lines.append("")
+    return "\n".join(lines)

@@ -1,0 +1,1 @@
+"""Figures of limit analysis, a module for each."""

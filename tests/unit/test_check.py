@@ -1,0 +1,172 @@
+"""`check` and `run` refuse alike: the same complaint, with the line of the key that is to blame."""
+
+from pathlib import Path
+
+import pytest
+
+from extrados.analyses.context import Context
+from extrados.decks.reader import Deck, DeckError, read_deck
+from extrados.running.check import check_building
+from extrados.running.run import compute
+
+CASES = Path(__file__).resolve().parents[2] / "cases"
+ARCH = '[structure]\nkind = "arch"\nradius = 10.0\nthickness = 1.5\nembrace = 157.5\nvoussoirs = 7\n'
+BLOCK = '[structure]\nkind = "block"\nwidth = 1.0\nheight = 4.0\n'
+STACK = '[structure]\nkind = "stack"\nlower_width = 1.0\nlower_height = 2.0\nupper_width = 0.8\nupper_height = 2.0\n'
+FRAME = '[structure]\nkind = "blocks"\nblock = [{ name = "pier", points = [[0, 0], [1, 0], [1, 3], [0, 3]] }]\n'
+PULSE = '[motion]\nkind = "step-pulse"\namplitude = "0.5 g"\nduration = 0.2\n'
+PANEL = '[structure]\nkind = "panel"\nwidth = 1.0\nheight = 1.0\nthickness = 0.1\n[material]\ntensile_strength = "0.2 MPa"\nfracture_energy = 50.0\n'
+TILT = '[[analysis]]\nkind = "tilt"\n'
+ROCKING = '[[analysis]]\nkind = "rocking"\n'
+DEM = '[[analysis]]\nkind = "dem"\nend_time = 0.02\n'
+SLA = '[[analysis]]\nkind = "sla"\nevents = 3\n'
+TIE = "[[ties]]\nstart = [-9.5, 3.0]\nground = [0.0, 0.0]\n"
+GENERATED = '[motion]\nkind = "generated"\nmmi = 8\nduration = 15\n'
+FRAGILITY = '[[analysis]]\nkind = "fragility"\ncount = 4\nlevels = ["0.1 g"]\n'
+
+
+#: What is wrong, the words of the complaint, and a deck whose wrong line ends in "# here"
+WRONG = {
+    "tie in no stone": ("no stone is at", ARCH + "[[ties]]\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n" + TILT),
+    "tie in no stone, rocking": (
+        "no stone is at", ARCH + PULSE + '[[ties]]\nstiffness = 1e6\nstart = [0.0, 1.0] # here\nground = [0.0, 0.0]\n' + ROCKING,
+    ),
+    "both ends of a tie in one stone": ("both of its ends", BLOCK + "[[ties]] # here\nstart = [-0.2, 1.0]\nend = [0.2, 2.0]\n" + TILT),
+    "tie of an unknown stone": (
+        "there is no stone 'none'", ARCH + '[[ties]]\nstart = [0.0, 1.0]\nstart_stone = "none" # here\nground = [0.0, 0.0]\n' + TILT,
+    ),
+    "rigid tie of what rocks": ("needs its stiffness", BLOCK + PULSE + "[[ties]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\n" + ROCKING),
+    "hinge at an unknown joint": (
+        "there is no joint 'sole'", ARCH + PULSE + '[[hinges]]\ndamping = 1e3\njoints = ["sole"] # here\n' + ROCKING,
+    ),
+    "dampers with tilt": (
+        "does not reckon with [[dampers]]",
+        BLOCK + "[[dampers]] # here\nstart = [0.2, 2.0]\nground = [3.0, 0.0]\ndamping = 1e3\n" + TILT,
+    ),
+    "wall with tilt": ("does not reckon with [supports]", BLOCK + '[supports]\nabutting_wall = "left" # here\n' + TILT),
+    "start against a wall": (
+        "cannot start turned to the left",
+        BLOCK + PULSE + '[supports]\nabutting_wall = "left"\n[initial]\nrotation_ratio = -0.1 # here\n' + ROCKING,
+    ),
+    "linear form of an arch": ("is known of blocks", ARCH + PULSE + ROCKING + 'form = "linear" # here\n'),
+    "block that slides off its slope": ("falls", BLOCK.replace("[structure]\n", "[structure]\nbase_slope = 30 # here\n") + TILT),
+    "typo in a variant": (
+        "unknown key", BLOCK + '[[analysis]]\nkind = "failure-curves"\nvariants = [{ widht = 2.0 }] # here\n',
+    ),
+    "missing hazard file": (
+        "no such file", BLOCK + GENERATED + FRAGILITY + '[analysis.hazard]\nfile = "none.csv" # here\n',
+    ),
+    "unit of a hazard curve": (
+        "'m' is not a unit", BLOCK + GENERATED + FRAGILITY
+        + '[analysis.hazard]\nintensities = ["0.1 m", "0.2 m"] # here\nannual_rates = [0.1, 0.01]\n',
+    ),
+    "unit of levels": ("'m' is not a unit", BLOCK + GENERATED + FRAGILITY.replace('"0.1 g"]', '"0.1 m"] # here')),
+    "uncertain value of another structure": (
+        "does not belong", BLOCK + GENERATED + FRAGILITY + "uncertain = { radius = 0.1 } # here\n",
+    ),
+    "movement of an unknown joint, rocking": (
+        "names no joint 'none'", BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + ROCKING,
+    ),
+    "movement of an unknown joint, dem": (
+        "names no joint 'none'", BLOCK + PULSE + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n' + DEM,
+    ),
+    "movement of an unknown joint, supports": (
+        "names no joint 'none'", ARCH + '[[initial.movements]]\njoint = "none" # here\ndx = 0.1\n[[analysis]]\nkind = "supports"\n',
+    ),
+    "movement in the analysis": (
+        "names no joint 'none'",
+        BLOCK + PULSE + DEM + '[[analysis.initial.movements]]\njoint = "none" # here\ndx = 0.1\n',
+    ),
+    "moving supports and fragility": (
+        "supports that move",
+        BLOCK + GENERATED + '[[initial.movements]] # here\njoint = "base"\ndx = 0.1\n' + FRAGILITY,
+    ),
+    "unknown joint of a type": ("names no joint", ARCH + '[[joints.types]]\njoints = ["none"] # here\nfriction = 0.3\n' + TILT),
+    "load beside the structure": (
+        "stands beside", ARCH + TILT + "[[analysis.load]]\nx = 0.0\nforce = 1e3\n[[analysis.load]] # here\nx = 99.0\nforce = 1e3\n",
+    ),
+    "chain of another name": ("there is no 'nave'", ARCH + '[[analysis]]\nkind = "thrust"\nchain = "nave" # here\n'),
+    "sweep of no key": (
+        "has no key 'widht'", BLOCK + '[[analysis]]\nkind = "sweep"\nvary = "widht" # here\nstart = 1\nstop = 2\n',
+    ),
+    "sweep in another unit": (
+        "'kN' is not a unit of m", BLOCK + '[[analysis]]\nkind = "sweep"\nvary = "width"\nstart = 1\nstop = "2 kN" # here\n',
+    ),
+    "survey without its table": ("none.csv", ARCH + '[[analysis]]\nkind = "survey"\nfile = "none.csv" # here\n'),
+    "fracture without a buttress": ("needs a buttress", ARCH + TILT + "fracture = true # here\n"),
+    "train too wide": ("is more than the depth", ARCH + '[[analysis]]\nkind = "moving-load"\nwidth = 9.0 # here\n'),
+    "imperfections without a tolerance": ("give the deviation", ARCH + '[[analysis]] # here\nkind = "imperfections"\n'),
+    "supports at rest": ("nothing moves", ARCH + '[[analysis]] # here\nkind = "supports"\nspread = 0\n'),
+    "block to follow": ("names no block 'none'", BLOCK + DEM + 'track = ["none"] # here\n'),
+    "bars of a block": ("needs an arch", BLOCK + PULSE + DEM + 'merge = "three-bars" # here\n'),
+    "record that is not there": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + ROCKING),
+    "suite that is not there": (
+        "none of the 1 records", BLOCK + '[motion] # here\nkind = "suite"\nfiles = ["none.at2"]\n' + FRAGILITY,
+    ),
+    "record of dem": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + DEM),
+    "curve that is not there": ("none.csv", PANEL + SLA + 'measured = "none.csv" # here\n'),
+    "seeds that change nothing": ("seeds ask for", PANEL + SLA + "seeds = [1, 2] # here\n"),
+    "run that is not there": ("results", PANEL + SLA + 'resume_from = "results" # here\n'),
+    "load beside the wall": (
+        "no node lies", PANEL + SLA + '[[analysis.reference]] # here\nkind = "point"\nx = 7.0\nfx = 1.0\n',
+    ),
+    "hold beside the wall": (
+        "no node near", PANEL + SLA + '[[analysis.stages]]\n[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n'
+        "[[analysis.stages.hold]] # here\nx = 7.0\ny = 7.0\n",
+    ),
+    "stage that is not there": (
+        "there is no stage 'two'", PANEL + SLA + 'main_stage = "two" # here\n[[analysis.stages]]\nname = "one"\n'
+        '[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n',
+    ),
+    "no stages": ("expected at least 1", PANEL + SLA + "stages = [] # here\n"),
+    "speed of no film": ("needs animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
+    "wall without a load": (
+        "give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',
+    ),
+    "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
+    "film of a stack": ("draws no film", STACK + PULSE + ROCKING + 'animation = "gif" # here\n'),
+}  # fmt: skip
+
+
+def refused(deck: Deck) -> list[str]:
+    """What a run says of the analyses that it refuses."""
+    return [result.reason for result in compute(Context(deck)).results if result.status == "refused"]
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_check_and_run_say_the_same(tmp_path: Path, wrong: str) -> None:
+    words, text = WRONG[wrong]
+    path = tmp_path / "deck.toml"
+    path.write_text(text)
+    line = 1 + next(k for k, row in enumerate(text.splitlines()) if "# here" in row)
+    try:
+        deck = read_deck(path)
+    except DeckError as error:
+        said = error.complaints
+    else:
+        said = check_building(deck).complaints
+        assert refused(deck) == ["; ".join(said)]
+    assert len(said) == 1 and said[0].startswith(f"{path}:{line}: ") and words in said[0], said
+    key = said[0].removeprefix(f"{path}:{line}: ").split(": ")
+    assert key[0].rsplit(".", 1)[-1] != key[1], "the key stands once"
+
+
+def test_every_complaint_at_once(tmp_path: Path) -> None:
+    """Two ties and two analyses: every complaint once, and what is sound goes on."""
+    path = tmp_path / "deck.toml"
+    path.write_text(
+        ARCH + "[[ties]]\nstart = [0.0, 1.0]\nground = [0.0, 0.0]\n[[ties]]\nstart = [0.0, 2.0]\nground = [0.0, 0.0]\n"
+        + PULSE + ROCKING + '[[analysis]]\nkind = "thrust"\nchain = "nave"\n' + '[[analysis]]\nkind = "motion"\n'
+    )  # fmt: skip
+    deck = read_deck(path)
+    said = check_building(deck).complaints
+    assert [line.split(":")[1] for line in said] == ["8", "11", "21"]
+    assert [result.status for result in compute(Context(deck)).results] == ["refused", "refused", "ok"]
+
+
+@pytest.mark.parametrize(
+    "path", [p for p in sorted(CASES.rglob("*.toml")) if not p.name.endswith(".expect.toml")], ids=lambda p: p.stem
+)
+def test_what_runs_is_ok(path: Path) -> None:
+    """Every deck of the cases runs (tests/cases), so that `check` must say nothing against it."""
+    assert check_building(read_deck(path)).complaints == []
