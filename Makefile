@@ -10,7 +10,6 @@ run: setup
 	@.venv/bin/extrados run $(DECK)
 
 test: setup
-	@$(PYTHON) -c "import extrados._core"  # builds what changed, once, before many look
 	@$(PYTHON) -m pytest -q -n auto --maxprocesses 8 --dist worksteal
 	@$(PYTHON) tools/native_tests.py
 
