@@ -11,12 +11,9 @@ from pathlib import Path
 
 import pytest
 
-import extrados._core  # noqa: F401  an editable install builds here what has changed
-
-# once: the many processes of the tests would look for changes at the same time, and spoil the notes of what was built
-os.environ["MESONPY_EDITABLE_SKIP"] = os.pathsep.join(
-    str(there) for finder in sys.meta_path if (there := getattr(finder, "_build_path", None))
-)
+# an editable install builds here what has changed, and tidies its notes of it: once, before the many processes of the
+# tests look at them at the same time
+import extrados._core  # noqa: F401
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background job: tests of Ctrl-C would wait in vain
     signal.signal(signal.SIGINT, signal.default_int_handler)
