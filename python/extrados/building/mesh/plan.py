@@ -11,7 +11,7 @@ from extrados.building.mesh.options import LARGEST_MESH
 from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane
 from extrados.building.mesh.triangles import fill_ring
 from extrados.building.properties import Material
-from extrados.building.templates.plan import MEETS, Floor, Plan, PlanWall, Prestress, Rod, meeting
+from extrados.building.templates.plan import MEETS, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tu
 
 
 def _ring(
-    plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
+    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
 ) -> tuple[list[int], list[int]]:
     """Walls around a floor and the nodes on them in order, counter-clockwise."""
     what = f"floor on storey {floor.storey}"
@@ -288,7 +288,7 @@ def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
 
 
 def _add_floor(
-    plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, mass: np.ndarray, push: np.ndarray,
+    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, mass: np.ndarray, push: np.ndarray,
     parts: list[ShellPart], materials: list[Material], bars: list[ShellBar], size: float, warnings: list[str],
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
     """Elements, bars and masses of a floor; the nodes with those within it."""
@@ -332,7 +332,7 @@ def _add_floor(
 
 
 def _joists(
-    plan: Plan, floor: Floor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, name: str, ring: list[int]
+    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, name: str, ring: list[int]
 ) -> list[ShellBar]:
     """Joists as bars from each node of a wall across to the nearest of the other, of the area that stands for it."""
     one, two = (next(i for i, w in enumerate(plan.walls) if w.name == word) for word in floor.bears_on)

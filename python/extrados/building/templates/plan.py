@@ -87,7 +87,7 @@ class Corner(Table):
     strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
 
 
-class Floor(Table):
+class StoreyFloor(Table):
     """A floor or roof on top of a storey: a membrane between walls, or joists, and what it carries."""
 
     storey: int = key(about="the storey that it lies on", ge=1)
@@ -110,7 +110,7 @@ class Floor(Table):
     bears_on: list[str] = key([], "walls that carry the load, by their length; default all around it", max_length=100)
 
     @model_validator(mode="after")
-    def _whole(self) -> "Floor":
+    def _whole(self) -> "StoreyFloor":
         needed = {"flexible": ("young", "thickness"), "joists": ("young", "joist_area", "joist_spacing")}.get(
             self.kind, ()
         )
@@ -171,7 +171,7 @@ class Plan(Structure):
     storeys: list[Length] = key(about="heights of the storeys, from the ground up", min_length=1, max_length=50)
     walls: list[PlanWall] = key(about="[[structure.walls]]", min_length=1, max_length=200)
     corners: list[Corner] = key([], "where walls meet and are not one masonry, [[structure.corners]]", max_length=1000)
-    floors: list[Floor] = key([], "[[structure.floors]]", max_length=200)
+    floors: list[StoreyFloor] = key([], "[[structure.floors]]", max_length=200)
     rods: list[Rod] = key([], "[[structure.rods]]", max_length=200)
     props: list[Prop] = key([], "[[structure.props]]", max_length=200)
     prestress: list[Prestress] = key([], "[[structure.prestress]]", max_length=200)
