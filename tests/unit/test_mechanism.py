@@ -33,7 +33,7 @@ ARCHES = [(10.0, 1.5, 157.5, 7), (10.0, 2.0, 180.0, 15), (10.0, 1.2, 170.0, 31)]
 def of_case(name: str, **change) -> Assembly:
     """The structure of a case, keys replaced."""
     deck = read_deck(CASES / name)
-    data = {**deck.structure.model_dump(), **change}
+    data = {**deck.structure.model_dump(exclude_unset=True), **change}
     structure = type(deck.structure).model_validate(data)
     return deck.building.having(structure=structure).blocks()
 

@@ -64,7 +64,7 @@ class Probe(ResultModel):
     value: float | None = fact("its demand over its capacity; null: not known")
 
 
-class Sensitivity(ResultModel):
+class TurningValue(ResultModel):
     """One value of the deck moved, all else as it is: margins of limit analysis and of rocking."""
 
     key: str = fact("the key of the deck")
@@ -96,7 +96,7 @@ class Assess(KindResults):
     unexplained: list[list[str]] = fact("pairs that differ without a reason that any rule has found")
     parts: dict[str, str] = fact("analyses of this run that it has asked for: name -> what they are, in words")
     probes: list[Probe] = fact("further runs")
-    sensitivity: list[Sensitivity] = maybe("what the verdicts hang on, the most decisive first")
+    sensitivity: list[TurningValue] = maybe("what the verdicts hang on, the most decisive first")
     not_done: list[str] = fact("what the budget did not allow")
     least_margin: float | None = fact("least factor on the hazard at which a strategy turns to fall; null: none known")
     least_margin_strategy: str | None = fact("whose it is")

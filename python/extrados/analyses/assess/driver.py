@@ -435,7 +435,7 @@ class _Work:
             )
             self._probe("dem", f"the right support moves out by {1e3 * spread:.3g} mm in the first second", "dem", keys)
 
-    def _sensitivity(self) -> list[out.Sensitivity]:
+    def _sensitivity(self) -> list[out.TurningValue]:
         """Rows of the tornado, the widest first."""
 
         def width(m: sensitivity.Moved) -> float:
@@ -443,7 +443,7 @@ class _Work:
             return max(spans, default=0.0)
 
         return [
-            out.Sensitivity(
+            out.TurningValue(
                 key=m.what.key, base=m.what.base, unit=m.what.unit, low=m.low, high=m.high, tilt_base=m.at_base[0], rocking_base=m.at_base[1], tilt_low=m.at_low[0], tilt_high=m.at_high[0],
                 rocking_low=m.at_low[1], rocking_high=m.at_high[1], tilt_turns=m.turns[0], rocking_turns=m.turns[1],
             )

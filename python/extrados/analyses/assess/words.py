@@ -1,7 +1,7 @@
 """What an assessment says: the table of verdicts as text, and one overall statement."""
 
 from extrados.analyses.assess.reasons import Facts, Pair
-from extrados.results.assess import Overall, Reason, Sensitivity, StrategyVerdict
+from extrados.results.assess import Overall, Reason, StrategyVerdict, TurningValue
 
 _HEAD = ("strategy", "verdict", "demand", "capacity", "unit", "margin")
 
@@ -36,12 +36,12 @@ def table_of(rows: list[StrategyVerdict]) -> str:
     return "\n".join("  " + "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in cells)
 
 
-def answer(statement: str, rows: list[StrategyVerdict], reasons: list[Reason], moved: list[Sensitivity]) -> str:
+def answer(statement: str, rows: list[StrategyVerdict], reasons: list[Reason], moved: list[TurningValue]) -> str:
     """All that is told on the terminal: the statement, the table, the reasons, where verdicts turn."""
     return "\n".join([statement, table_of(rows), *(f"- {one.text}" for one in reasons), *turning(moved)])
 
 
-def turning(moved: list[Sensitivity]) -> list[str]:
+def turning(moved: list[TurningValue]) -> list[str]:
     """Where the verdicts turn, a line for each value that turns one."""
     said = []
     for one in moved:
