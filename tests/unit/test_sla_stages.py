@@ -183,7 +183,7 @@ def test_what_stands_beside_stages_is_told() -> None:
     with pytest.raises(DeckError, match="there is no stage 'pull'"):
         make_deck(wall([PRESS], main_stage="pull"))
     with pytest.raises(DeckError, match=r"stages: .*expected at least 1"):
-        make_deck(wall([], stages=[]))
+        make_deck({**(deck := wall([])), "analysis": [{**deck["analysis"][0], "stages": []}]})
 
 
 @pytest.mark.parametrize("algorithm", ["update", "refactor"])
