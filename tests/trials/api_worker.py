@@ -21,7 +21,7 @@ from extrados import _core
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import arch, dem, mechanism, motion, restraints, rocking, sla, soft_base, stack
+from extrados.core import arch, dem, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -48,6 +48,32 @@ def wall(xy, held, connect, thickness, young, nu, band, strength, energy, latera
         model.renew(before, standing)
         model.set_damage(before * damage)
         return *found, before
+
+
+def plates(xyz, held, connect, thickness, young, nu, band, strength, energy, layers, through, bends, reference, room, watch,
+           way, share, load, threads) -> Any:  # fmt: skip
+    """A shell bent until it cracks."""
+    frames, flat = shell.node_frames(np.asarray(xyz), [np.asarray(connect)])
+    soft = sla.Softening(strength, energy)
+    shells = sla.Shells(
+        "Q4",
+        connect,
+        thickness,
+        young,
+        nu,
+        band,
+        soft,
+        frames=frames,
+        flat=flat,
+        layers=layers,
+        through=through,
+        bends=bends,
+    )
+    freedoms = sla.Freedoms.make(4, held, of_node=6)
+    with sla.Model(xyz, freedoms, [shells], sla.Behaviour(), threads=threads) as model:
+        model.loads(np.zeros((4, 6)), reference)
+        events = model.run(room, [sla.Monitor(watch, way, share)], sla.Stop(load=load))
+        return events.load, model.displacement(load), model.report(load), model.residual(), model.damage()
 
 
 def joints(connect, normal, area, stiffness, shear, friction, cohesion, energy, dry, small, ripple, push, pressure, room, slip,
@@ -233,6 +259,12 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             strength=1e5, energy=50.0, lateral=0.0, axis=np.nan, points=(2, 2), bar=np.array([[0, 2]]), area=1e-4,
             node=np.array([[2, -1]]), direction=np.array([[0, 0]]), stiffness=np.array([1e6]), constant=np.zeros((4, 2)),
             reference=push, room=4, watch=np.array([2]), way=np.array([0]), share=np.array([1.0]), load=1e9, damage=1.0, threads=2,
+        )),
+        (plates, dict(
+            xyz=np.column_stack([BOX[:, 0], np.zeros(4), BOX[:, 1]]), held=[(n, d) for n in (0, 1) for d in range(6)] + [(2, 5), (3, 5)],
+            connect=np.array([[0, 1, 2, 3]]), thickness=0.2, young=1e9, nu=0.2, band=0.5, strength=1e5, energy=50.0, layers=5,
+            through="lobatto", bends=True, reference=np.column_stack([np.zeros((4, 1)), push[:, [0]], np.zeros((4, 4))]), room=4,
+            watch=np.array([2]), way=np.array([1]), share=np.array([1.0]), load=1e9, threads=2,
         )),
         (joints, dict(
             connect=np.array([[0, 1, 2, 3]]), normal=np.array([[0.0, 1.0]]), area=np.array([[0.5, 0.5]]), stiffness=8e10, shear=4e10,
