@@ -38,8 +38,14 @@ class ShellModel:
     slides = False
     driven = False  # supports do not move
     already = 0.0
+    bars = ()  # whose forces would be followed
     settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # of the supports that go down [m]
     warnings: list[str] = field(default_factory=list)
+
+    @property
+    def watched(self) -> list[core.Monitor]:
+        """What is recorded at each event."""
+        return [self.control]
 
     def open(self, options: Pushover, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
