@@ -47,7 +47,7 @@ class _Commands(typer.Typer):
         return guarded
 
 
-app = _Commands(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
+app = _Commands(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 
 
 class _Console:
@@ -128,6 +128,39 @@ def _errors(json_out: bool = False):
         tell([str(error)], NOT_DONE)
     except KeyboardInterrupt:
         tell(["interrupted"], interrupts.exit_code())
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        version()
+        raise typer.Exit()
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="version, commit and compilers")
+    ] = False,
+) -> None:
+    pass
+
+
+def _kinds(begun: str) -> list[str]:
+    """The kinds that begin so, for the shell that completes a word."""
+    from extrados import kinds
+
+    return [kind for there in kinds.TABLES.values() for kind in there if kind.startswith(begun)]
+
+
+def _words(begun: str) -> list[str]:
+    """What `explain` knows that begins so."""
+    from extrados.decks import manual, synonyms
+
+    tables = manual.stored()
+    known = [table.kind or table.section for table in tables]
+    known += [f"{table.kind or table.section}.{name}" for table in tables for name in table.keys]
+    known += [name.rsplit(".", 1)[-1] for table in tables for name in table.keys] + synonyms.words()
+    return sorted({word for word in known if word.startswith(begun) and " " not in word})
 
 
 @app.command()
@@ -413,23 +446,28 @@ def schema(
 
 @app.command()
 def explain(
-    key: Annotated[
-        str | None,
-        typer.Argument(help="a key, a kind or a section of decks; results, results.KIND or results.KIND.KEY"),
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[WORD]",
+            help="a key, a kind or a section of decks, or a word of the trade; results, results.KIND or results.KIND.KEY",
+            autocompletion=_words,
+        ),
     ] = None,
     manual: Annotated[bool, typer.Option("--manual", help="the whole reference manual of decks in Markdown")] = False,
     results: Annotated[
         bool, typer.Option("--results", help="the whole reference manual of results in Markdown")
     ] = False,
 ) -> None:
-    """Say what a deck key, a kind or a result means: unit, default, bounds, source."""
+    """Say what a deck key, a kind or a result means: unit, default, bounds, source; and where a thing is found."""
     told: Any
-    if results or (key or "").split(".")[0] == "results":
+    key = " ".join(words or [])
+    if results or key.split(".")[0] == "results":
         from extrados.results import manual as told
     else:
         from extrados.decks import manual as told
 
-    if manual or results or key is None:
+    if manual or results or not key:
         print(told.manual(told.stored()))
         return
     try:
@@ -442,17 +480,24 @@ def explain(
 @app.command()
 def new(
     kind: Annotated[
-        str | None, typer.Argument(help="a kind of analysis, structure or motion; default lists them")
+        str | None,
+        typer.Argument(help="a kind of analysis, structure or motion; default lists them", autocompletion=_kinds),
     ] = None,
 ) -> None:
     """Print a commented starter deck that runs as it is."""
-    from extrados import kinds
+    if kind is None:
+        from extrados import kinds
+        from extrados.decks import manual
+
+        tables = manual.stored()
+        for section in kinds.TABLES:
+            out_console.say(f"{section}:", "bold")
+            for table in tables:
+                if table.section == section:
+                    out_console.say(f"  {table.kind:16} {manual.first_sentence(table.summary)}")
+        return
     from extrados.decks.explain import starter
 
-    if kind is None:
-        for section, known in kinds.TABLES.items():
-            out_console.say(f"{section}: {', '.join(known)}")
-        return
     try:
         print(starter(kind))
     except KeyError as error:
