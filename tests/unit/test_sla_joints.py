@@ -181,6 +181,37 @@ def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
         np.testing.assert_allclose(update[name][grown], refactor[name][grown], rtol=1e-6)
 
 
+@pytest.mark.parametrize(("friction", "events"), [("no-sliding", 150), (0.7, 150)])
+def test_regions_of_units_and_joints_wait_until_one_slips(friction, events) -> None:
+    """What is left out holds no event: those of a new factor and of all points, also as the first joints slide."""
+    joints = {
+        "tension": 1e5, "fracture_energy": 20.0, "friction": friction, "normal_stiffness": 8e10, "shear_stiffness": 3.6e10,
+    }  # fmt: skip
+    if friction != "no-sliding":
+        joints |= {"cohesion": 1.5e5, "shear_energy": 100.0}
+    found = []
+    for algorithm in ("update", "refactor"):
+        data = {
+            "structure": {
+                "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "unit_length": 0.5, "unit_height": 0.25,
+            },
+            "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0}, "joints": joints,
+            "analysis": {
+                "kind": "sla", "ripple": 0.2, "mesh": {"size": 0.15, "joints": "interfaces"}, "events": events,
+                "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
+                "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}], "algorithm": algorithm,
+            },
+        }  # fmt: skip
+        found.append(run_analyses(Context(make_deck(data)))[0])
+    update, refactor = found
+    assert len(update["event_load"]) == events and (update["event_code"] >= EVENT["wear"]).any() == (friction == 0.7)
+    for name in ("event_point", "event_code"):
+        assert (update[name] == refactor[name]).all()
+    for name in ("event_load", "event_displacement", "event_stored"):
+        np.testing.assert_allclose(update[name], refactor[name], rtol=1e-9)
+    assert update.results["energy_residual_ratio"] < 1e-9
+
+
 @pytest.mark.parametrize("options", [{"solution": "incremental"}, {"without_equilibrium": "proportional"}])
 def test_variants_do_not_take_joints_that_slide(options) -> None:
     assert "joints that slide" in capacity(STRUCTURES["block"], 0.7, "sla", **options).reason
