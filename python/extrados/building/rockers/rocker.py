@@ -75,6 +75,7 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
         raise NoView("the deck has no [structure]")
     refuse_words(building, linear)
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
+    building.refuse_weightless(piers if stones is None else stones)
     if rocks_as_block(building):
         block = block_model(building, linear, stones)
         alpha = block.alpha
