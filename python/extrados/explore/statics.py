@@ -12,6 +12,7 @@ from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import limit_of, tie_rows
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
+from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.limit.answer import CannotStand, assess
 from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
@@ -91,7 +92,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     except Immovable as error:
         words |= {"stands": True, "immovable": str(error)}
         return made
-    except (NoAnswer, Refused) as error:
+    except (NoAnswer, NoView, Refused) as error:
         words |= {"stands": None, "unknown": str(error)}
         return made
     plus, minus = ends["plus"][0].gamma, -ends["minus"][0].gamma
