@@ -99,9 +99,23 @@ def point_places(model: ShellModel) -> dict[str, np.ndarray]:
     return {name: np.concatenate(column) for name, column in columns.items()}
 
 
+def place_axes(model: ShellModel) -> dict[str, np.ndarray]:
+    """Of each place in the shells: where it is [m], and the x and y axes of its element, all (places, 3)."""
+    columns: dict[str, list[np.ndarray]] = {"xyz": [], "x_axis": [], "y_axis": []}
+    for number, (part, _, _) in enumerate(model.places()):
+        corner = model.mesh.xyz[part.connect]
+        columns["xyz"].append(np.stack([_along(corner[..., d, None], 1).ravel() for d in range(3)], axis=1))
+        per = 4 if part.kind == "Q4" else 3
+        own = model.axes[[k for k, p in enumerate(model.mesh.parts) if p.bends][number]]
+        columns["x_axis"].append(np.repeat(own[:, 0], per, axis=0))
+        columns["y_axis"].append(np.repeat(own[:, 1], per, axis=0))
+    return {name: np.concatenate(column) for name, column in columns.items()}
+
+
 def cracks(model: ShellModel, report: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Of each place in the plane of the walls: greatest width of a crack through the thickness [m], the angle of its
-    normal to the element's x axis [rad], and the part of the thickness that has cracked."""
+    normal to the element's x axis [rad], where through the thickness that is, from -1 to 1 on the side of the normal, and the
+    part of the thickness that has cracked."""
     young = []
     for part, _, layers in model.places():
         each = np.array([m.young for m in model.mesh.materials])[part.material]
@@ -117,7 +131,7 @@ def cracks(model: ShellModel, report: dict[str, np.ndarray]) -> dict[str, np.nda
     angle = np.arctan2(r["sin"], r["cos"])
     width, turned = np.maximum(*widths), np.where(widths[1] > widths[0], angle + 0.5 * np.pi, angle)
     cracked = (r["tooth_n"] > 1) | (r["tooth_s"] > 1)
-    out: dict[str, list[np.ndarray]] = {"width": [], "angle": [], "part": []}
+    out: dict[str, list[np.ndarray]] = {"width": [], "angle": [], "side": [], "part": []}
     first = 0
     for part, _, layers in model.places():
         n = len(part.connect) * (4 if part.kind == "Q4" else 3) * layers
@@ -127,6 +141,7 @@ def cracks(model: ShellModel, report: dict[str, np.ndarray]) -> dict[str, np.nda
         at = w.argmax(axis=1)
         out["width"].append(w.max(axis=1))
         out["angle"].append(turned[rows].reshape(-1, layers)[np.arange(len(w)), at])
+        out["side"].append(2.0 * at / max(layers - 1, 1) - 1.0)
         volume = r["volume"][rows].reshape(-1, layers)
         out["part"].append((cracked[rows].reshape(-1, layers) * volume).sum(axis=1) / volume.sum(axis=1))
     return {name: np.concatenate(column) for name, column in out.items()}
@@ -141,6 +156,8 @@ def drifts(model: ShellModel, displacement: np.ndarray, sign: int) -> tuple[np.n
     """Drift of each storey along the push, of the whole and (walls, storeys) of each wall: the difference of the mean
     displacements of its top and foot over its height; NaN where a wall has none."""
     mesh, along = model.mesh, model.along
+    if not mesh.walls:
+        return np.empty(0), np.empty((0, 0))
     moved = sign * (displacement[:, :3] @ along)
     levels = mesh.levels
     walls = np.full((len(mesh.walls), len(levels)), np.nan)
