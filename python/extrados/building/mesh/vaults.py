@@ -205,7 +205,8 @@ def mesh_cross_vault(
     half_web = np.stack(
         [np.broadcast_to(x[:, None], y.shape), y, np.broadcast_to(z[:, None], y.shape)], axis=-1
     ).reshape(-1, 3)
-    points, elements, out = [], [], []
+    points: list[np.ndarray] = []
+    elements, out = [], []
     quads = _grid(rows, columns)
     feet: dict[str, list[np.ndarray]] = {word: [] for word in CORNERS}
     for word, (right, ahead) in CORNERS.items():
