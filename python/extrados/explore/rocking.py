@@ -29,7 +29,9 @@ def history(
     context: Context, building: Building, options: Rocking, anchor: np.ndarray, still: bool
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Words and arrays of a response; `still`: without shapes, as where a hand only looks for an amplitude."""
-    if building.structure is not None and (building.structure.rocks_as == "stack" or building.supports.stiffness is not None):
+    if building.structure is not None and (
+        building.structure.rocks_as == "stack" or building.supports.stiffness is not None
+    ):
         return _in_two(context, building, options, anchor)
     rocker = building.rocker(options.form == "linear")
     motion = context.motion
