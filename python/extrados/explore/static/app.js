@@ -164,7 +164,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       drawing.show(app.scene, arrays, app.handles, words.opened === true);
       if (["drag", "set"].includes(words.to)) dirty = true;
       tell("scene", words.opened === true, entry?.when);
-      if (!["open", "hello"].includes(words.to)) say("");
+      if (words.to !== "hello") say("");
       rest();
     }
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }

@@ -68,6 +68,8 @@ export function motionPanel(app, lower, frame) {
   function none(text, ground) {
     it.arrays = it.words = null; it.ground = ground;
     words.textContent = text;
+    slider.disabled = true;
+    clock.textContent = "";
     app.drawing.pose(null);
     draw();
   }
@@ -122,7 +124,8 @@ export function motionPanel(app, lower, frame) {
       const level = flat(critical), under = flat(-1e3 * told.critical_rad[1]);
       const showLimit = most > 0.25 * critical;
       charts.history.draw({ title: "Rotation", x: { array: "time", label: "time", unit: "s" }, y: { label: "rotation", unit: "mrad" }, symmetric: true, span: [0, it.end], marks: Float64Array.from(told.impact_times_s),
-        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: "now", factor: 1e3, unnamed: true, colour: 0 },
+        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: arrays.rotation_upper ? "lower block" : "now", factor: 1e3, unnamed: !arrays.rotation_upper, colour: 0 },
+          ...(arrays.rotation_upper ? [{ array: "rotation_upper", label: "upper block", factor: 1e3, colour: 2, dashed: true }] : []),
           ...(showLimit ? [{ array: level.y, x: level.x, label: "critical", dashed: true, colour: 1, unnamed: true }, { array: under.y, x: under.x, label: "critical", dashed: true, colour: 1, unnamed: true }] : [])] }, arrays);
       const axis = { array: "time", label: "time", unit: "s" }, span = [0, it.end];
       const big = Math.max(...[...arrays.potential, ...arrays.kinetic].map(Math.abs), 1e-12), kilo = big > 2000 ? [1e-3, "kJ"] : [1, "J"];
