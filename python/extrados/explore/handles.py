@@ -234,8 +234,23 @@ def _openings(openings: list[Any]) -> Iterator[Handle]:
 
 def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
     wide, high = s.units * s.unit_length, s.courses * s.unit_height
-    yield _length("unit_length", "Length of a unit, by that of the wall", wide, 0.5 * high, s.unit_length, lambda x, y: x / s.units)
-    yield _length("unit_height", "Height of a unit, by that of the wall", 0.5 * wide, high, s.unit_height, lambda x, y: y / s.courses, "y")
+    yield _length(
+        "unit_length",
+        "Length of a unit, by that of the wall",
+        wide,
+        0.5 * high,
+        s.unit_length,
+        lambda x, y: x / s.units,
+    )
+    yield _length(
+        "unit_height",
+        "Height of a unit, by that of the wall",
+        0.5 * wide,
+        high,
+        s.unit_height,
+        lambda x, y: y / s.courses,
+        "y",
+    )
     yield from _openings(s.openings)
 
 
@@ -247,7 +262,9 @@ def _stack(s: Any, assembly: Assembly) -> Iterator[Handle]:
         yield _length(
             f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, lambda x, y, m=middle: 2.0 * (x - m)
         )  # fmt: skip
-        yield _length(f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, lambda x, y, low=y0: y - low, "y")
+        yield _length(
+            f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, lambda x, y, low=y0: y - low, "y"
+        )
 
 
 def _frame(s: Any, assembly: Assembly) -> Iterator[Handle]:
@@ -255,11 +272,28 @@ def _frame(s: Any, assembly: Assembly) -> Iterator[Handle]:
     *columns, lintel = assembly.outlines
     middle, first = (0.5 * float(o[:, 0].min() + o[:, 0].max()) for o in (columns[-1], columns[0]))
     top = float(lintel[:, 1].max())
-    yield _length("width", "Width of the columns", middle + 0.5 * s.width, 0.5 * s.height, s.width, lambda x, y: 2.0 * (x - middle))
+    yield _length(
+        "width",
+        "Width of the columns",
+        middle + 0.5 * s.width,
+        0.5 * s.height,
+        s.width,
+        lambda x, y: 2.0 * (x - middle),
+    )
     yield _length("height", "Height of the columns", first, s.height, s.height, lambda x, y: y, "y")
-    yield _length("lintel_height", "Height of the lintel", 0.5 * (first + middle), top, s.lintel_height, lambda x, y: y - s.height, "y")
+    yield _length(
+        "lintel_height",
+        "Height of the lintel",
+        0.5 * (first + middle),
+        top,
+        s.lintel_height,
+        lambda x, y: y - s.height,
+        "y",
+    )
     share = (middle - 0.5 * (first + middle)) / s.spacing  # the drawing is centred
-    yield _length("spacing", "Spacing of the columns", middle, 0.0, s.spacing, lambda x, y: (x - 0.5 * (first + middle)) / share)
+    yield _length(
+        "spacing", "Spacing of the columns", middle, 0.0, s.spacing, lambda x, y: (x - 0.5 * (first + middle)) / share
+    )
 
 
 def _column(s: Any, assembly: Assembly) -> Iterator[Handle]:

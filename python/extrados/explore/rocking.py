@@ -12,6 +12,8 @@ from extrados.analyses.rocking.shapes import States, shapes
 from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
 from extrados.analyses.run import run_one
 from extrados.building.building import Building
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.rockers.block import BlockModel
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
 
@@ -29,7 +31,9 @@ def history(
     context: Context, building: Building, options: Rocking, anchor: np.ndarray, still: bool
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Words and arrays of a response; `still`: without shapes, as where a hand only looks for an amplitude."""
-    if building.structure is not None and (building.structure.rocks_as == "stack" or building.supports.stiffness is not None):
+    if building.structure is not None and (
+        building.structure.rocks_as == "stack" or building.supports.stiffness is not None
+    ):
         return _in_two(context, building, options, anchor)
     rocker = building.rocker(options.form == "linear")
     motion = context.motion
@@ -67,14 +71,19 @@ def history(
         arrays["line"] = made.line - anchor
     if made.friction is not None:
         arrays["friction"] = made.friction
-    return words, arrays | _piers(building, anchor)
+    if building.structure is not None and building.structure.rocks_as == "piers":
+        piers = building.pier_blocks()
+        if isinstance(rocker.model, BlockModel):  # a wall without openings, whose own place is about its foot
+            foot = np.append(piers.centroid[0] - rocker.model.block.centroid[0], 0.0)
+            arrays["pose"] = arrays["pose"] + foot
+            if "line" in arrays:
+                arrays["line"] = arrays["line"] + foot[:2]
+        arrays |= _outlines(piers, anchor)
+    return words, arrays
 
 
-def _piers(building: Building, anchor: np.ndarray) -> dict[str, np.ndarray]:
-    """Outlines of the piers that a wall rocks by, in place of its stones; nothing where it rocks as it is drawn."""
-    if building.structure is None or building.structure.rocks_as != "piers":
-        return {}
-    piers = building.pier_blocks()
+def _outlines(piers: Assembly, anchor: np.ndarray) -> dict[str, np.ndarray]:
+    """The piers that a wall rocks by, in place of its stones."""
     return {
         "moving_outline": np.concatenate(piers.outlines) - anchor,
         "moving_start": np.cumsum([0, *map(len, piers.outlines)]),
@@ -105,6 +114,8 @@ def _in_two(
     keep = slice(0, None, max(1, -(-len(time) // MOST_POINTS)))
     arrays = {name: get[name][keep] for name in ("time", "rotation", "kinetic", "potential", "ledger")}
     arrays["ground"] = get["ground"][keep] / GRAVITY
+    if "rotation_upper" in get:
+        arrays["rotation_upper"] = get["rotation_upper"][keep]
     if "film_time" in get:
         arrays |= {"picture_time": get["film_time"], "pose": get["film_pose"] - np.append(anchor, 0.0)}
     return words, arrays

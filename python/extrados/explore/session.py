@@ -27,8 +27,8 @@ from extrados.building.errors import BadGeometry, NoView
 from extrados.core.errors import CoreError
 from extrados.decks.explain import starter
 from extrados.decks.reader import LARGEST, DeckError, read_text
-from extrados.explore import handles as hands
 from extrados.explore import bodies, rocking, statics, stored
+from extrados.explore import handles as hands
 from extrados.explore.document import Document, as_written, tidy
 from extrados.explore.folder import CASES, Folder, NotThere
 from extrados.explore.frames import Reply
@@ -413,8 +413,12 @@ class Session:
             (gamma,) = _numbers([message["gamma"]], 1)
             gamma = float(np.clip(gamma, -5.0, 5.0))
         chain = message["chain"] if isinstance(message.get("chain"), str) else view.chain
-        through = view.through
+        through, thrust = view.through, view.thrust
+        if "thrust" in message:
+            thrust = None if message["thrust"] is None else self._thrust(message["thrust"])
+            through = None if thrust is not None else through
         if "through" in message:
+            thrust = None if message["through"] is not None else thrust
             wanted = message["through"]
             if wanted is None:
                 through = None
@@ -428,12 +432,18 @@ class Session:
             else:
                 place = np.array(_numbers(wanted, 2)) + self.anchor
                 assembly = self._there().deck.building.blocks()
-                through = statics.nearest(assembly, place, chain or next(iter(assembly.chains), None))
+                through = statics.nearest(assembly, place, chain or statics.first_chain(assembly))
         lines = view.lines
         if isinstance(message.get("lines"), list):
             lines = frozenset(str(name)[:20] for name in message["lines"][:20])
-        self.view = statics.View(gamma, chain, through, lines)
+        self.view = statics.View(gamma, chain, through, thrust, lines)
         yield self._scene()
+
+    def _thrust(self, wanted: Any) -> float:
+        """A thrust [N] that a line shall have: a number, or text with a unit."""
+        if isinstance(wanted, str):
+            return _quantity(wanted, "N", "Thrust of the line")
+        return _numbers([wanted], 1)[0]
 
     def _rest(self, _: dict[str, Any]) -> Iterator[Reply]:
         """What is told when the hand rests: the text of the deck, its forms, then mechanisms and safety."""
@@ -486,14 +496,21 @@ class Session:
         made.words["limit_analysis"] = name
         self.picture, self.handles = made, {h.name: h for h in found}
         return Reply(
-            {"scene": made.words, "handles": self._told(found), "anchor": self.anchor.tolist(), "deck": self._deck_words()},
+            {
+                "scene": made.words,
+                "handles": self._told(found),
+                "anchor": self.anchor.tolist(),
+                "deck": self._deck_words(),
+            },
             made.arrays,
         )
 
     def _body(self, why: str) -> Reply:
         """A building without stones in a plane: what there is to look at, and why there is no more."""
         live = self._there()
-        meshes = [(a.mesh, b) for a, b in zip(live.deck.analyses, live.deck.buildings, strict=True) if hasattr(a, "mesh")]
+        meshes = [
+            (a.mesh, b) for a, b in zip(live.deck.analyses, live.deck.buildings, strict=True) if hasattr(a, "mesh")
+        ]
         mesh, building = meshes[0] if meshes else (None, live.deck.building)
         found = bodies.seen(building, mesh)
         words, arrays = found or ({}, {})
