@@ -239,7 +239,7 @@ def _feet(context: Context, model: ShellModel, options: Pushover, curve: Curve, 
     borne = model.borne(options, curve, state, context.threads)
     by = {(ground.foot, ground.way): borne[k] for ground, k in model.grounds.items() if ground.x is None}
     return [
-        {"foot": foot.name, "thrust_N": float(by[f, "out"]), "vertical_N": float(by[f, "down"])}
+        {"foot": foot.name, "thrust_N": float(by.get((f, "out"), 0.0)), "vertical_N": float(by.get((f, "down"), 0.0))}
         for f, foot in enumerate(model.mesh.feet)
     ]
 

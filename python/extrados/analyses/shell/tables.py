@@ -24,12 +24,12 @@ class Settlement(Table):
     """Ground that gives way under a wall or a springing: it goes down, or outward; the damage stays."""
 
     wall: str | None = key(None, "name of the wall that stands on it", min_length=1, max_length=40)
-    foot: (
-        Literal["left", "right", "springing", "north-east", "north-west", "south-west", "south-east", "all"] | None
-    ) = key(
+    foot: str | None = key(
         None,
-        "of a vault, what stands on it: its left or right springing (or wall), the springing of a dome, a corner of a groin "
-        "vault, or all of these",
+        "of a vault, what stands on it: left or right, springing of a dome, north-east and so on of a groin vault, a support of "
+        "a mesh file, or all",
+        min_length=1,
+        max_length=200,
     )
     x: Range | None = key(None, "[from, to] along the wall; default all of it")
     down: Length = key(0.0, "how far it goes down; negative is a heave")
