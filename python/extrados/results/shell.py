@@ -71,6 +71,14 @@ class StageOfPush(PushCurve):
     end_load_N: float | None = fact("load at its end", "N")
 
 
+class FrameCapacity(ResultModel):
+    """What the piers of the weakest storey bear by the formulas of a code."""
+
+    code: str = fact("the code; of its formulas the least counts for a pier")
+    base_shear_N: float = fact("base shear at which that storey has all of its piers' strengths", "N")
+    storey: int = fact("the weakest storey, from 1")
+
+
 class Variation(ResultModel):
     """The same push with another assumption."""
 
@@ -99,6 +107,7 @@ class Pushover(PushCurve, KindResults):
     factor_bytes: int = fact("memory of the factor, in bytes")
     minus: PushCurve = maybe("the curve of the second sense")
     stages: list[StageOfPush] = maybe("of a run in stages, each; without a name, the numbers are those of the main one")
+    frame: list[FrameCapacity] = maybe("strengths of its piers by the formulas of codes, in the direction of the push")
     variants: list[Variation] = maybe("the first sense with other assumptions")
     band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
 

@@ -279,6 +279,8 @@ def _grounds(
             for d, share in (((2, -1.0),) if ground.way == "down" else enumerate(foot.out[i, :2].tolist()))
             if abs(share) > 1e-9 and (int(foot.nodes[i]), d) in held
         ]
+        if not free and not what:
+            continue  # it is not held that way
         if not free:
             word = "wall" if mesh.walls else "foot"
             raise BadGeometry(

@@ -9,6 +9,7 @@ import numpy as np
 
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
 from extrados.analyses.shell.sections import Section, cracks, drifts, place_axes, point_places, sections
 from extrados.analyses.shell.stages import run_stages
@@ -68,6 +69,8 @@ def _run(context: Context, options: Pushover) -> Result:
     interrupted = any(c.events.interrupted for c in curves)
     if options.variants and not interrupted:
         numbers |= _variants(context, options, result, numbers)
+    if options.frame is not None:
+        numbers["frame"] = _frame(context, result, model, options, elastic)
     result.results = out.Pushover(**numbers)
     result.answer = _answer(context.building, options, numbers)
     if interrupted:
@@ -142,10 +145,17 @@ def _chains(context: Context, model: ShellModel, options: Pushover) -> Callable[
 
 def _progress(context: Context, model: ShellModel, options: Pushover) -> Callable[[float, float, str], None]:
     """Progress by base shear over the weight, and how long the events that are allowed would take."""
-    begin = time.perf_counter()
+    begun: list[tuple[float, float]] = []  # when the first batch ended, and its events: what came before is no event
 
     def tell(done: float, total: float, text: str) -> None:
-        left = (time.perf_counter() - begin) * max(total - done, 0.0) / max(done, 1.0)
+        now = time.perf_counter()
+        if not begun or done <= begun[0][1]:
+            begun[:] = [(now, done)]
+            context.progress(
+                done, total, f"{text}; {model.weight / 1e3:.4g} kN weight, {model.mesh.elements()} elements"
+            )
+            return
+        left = (now - begun[0][0]) / (done - begun[0][1]) * max(total - done, 0.0)
         hours = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
         context.progress(done, total, f"{text}; {model.weight / 1e3:.4g} kN weight; at most {hours} more")
 
@@ -159,7 +169,7 @@ def _elastic(model: ShellModel, options: Pushover) -> dict[str, Any]:
         under, more = core_model.report(0.0), core_model.report(1.0)
         bytes_of = 8 * core_model.factor_values
     constant, both = sections(model, under), sections(model, more)
-    return {"constant": constant, "pushed": both, "bytes": bytes_of, "unit": model.unit}
+    return {"constant": constant, "pushed": both, "bytes": bytes_of, "unit": model.unit, "under": under}
 
 
 def _by_wall(model: ShellModel, found: list[Section]) -> tuple[np.ndarray, np.ndarray]:
@@ -239,7 +249,7 @@ def _feet(context: Context, model: ShellModel, options: Pushover, curve: Curve, 
     borne = model.borne(options, curve, state, context.threads)
     by = {(ground.foot, ground.way): borne[k] for ground, k in model.grounds.items() if ground.x is None}
     return [
-        {"foot": foot.name, "thrust_N": float(by[f, "out"]), "vertical_N": float(by[f, "down"])}
+        {"foot": foot.name, "thrust_N": float(by.get((f, "out"), 0.0)), "vertical_N": float(by.get((f, "down"), 0.0))}
         for f, foot in enumerate(model.mesh.feet)
     ]
 
@@ -284,6 +294,30 @@ def _remarks(model: ShellModel, curve: Curve) -> list[str]:
             f"its greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
         ]
     return []
+
+
+def _frame(
+    context: Context, result: Result, model: ShellModel, options: Pushover, elastic: dict[str, Any]
+) -> list[dict[str, Any]]:
+    """What the formulas of codes say of the piers; all of them as a table."""
+    plan, rules = context.building.structure, options.frame
+    assert rules is not None
+    if not isinstance(plan, Plan):
+        raise Refused("frame: piers are of a building of walls on a plan", ("analysis", "frame"))
+    if options.drives:
+        raise Refused("frame: how the push goes to the storeys is not known of drives", ("analysis", "frame"))
+    strength = rules.compressive_strength or context.building.material.compressive_strength
+    if strength is None:
+        raise Refused(
+            "frame: the formulas of piers need compressive_strength (f_m), there or in [material]",
+            ("analysis", "frame"),
+        )
+    found, rows = capacities(model, plan, rules, strength, elastic["under"])
+    result.tables["frame"] = TableData(
+        {name: [row[name] for row in rows] for name in rows[0]},
+        {"from": "m", "to": "m", "height": "m", "load": "N", "FEMA 356": "N", "NTC 2018": "N"},
+    )
+    return found
 
 
 def _variants(context: Context, options: Pushover, result: Result, numbers: dict[str, Any]) -> dict[str, Any]:
@@ -462,6 +496,11 @@ def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> s
         parts.append(
             f"Under the other assumptions of {len(numbers['variants'])} variants it is {low / 1e3:.4g} to {high / 1e3:.4g} kN."
         )
+    if "frame" in numbers:
+        words = [
+            f"{row['base_shear_N'] / 1e3:.4g} kN by {row['code']} (storey {row['storey']})" for row in numbers["frame"]
+        ]
+        parts.append(f"Its piers bear by the formulas of codes {' and '.join(words)}.")
     assumed = getattr(building.structure, "assumed", [])
     if assumed:
         parts.append("Assumed, since its sources do not say: " + "; ".join(assumed) + ".")

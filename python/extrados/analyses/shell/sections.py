@@ -1,5 +1,6 @@
 """What is read off a state of a pushed building: forces in sections of its walls, drifts, cracks."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +22,7 @@ class Section:
 
 
 def plane_stresses(report: dict[str, np.ndarray]) -> np.ndarray:
-    """(3, points) stresses x, y, xy in the axes of the elements [Pa]."""
+    """Stresses x, y, xy (3, ...) in the axes of the elements [Pa]."""
     c, s = report["cos"], report["sin"]
     n, t, g = report["stress_n"], report["stress_s"], report["stress_ns"]
     return np.stack(
@@ -35,33 +36,53 @@ def sections(model: ShellModel, report: dict[str, np.ndarray]) -> list[Section]:
     Exact for the forces at the nodes by virtual work: all above the row moves along the wall, or up, and strains the row
     alone, evenly. The moment is that of the normal stresses about the middle of the pier.
     """
-    mesh, found = model.mesh, []
-    stress = plane_stresses(report)
+    return [
+        section
+        for wall in range(len(model.mesh.walls))
+        for storey, level in enumerate(model.mesh.levels[:-1], 1)
+        for section in _sections(model, report, wall, storey, lambda low, _, level=level: np.abs(low - level) < 1e-6)
+    ]
+
+
+def sections_at(
+    model: ShellModel, report: dict[str, np.ndarray], wall: int, storey: int, height: float
+) -> list[Section]:
+    """Forces in the piers of a wall that a height cuts, from the row of elements there."""
+    return _sections(model, report, wall, storey, lambda low, high: (low <= height) & (high > height))
+
+
+def _sections(
+    model: ShellModel,
+    report: dict[str, np.ndarray],
+    wall: int,
+    storey: int,
+    of_row: Callable[[np.ndarray, np.ndarray], np.ndarray],
+) -> list[Section]:
+    """Of the row of elements of a wall that their lower and upper ends say."""
+    found = []
     for part, points, layers in model.places():
-        if part.wall < 0:
+        if part.wall != wall:
             continue
-        corner = mesh.walls[part.wall].unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        corner = model.mesh.walls[wall].unfolded(model.mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
         low, high = corner[..., 1].min(axis=1), corner[..., 1].max(axis=1)
         left, right = corner[..., 0].min(axis=1), corner[..., 0].max(axis=1)
-        volume = report["volume"][points].reshape(len(left), -1)
-        own = stress[:, points].reshape(3, len(left), -1)
-        at = _along(corner, layers)
-        for storey, level in enumerate(mesh.levels[:-1], 1):
-            row = np.flatnonzero(np.abs(low - level) < 1e-6)
-            row = row[np.argsort(left[row], kind="stable")]
-            gaps = np.flatnonzero(left[row][1:] > right[row][:-1] + 1e-6) + 1
-            for pier in np.split(row, gaps):
-                if not len(pier):
-                    continue
-                height = (high - low)[pier, None]
-                up = own[1, pier] * volume[pier] / height
-                middle = 0.5 * (left[pier[0]] + right[pier[-1]])
-                found.append(
-                    Section(
-                        part.wall, storey, float(left[pier[0]]), float(right[pier[-1]]), float(up.sum()),
-                        float((own[2, pier] * volume[pier] / height).sum()), float((up * (middle - at[pier])).sum()),
-                    )
-                )  # fmt: skip
+        row = np.flatnonzero(of_row(low, high))
+        row = row[np.argsort(left[row], kind="stable")]
+        if not len(row):
+            continue
+        own = {name: values[points].reshape(len(left), -1)[row] for name, values in report.items()}
+        stress, volume = plane_stresses(own), own["volume"]
+        tall, at = (high - low)[row, None], _along(corner[row], layers)
+        gaps = np.flatnonzero(left[row][1:] > right[row][:-1] + 1e-6) + 1
+        for pier in np.split(np.arange(len(row)), gaps):
+            start, end = float(left[row[pier[0]]]), float(right[row[pier[-1]]])
+            up = stress[1, pier] * volume[pier] / tall[pier]
+            found.append(
+                Section(
+                    wall, storey, start, end, float(up.sum()), float((stress[2, pier] * volume[pier] / tall[pier]).sum()),
+                    float((up * (0.5 * (start + end) - at[pier])).sum()),
+                )
+            )  # fmt: skip
     return found
 
 

@@ -8,7 +8,7 @@ from extrados.analyses.sla.tables import CrackOptions
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.shells import ShellOptions
 from extrados.building.places import Range
-from extrados.schema.quantities import Angle, Force, Length
+from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
 
 
@@ -24,12 +24,12 @@ class Settlement(Table):
     """Ground that gives way under a wall or a springing: it goes down, or outward; the damage stays."""
 
     wall: str | None = key(None, "name of the wall that stands on it", min_length=1, max_length=40)
-    foot: (
-        Literal["left", "right", "springing", "north-east", "north-west", "south-west", "south-east", "all"] | None
-    ) = key(
+    foot: str | None = key(
         None,
-        "of a vault, what stands on it: its left or right springing (or wall), the springing of a dome, a corner of a groin "
-        "vault, or all of these",
+        "of a vault, what stands on it: left or right, springing of a dome, north-east and so on of a groin vault, a support of "
+        "a mesh file, or all",
+        min_length=1,
+        max_length=200,
     )
     x: Range | None = key(None, "[from, to] along the wall; default all of it")
     down: Length = key(0.0, "how far it goes down; negative is a heave")
@@ -95,6 +95,20 @@ class Variant(Table):
     prestress: float = key(1.0, "on the forces on top of walls", ge=0, le=100)
 
 
+class FrameRules(Table):
+    """Strengths of piers by formulas of codes, beside the push: the equivalent frame's storeys."""
+
+    cohesion: Stress = key(0.0, "shear strength of bed joints without pressure", ge=0)
+    friction: float = key(0.4, "coefficient of friction of bed joints", ge=0, le=1.5)
+    diagonal_strength: Stress = key(
+        about="tau_0 of diagonal cracking, without pressure", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I"
+    )
+    compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
+    fixity: Literal["double", "single"] = key(
+        "double", "ends of the piers that do not turn: both, between stiff spandrels, or the lower one alone"
+    )
+
+
 class Pushover(CrackOptions, BuildingAnalysis):
     """The push of a building of walls and floors, or of a vault or dome as a shell, by growing horizontal forces; cracks event
     by event."""
@@ -157,6 +171,7 @@ class Pushover(CrackOptions, BuildingAnalysis):
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
     )
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
+    frame: FrameRules | None = key(None, "strengths of its piers by formulas of codes, [analysis.frame]")
     variants: list[Variant] = key(
         [], "the first sense again with other assumptions: a band of curves, [[analysis.variants]]", max_length=50
     )

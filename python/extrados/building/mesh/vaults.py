@@ -206,13 +206,14 @@ def mesh_cross_vault(
         [np.broadcast_to(x[:, None], y.shape), y, np.broadcast_to(z[:, None], y.shape)], axis=-1
     ).reshape(-1, 3)
     points: list[np.ndarray] = []
-    elements, out = [], []
+    elements: list[np.ndarray] = []
+    out: list[np.ndarray] = []
     quads = _grid(rows, columns)
     feet: dict[str, list[np.ndarray]] = {word: [] for word in CORNERS}
     for word, (right, ahead) in CORNERS.items():
         for swap in (False, True):
             own = (half_web[:, [1, 0, 2]] if swap else half_web) * [right, ahead, 1.0]
-            count = sum(map(len, points))
+            count = len(points) * len(half_web)
             elements.append(quads + count)
             out.append(own[quads].mean(axis=1) * ([0.0, 1.0, 1.0] if swap else [1.0, 0.0, 1.0]))
             feet[word].append(count + rows * (columns + 1) + np.arange(columns + 1))
