@@ -181,6 +181,27 @@ def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
         np.testing.assert_allclose(update[name][grown], refactor[name][grown], rtol=1e-6)
 
 
+@pytest.mark.verify
+def test_a_church_whose_joints_slide_under_its_weight() -> None:
+    """Turns from the state that sticks find none; friction that falls to it does. The load is that of limit analysis."""
+    church = {"kind": "aisled-vault", "preset": "vezelay-like"}
+    limit = capacity(church, 0.35, "tilt").results["collapse_acceleration_g"]
+    found = capacity(church, 0.35, "sla")
+    assert not found.warnings and found.results["events_without_equilibrium"] <= 3
+    assert found.results["peak_acceleration_g"] == pytest.approx(limit, rel=1e-4)
+
+
+def test_friction_that_falls_to_what_is_asked(monkeypatch) -> None:
+    """Where turns give up at once the state is found from more friction, with the same load at the end."""
+    direct = capacity(STRUCTURES["arch"], 0.25, "sla")
+    monkeypatch.setattr("extrados.analyses.sla.contact.MOST_SLIDING", 10)
+    falling = capacity(STRUCTURES["arch"], 0.25, "sla")
+    assert not direct.warnings and not falling.warnings
+    assert falling.results["peak_acceleration_g"] == pytest.approx(direct.results["peak_acceleration_g"], rel=1e-4)
+    monkeypatch.setattr("extrados.analyses.sla.contact.MORE_FRICTION", ())
+    assert any("was not found" in text for text in capacity(STRUCTURES["arch"], 0.25, "sla", events=5).warnings)
+
+
 @pytest.mark.parametrize(("friction", "events"), [("no-sliding", 150), (0.7, 150)])
 def test_regions_of_units_and_joints_wait_until_one_slips(friction, events) -> None:
     """What is left out holds no event: those of a new factor and of all points, also as the first joints slide."""
