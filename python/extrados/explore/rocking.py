@@ -13,7 +13,6 @@ from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
 from extrados.analyses.run import run_one
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import Assembly
-from extrados.building.rockers.block import BlockModel
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
 
@@ -73,8 +72,9 @@ def history(
         arrays["friction"] = made.friction
     if building.structure is not None and building.structure.rocks_as == "piers":
         piers = building.pier_blocks()
-        if isinstance(rocker.model, BlockModel):  # a wall without openings, whose own place is about its foot
-            foot = np.append(piers.centroid[0] - rocker.model.block.centroid[0], 0.0)
+        block = getattr(rocker.model, "block", None)
+        if block is not None:  # a wall without openings, whose own place is about its foot
+            foot = np.append(piers.centroid[0] - block.centroid[0], 0.0)
             arrays["pose"] = arrays["pose"] + foot
             if "line" in arrays:
                 arrays["line"] = arrays["line"] + foot[:2]

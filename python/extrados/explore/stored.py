@@ -8,8 +8,6 @@ import numpy as np
 
 from extrados.decks.reader import Deck
 from extrados.kinds import STRUCTURES, table
-from extrados.plots.shell import LEAST_WIDTH
-from extrados.plots.sla import CORNERS
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored, StoreError
 from extrados.schema.constants import GRAVITY
@@ -248,6 +246,8 @@ class _Maker:
 
     def _cracked(self, parts: list[np.ndarray], walls: list[int], width: np.ndarray) -> np.ndarray:
         """Tones (states, faces) of elements: of floors 1, of walls 0, or 2 to 5 by quarters of the widest crack."""
+        from extrados.plots.shell import LEAST_WIDTH
+
         counts = [len(part) for part in parts]
         wall = np.repeat(np.array(walls) >= 0, counts)
         tone = np.zeros((len(width), len(wall)), dtype=np.uint8)
@@ -384,6 +384,8 @@ class _Maker:
             )
 
     def sla(self) -> None:
+        from extrados.plots.sla import CORNERS
+
         self._curve()
         if "state_event" not in self.arrays:
             return

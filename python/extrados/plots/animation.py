@@ -202,10 +202,21 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> None:
         ground.set_ylabel("ground [g]")
         upper = "rotation_upper" in run.arrays[name]  # of two stacked blocks
         rotation.plot(
-            history, 1e3 * run.array(name, "rotation"), color=style.HINGE, linewidth=1.0, label="lower block" if upper else None
+            history,
+            1e3 * run.array(name, "rotation"),
+            color=style.HINGE,
+            linewidth=1.0,
+            label="lower block" if upper else None,
         )
         if upper:
-            rotation.plot(history, 1e3 * run.array(name, "rotation_upper"), "--", color=style.GROUND, linewidth=1.0, label="upper block")
+            rotation.plot(
+                history,
+                1e3 * run.array(name, "rotation_upper"),
+                "--",
+                color=style.GROUND,
+                linewidth=1.0,
+                label="upper block",
+            )
             rotation.legend()
         rotation.set_ylabel("rotation [mrad], + to +x")
         rotation.set_xlabel("time [s]")
