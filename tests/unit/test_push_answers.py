@@ -53,7 +53,7 @@ def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("push")
     (folder / "house.toml").write_text(textwrap.dedent(DECK).replace('name = "triangular"\n', ""))
     found = extrados.run(folder / "house.toml")
-    found.write(folder / "out")
+    found.write(folder / "out", figures=False)
     return found, folder / "out"
 
 
