@@ -8,7 +8,7 @@ import pytest
 import extrados
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.mesh.shells import ShellOptions
+from extrados.building.mesh.shells import ShellOptions, nodal_areas
 from extrados.building.properties import Material
 from extrados.building.templates.walls import MeshFile
 from extrados.schema.constants import GRAVITY
@@ -157,7 +157,18 @@ def test_a_membrane_is_a_floor(tmp_path):
             cell_data={"group": [*group, np.full(len(lines), 7)]},
         ),
     )  # fmt: skip
-    mesh = read(path, [{"name": "3", "membrane": True, "thickness": 0.05}, {"name": "7", "support": "fixed"}])
+    mesh = read(
+        path,
+        [
+            {"name": "3", "membrane": True, "thickness": 0.05, "pressure": [0.0, 0.0, -1e3]},
+            {"name": "7", "support": "fixed"},
+        ],
+    )
+    # What weighs on the corner that no wall holds goes to those that walls do
+    area = float(nodal_areas(mesh.xyz, mesh.parts[-1].connect).sum())
+    inner = 0.25 * area * (1e3 + 0.05 * 2000.0 * GRAVITY)
+    assert mesh.push[len(xyz), 2] == 0.0
+    assert mesh.push[:, 2].sum() == pytest.approx(-0.75 * area * 1e3 - inner)
     assert {(len(xyz), d) for d in (2, 3, 4, 5)} <= set(mesh.held) and (len(xyz), 0) not in mesh.held
     assert [part.bends for part in mesh.parts].count(False) == 1
 

@@ -9,6 +9,7 @@ from extrados.building.mesh.file import open_mesh
 from extrados.building.mesh.options import LARGEST_MESH
 from extrados.building.mesh.shells import Foot, ShellMesh, ShellOptions, ShellPart, nodal_areas
 from extrados.building.templates.walls import MeshFile, MeshGroup
+from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
     import meshio
@@ -175,6 +176,7 @@ def _mesh(
             bent[part.connect] = True
         elif np.ptp(xyz[part.connect][..., 2], axis=1).max() > 1e-6 * np.ptp(xyz, axis=0).max():
             raise BadGeometry(f"{file}, group '{part.name}': a membrane is level, and its elements are not")
+    _to_the_rim(building, xyz, parts, bent, push, file)
     lonely = sorted(n for n, _ in held if not used[n])
     if lonely:
         raise BadGeometry(f"{file}: node {lonely[0] + 1} of a support is no node of a shell")
@@ -195,3 +197,24 @@ def _mesh(
         kept, parts, [], levels, [building.material, *building.materials.values()], float(np.sqrt(np.median(areas))),
         sorted((int(number[n]), d) for n, d in held), [], [], np.zeros(len(kept)), push[used], warnings, feet,
     )  # fmt: skip
+
+
+def _to_the_rim(
+    building: "Building", xyz: np.ndarray, parts: list[ShellPart], bent: np.ndarray, push: np.ndarray, file: str
+) -> None:
+    """What weighs on the inner nodes of membranes goes to their nodes on walls, by the area that these stand for: a membrane
+    does not bend, its inner nodes are held upright."""
+    density = np.array([m.density for m in (building.material, *building.materials.values())])
+    for part in parts:
+        if part.bends:
+            continue
+        share = nodal_areas(xyz, part.connect)
+        own, weight = np.zeros(len(xyz)), np.zeros(len(xyz))
+        np.add.at(own, part.connect, share)
+        np.add.at(weight, part.connect, GRAVITY * share * (density[part.material] * part.thickness)[:, None])
+        inner, rim = (own > 0.0) & ~bent, (own > 0.0) & bent
+        if not rim.any():
+            raise BadGeometry(f"{file}, group '{part.name}': a membrane that meets no wall")
+        down = float((push[inner, 2] - weight[inner]).sum())
+        push[inner, 2] = 0.0
+        push[rim, 2] += down * own[rim] / own[rim].sum()
