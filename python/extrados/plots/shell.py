@@ -8,13 +8,13 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
 
 from extrados.plots import style
+from extrados.plots.scene import View
 from extrados.plots.sla import CRACKS, LOST, SENSES
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 
 FLOOR = "#dbe3ea"
-#: Where the building is looked at from [deg]: azimuth on the plan, height over the horizon
-AZIMUTH, ELEVATION = -60.0, 28.0
+VIEW = View(-60.0, 28.0)  # where the building is looked at from
 #: Gap between unfolded walls, in parts of the height
 GAP = 0.12
 #: Part of the greatest width from which a crack is drawn
@@ -173,14 +173,6 @@ def _areas(node: np.ndarray, walls: list[tuple[int, np.ndarray]]) -> np.ndarray:
     return np.linalg.norm(np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), axis=1)
 
 
-def view_axes() -> np.ndarray:
-    """Unit vectors (3, 3) to the right, up, and towards the eye."""
-    a, e = np.radians([AZIMUTH, ELEVATION])
-    eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-    right = np.array([-np.sin(a), np.cos(a), 0.0])
-    return np.array([right, np.cross(eye, right), eye])
-
-
 def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     """The deformed building at the peak and at the end, crack widths in colour, from two corners."""
     node = run.array(name, "node")
@@ -189,11 +181,10 @@ def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
     shown = _shown(run, name, prefix)
     most = max(float(width[shown].max()), 1e-12)
     factor = _magnified(node, moved[shown])
-    axes_of = view_axes()
     with style.canvas(5.2 * len(shown) + 0.8, 5.0) as fig:
         panels = fig.subplots(1, len(shown), squeeze=False).ravel()
         for ax, k in zip(panels, shown, strict=True):
-            place = (node + factor * moved[k]) @ axes_of.T
+            place = (node + factor * moved[k]) @ VIEW.axes.T
             values = np.zeros(int(element.max()) + 1)
             np.maximum.at(values, element, width[k])
             drawn = _paint(ax, run, name, place, 1e3 * values, 1e3 * most)
