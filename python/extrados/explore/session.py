@@ -557,6 +557,8 @@ class Session:
 
     def _push(self, _: dict[str, Any]) -> Iterator[Reply]:
         """Limit analysis of what no hand moves: blocks in space, along the deck's directions or all around."""
+        if self.picture is not None:
+            raise BadMessage("a section follows the hand as it is")
         options, building, _ = self._options(Tilt, lambda: Tilt(kind="tilt"))
         result = run_one(self._there().context(), options, building)
         if result.status != "ok":
