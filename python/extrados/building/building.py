@@ -135,8 +135,9 @@ class Building:
             lambda: rigid_bodies(self.blocks(), groups, worn, floor),
         )  # fmt: skip
 
-    def rocker(self, linear: bool = False) -> "Rocker":
-        """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations."""
+    def rocker(self, linear: bool = False, soft_base: bool = False) -> "Rocker":
+        """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations. soft_base:
+        also a block on a base that gives way, which has two."""
         from extrados.building.rockers.rocker import make_rocker
 
         tables = (
@@ -147,8 +148,9 @@ class Building:
             self.initial.rotation_ratio,
             self.restraints,
             linear,
+            soft_base,
         )
-        return self._view("rocker", tables, lambda: make_rocker(self, linear))
+        return self._view("rocker", tables, lambda: make_rocker(self, linear, soft_base=soft_base))
 
     def refuse_mixture(self) -> None:
         """BadGeometry where stones are of a named material that gives more than a density: what looks at their elastic
