@@ -7,7 +7,8 @@
 module sla_events
    use common_cancel, only : cancel_requested
    use common_kinds, only : wp
-   use common_lists, only : code_stick => sla_event_stick, &
+   use common_lists, only : code_stick => sla_event_stick, code_tension => sla_event_tension, &
+      code_compression => sla_event_compression, code_open => sla_event_open, &
       stop_none => sla_stop_none, stop_mechanism => sla_stop_mechanism, &
       stop_unbounded => sla_stop_unbounded, stop_all_empty => sla_stop_all_empty, &
       stop_displacement => sla_stop_displacement, stop_load => sla_stop_load, stop_fraction => sla_stop_fraction, &
@@ -20,7 +21,7 @@ module sla_events
    use sla_group, only : bound, component, most_entries, most_rank, point_group, scan_result, slider, unbounded
    use sla_guard, only : guard_every, guard_residual
    use sla_ledger, only : account, event_log, follow_supports, log_reals, record, watch
-   use sla_model, only : element_model, model_balance, model_settled, model_solve, model_turns
+   use sla_model, only : element_model, model_balance, model_settled, model_slips, model_solve, model_turns
    use sla_regions, only : regions_bring, regions_home
    use sla_release, only : hold_state, set_free
    use sla_scan, only : bring_all, choose, crossed, scan_model, scan_scaled
@@ -32,6 +33,9 @@ module sla_events
    real(wp), parameter :: least_pivot = 1.0e-10_wp    !! of I - W' inv(K) W: below it the structure is a mechanism
    !> Multiplier of an event without equilibrium over the peak before, from which no state is sought any more
    real(wp), parameter :: farthest = 1.0e3_wp
+
+   !> What happens to a joint without a force beside its stiffness
+   integer(c_int), parameter :: in_place(3) = [code_tension, code_compression, code_open]
 
    type :: stop_rules
       real(wp) :: lambda = unbounded               !! stage ends where it carries this multiplier
@@ -236,6 +240,11 @@ contains
       select type (group => model%holders(place(1))%group)
       class is (point_group)
          circle = group%undecided(place(2), model%pending(3), model%lambda)
+         if (group%slides .and. .not. model%slides .and. all(model%pending(3) /= in_place)) then
+            call bring_all(model, status)
+            if (status == status_ok) call model_slips(model, status)
+            if (status /= status_ok) return
+         end if
       end select
       call apply_event(model, reason, status)
       if (.not. model%slides .or. status /= status_ok .or. reason /= stop_none) return

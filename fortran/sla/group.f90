@@ -116,7 +116,7 @@ module sla_group
       integer :: points = 0                !! of the group
       integer :: offset = 0                !! points of the groups before it
       integer :: directions = 2            !! crack directions of a point; a bar has one
-      logical :: slides = .false.          !! it has forces beside its stiffness, see origins
+      logical :: slides = .false.          !! it can come to have forces beside its stiffness, see origins
       type(material_options) :: options
    contains
       procedure(scan_interface), deferred :: scan
@@ -125,6 +125,7 @@ module sla_group
       procedure(state_interface), deferred :: state
       procedure :: margin
       procedure :: origins
+      procedure :: slipped
       procedure :: sliding
       procedure :: sliders
       procedure :: turned_back
@@ -233,6 +234,15 @@ contains
       end associate
       least = -1.0_wp
    end subroutine margin
+
+   !> Does a point have forces beside its stiffness, see origins?
+   pure function slipped(group) result(yes)
+      class(point_group), intent(in) :: group
+      logical :: yes
+      associate (unused => group%points)
+      end associate
+      yes = .false.
+   end function slipped
 
    !> Points whose stress is k d - k0 + h: add the forces of k0 and of -h, and the energy that k0 alone leaves
    pure subroutine origins(group, springs, held, energy)

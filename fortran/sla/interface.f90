@@ -29,6 +29,7 @@ module sla_interface
       procedure :: report
       procedure :: state
       procedure :: origins
+      procedure :: slipped
       procedure :: sliding
       procedure :: sliders
       procedure :: turned_back
@@ -60,7 +61,7 @@ contains
       group%points = 2 * n
       group%freedoms = 8
       group%directions = 1
-      group%slides = .true.
+      group%slides = any(law%friction >= 0.0_wp)
       group%options = options
       call tooth_tables_copy(teeth, group%teeth, status)
       if (status /= status_ok) return
@@ -157,6 +158,19 @@ contains
          f(group%equation(i, e)) = f(group%equation(i, e)) + part(i) * group%factor(i, e)
       end do
    end subroutine add
+
+   pure function slipped(group) result(yes)
+      class(interface_group), intent(in) :: group
+      logical :: yes
+      integer :: p
+      yes = .false.
+      if (.not. group%slides) return
+      do p = 1, group%points
+         yes = abs(group%start(p)) > 0.0_wp
+         if (.not. yes .and. is_closed(group, p)) yes = group%mode(p) /= sticks .or. abs(group%mark(p)) > 0.0_wp
+         if (yes) return
+      end do
+   end function slipped
 
    !> Forces and energy of springs that do not begin at zero slip, and forces of sliding friction
    pure subroutine origins(group, springs, held, energy)

@@ -20,7 +20,7 @@ module sla_model
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
    public :: model_displacements, model_settled, model_balance, model_reactions, model_recorded
-   public :: model_turns, held_work, model_damage, model_standing, model_resume, standing_values
+   public :: model_slips, model_turns, held_work, model_damage, model_standing, model_resume, standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
@@ -55,7 +55,7 @@ module sla_model
       real(wp) :: held(2) = 0.0_wp                       !! fh.u of the last state [J]
       real(wp) :: origin_energy = 0.0_wp                 !! [J]
       type(friction_store) :: friction
-      logical :: slides = .false.                        !! a group has origins: no region may wait
+      logical :: slides = .false.                        !! a point has slipped: no region may wait
       real(wp), allocatable :: moved(:, :)               !! (moved, 2) supports, constant and per multiplier [m]
       real(wp), allocatable :: reaction(:, :)            !! (moved, 2) their forces under A and per multiplier [N]
       integer, allocatable :: beside(:, :)               !! (2, elements) group and element at a moved support
@@ -225,14 +225,8 @@ contains
          return
       end if
       call regions_new(model%tree, model%handle, model%holders, n, status)
-      do g = 1, size(model%holders)
-         select type (group => model%holders(g)%group)
-         class is (point_group)
-            model%slides = model%slides .or. group%slides
-         end select
-      end do
       ! Regions that were not measured are looked at in each event
-      if (status == status_ok .and. .not. (model%refactor .or. model%slides)) then
+      if (status == status_ok .and. .not. model%refactor) then
          call regions_measure(model%tree, model%holders, model%xy, model%equation, model%factor, status)
       end if
       if (status /= status_ok) return
@@ -348,6 +342,7 @@ contains
       end do
       model%fo(0) = 0.0_wp
       model%fh(0, :) = 0.0_wp
+      call find_slips(model)
       model%z(:, 1) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1)
       model%z(:, 2) = model%fb(1:n) + model%fh(1:n, 2)
       if (m > 0) call push_supports(model)
@@ -362,6 +357,30 @@ contains
       model%friction%known = .false.
       call model_balance(model, [0, 0], status)
    end subroutine model_solve
+
+   !> Once a point has slipped there are forces beside the stiffness
+   pure subroutine find_slips(model)
+      type(element_model), intent(inout) :: model
+      integer :: g
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
+         class is (point_group)
+            model%slides = model%slides .or. group%slipped()
+         end select
+      end do
+   end subroutine find_slips
+
+   !> The first slip: all displacements are known, those of the last state are what sliding is compared with
+   subroutine model_slips(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      model%slides = .true.
+      model%tree%settled = .false.
+      model%friction%known = .false.
+      model%held = 0.0_wp
+      model%cross = dot_product(model%fb, model%ua(0:model%equations)) + model%support(2, 1)
+      call model_recorded(model, model%lambda_recorded, status)
+   end subroutine model_slips
 
    !> Where all displacements are known: let friction balance with them, then see `model_settled`
    subroutine model_balance(model, place, status)
@@ -454,6 +473,7 @@ contains
       model%fa(0) = 0.0_wp
       model%fb(0) = 0.0_wp
       if (model%refactor) call assemble(model%holders, model%start, model%row, model%value)
+      model%slides = .false.
       call model_solve(model, status)
       if (status /= status_ok) return
       model%pending = 0
@@ -534,6 +554,7 @@ contains
       model%lambda_held = values(30)
       model%first_constant = values(31)
       model%event%rank = 0
+      model%slides = .false.
       call model_solve(model, status)
       model%held = held_work(model, model%lambda_recorded)
       call model_recorded(model, model%lambda_recorded, status)

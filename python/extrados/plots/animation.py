@@ -200,7 +200,24 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> None:
         (thrust,) = ax.plot([], [], color=style.THRUST, linewidth=1.6, zorder=4, label="line of thrust")
         ground.plot(history, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
         ground.set_ylabel("ground [g]")
-        rotation.plot(history, 1e3 * run.array(name, "rotation"), color=style.HINGE, linewidth=1.0)
+        upper = "rotation_upper" in run.arrays[name]  # of two stacked blocks
+        rotation.plot(
+            history,
+            1e3 * run.array(name, "rotation"),
+            color=style.HINGE,
+            linewidth=1.0,
+            label="lower block" if upper else None,
+        )
+        if upper:
+            rotation.plot(
+                history,
+                1e3 * run.array(name, "rotation_upper"),
+                "--",
+                color=style.GROUND,
+                linewidth=1.0,
+                label="upper block",
+            )
+            rotation.legend()
         rotation.set_ylabel("rotation [mrad], + to +x")
         rotation.set_xlabel("time [s]")
         rotation.set_xlim(0.0, float(time[-1]))

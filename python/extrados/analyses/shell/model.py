@@ -38,6 +38,7 @@ class ShellModel:
     mechanism_ratio: float
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
     slides = False
+    bars = ()  # whose forces would be followed
     already: float = 0.0  # reference load that stages before have left on [N]
     grounds: dict["Ground", int] = field(default_factory=dict)  # ground that may give way: which of what may move it is
     settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each has, with the weight [m]
@@ -49,6 +50,11 @@ class ShellModel:
     def driven(self) -> bool:
         """Whether the multiplier moves supports."""
         return bool(self.rate.any())
+
+    @property
+    def watched(self) -> list[core.Monitor]:
+        """What is recorded at each event."""
+        return [self.control]
 
     def open(self, options: Pushover, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
