@@ -37,7 +37,7 @@ EXTRADOS_API int extrados_cancel_get(void);
 EXTRADOS_API void extrados_watch_signals(int on);
 
 /* blas.c: `enter` before a call of BLAS or LAPACK that may run beside others, `leave` after it; out_of_memory where
- * there is no room for its buffer. `load`, once at the start, takes the buffer of the first. */
+ * there is no room for its buffer. `load`, once at the start, takes the buffer of the first and keeps BLAS to one thread. */
 EXTRADOS_API int extrados_blas_enter(void);
 EXTRADOS_API void extrados_blas_leave(void);
 EXTRADOS_API int extrados_blas_load(void);

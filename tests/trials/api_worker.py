@@ -203,8 +203,8 @@ def stacks(mass, inertia, centre, foot, height, contact, samples, dt, end_time, 
 
 
 def soft_bases(mass, inertia, height, left, right, stiffness, damping, edges, linear, samples, dt, end_time, output_step, scale,
-               tolerance, start, room) -> Any:  # fmt: skip
-    """A block on a base that gives way, shaken, and what the base does in a state."""
+               tolerance, start, room, rotation, critical) -> Any:  # fmt: skip
+    """A block on a base that gives way, shaken, in an ensemble too, what the base does in a state, and its statics."""
     base = soft_base.SoftBase(mass, inertia, height, left, right, stiffness, damping, edges, linear)
     run = soft_base.soft_base_history(
         base,
@@ -216,7 +216,15 @@ def soft_bases(mass, inertia, height, left, right, stiffness, damping, edges, li
         start=start,
         room=room,
     )
-    return run.rotation, run.force, astuple(soft_base.base_contact(base, *start))
+    many = rocking.ensemble([soft_base.soft_base_body(base, critical)], [Ground(samples=samples, step=dt)], [0, 0], [0, 0],
+                            scale, end_time, start_rotation=start[0], tolerance=tolerance)  # fmt: skip
+    return (
+        run.rotation,
+        run.force,
+        astuple(soft_base.base_contact(base, *start)),
+        soft_base.base_held(base, rotation),
+        many.peak,
+    )
 
 
 def motions(kind, parameters, points, step, intensity, frequency, amplitude, wanted, lines, spacing, scaling, factor, duration, seed,
@@ -312,7 +320,7 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
         (soft_bases, dict(
             mass=6000.0, inertia=5000.0, height=1.5, left=0.5, right=0.4, stiffness=1e8, damping=1e5, edges=False, linear=False,
             samples=4.0 * rng.normal(size=(1, 9)), dt=0.05, end_time=1.0, output_step=0.1, scale=1.0, tolerance=1e-8,
-            start=(0.01, 0.002, 0.0, 0.0), room=100,
+            start=(0.01, 0.002, 0.0, 0.0), room=100, rotation=[0.0, 0.01], critical=(0.3, 0.25),
         )),
         (hinges, dict(
             hinge=four.hinge, joint=four.joint, mass=four.mass, centroid=four.centroid, inertia=four.inertia, masses=stones.mass,
