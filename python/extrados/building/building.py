@@ -128,6 +128,7 @@ class Building:
         from extrados.building.geometry.rigid import rigid_bodies
 
         self.refuse_mixture()
+        self.refuse_weightless()
         worn = self.joints.worn_corners
         return self._view(
             "rigid", (self.structure, self.material.density, *self.materials.items(), worn, groups, floor),
@@ -169,6 +170,17 @@ class Building:
         if all(t.friction is None for t in self.joints.types):
             return self.joints.coefficient
         return self.joint_property("friction", assembly)
+
+    def refuse_weightless(self, assembly: "Assembly | SolidAssembly | None" = None) -> None:
+        """NoView where a stone of the building, or of the solids given, has no mass: weight is what makes stones stand,
+        rock and fall."""
+        stones = self.blocks() if assembly is None else assembly
+        if not (stones.mass > 0.0).all():
+            raise NoView(
+                f"'{stones.block_names[int(stones.mass.argmin())]}' weighs nothing, and stones stand, rock and fall by their "
+                "weight: give a density above zero",
+                ("material", "density"),
+            )
 
     def joint_property(self, name: str, assembly: "SolidAssembly | None" = None) -> np.ndarray:
         """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given), of

@@ -19,7 +19,7 @@ def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
     if structure is None or not options.view:
         return
     stones = building.pier_blocks if structure.rocks_as == "piers" else building.blocks
-    yield stones
+    yield lambda: building.refuse_weightless(stones())
     if structure.rocks_as == "stack" and isinstance(options, tables.Rocking):
         yield functools.partial(_refuse_stack, building, options)
     elif building.supports.stiffness is not None and options.soft_base:
@@ -63,8 +63,6 @@ def _refuse_soft_base(building: Building, options: tables.RockingTable) -> None:
 
 def _refuse_stack(building: Building, options: tables.Rocking) -> None:
     """Refused where two stacked blocks are asked for what `rocking` does not know of them."""
-    if options.animation != "none":
-        raise Refused("rocking draws no film of a stack: dem does", ("analysis", "animation"))
     for key in building.special_keys.values():
         raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
     if building.supports.stiffness is not None:

@@ -96,6 +96,7 @@ def make_rocker(
         return _on_soft_base(building, linear, stones)
     refuse_words(building, linear)
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
+    building.refuse_weightless(piers if stones is None else stones)
     if rocks_as_block(building):
         block = block_model(building, linear, stones)
         alpha = block.alpha
