@@ -8,7 +8,6 @@ import numpy as np
 
 from extrados.decks.reader import Deck
 from extrados.kinds import STRUCTURES, table
-from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored, StoreError
 from extrados.schema.constants import GRAVITY
 from extrados.schema.table import Table
@@ -217,13 +216,18 @@ class _Maker:
             )  # fmt: skip
 
     def pushover(self) -> None:
-        """Base shear over displacement both ways, and the building as it cracks from state to state under the first."""
+        """Base shear over displacement of every sense or stage, and the building as it cracks under the first of them."""
+        r: Any = self.run[self.name]
+        if r.stages:
+            curves = [(stage.prefix, stage.name) for stage in r.stages]
+        else:
+            curves = [("", f"push to {r.sense}"), *([("minus_", f"push to {r.minus.sense}")] if r.minus else [])]
         series = []
-        for prefix, numbers in zip(PREFIXES, (self.run[self.name], self.run[self.name].minus), strict=True):
-            if f"{prefix}envelope_load" in self.arrays and numbers is not None:
-                self.send(f"{prefix}envelope_load", f"{prefix}envelope_displacement")
-                series.append(_series(f"{prefix}envelope_load", f"push to {numbers.sense}", x=f"{prefix}envelope_displacement",
-                                      factor=1e-3, dashed=bool(prefix)))  # fmt: skip
+        for k, (prefix, label) in enumerate(curves):
+            if f"{prefix}envelope_load" in self.arrays:
+                x = f"{prefix}envelope_displacement"
+                self.send(f"{prefix}envelope_load", x)
+                series.append(_series(f"{prefix}envelope_load", label, x=x, factor=1e-3, dashed=k % 2 == 1))
         axis = _axis("envelope_displacement", "displacement", "mm", 1e3)
         self.charts.append(
             _chart("Base shear and displacement", axis, _axis("", "base shear", "kN"), series, trace="state")
