@@ -21,7 +21,7 @@ from extrados import _core
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import arch, dem, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
+from extrados.core import arch, dem, limit, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -243,13 +243,31 @@ def motions(kind, parameters, points, step, intensity, frequency, amplitude, wan
 
 
 def small(
-    mass, centroid, inertia, joint, hinge, opposite, before, after, alpha, beta, a, b, kind, points, connect, force
+    mass,
+    centroid,
+    inertia,
+    joint,
+    hinge,
+    opposite,
+    before,
+    after,
+    alpha,
+    beta,
+    a,
+    b,
+    kind,
+    points,
+    connect,
+    force,
+    band,
+    right,
 ) -> Any:
     """The functions that keep nothing."""
     return (
         arch.restitution(mass, centroid, inertia, joint, hinge, opposite), mechanism.restitution(mass, inertia, before, after),
         sla.intervals(alpha, beta, a, b), sla.body_force(kind, points, BOX, connect, force),
         sla.teeth(sla.Softening(1e5, 50.0), alpha, beta), sla.largest_band(sla.Softening(1e5, 50.0), alpha),
+        limit.BandFactor(np.array(band)).solve(right),
     )  # fmt: skip
 
 
@@ -332,6 +350,7 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             mass=np.ones(3), centroid=rng.normal(size=(3, 2)), inertia=np.ones(3), joint=np.array([0, 1, 2, 3]), hinge=rng.normal(size=(4, 2)),
             opposite=rng.normal(size=(4, 2)), before=rng.normal(size=(3, 3)), after=rng.normal(size=(3, 3)), alpha=1e9, beta=0.5,
             a=np.ones((2, 3)), b=np.ones((2, 3)), kind="Q4", points=(2, 2), connect=[[0, 1, 2, 3]], force=[[0.0, 1.0]],
+            band=np.tile([4.0, 1.0, 0.5], (12, 1)), right=np.ones(12),
         )),
     ]  # fmt: skip
 

@@ -282,7 +282,8 @@ class Session:
         before = live.deck
         live.update(written)
         try:
-            reply = self._scene()
+            moved = all(key.split(".")[0] == "motion" for key in written) and self.picture is not None
+            reply = Reply({"deck": self._deck_words()}) if moved else self._scene()  # statics know no motion
         except BaseException:
             live.back_to(before)
             raise
@@ -377,7 +378,8 @@ class Session:
         return _quantity(text, handle.unit, handle.label)
 
     def _set(self, message: dict[str, Any]) -> Iterator[Reply]:
-        """Keys of the deck given values: numbers, words, or text with units as it would stand in the deck."""
+        """Keys of the deck given values: numbers, words, or text with units as it would stand in the deck. `rocking`: the
+        response comes with the same reply, for a hand that draws a pulse."""
         changes = message.get("changes")
         if not isinstance(changes, dict) or not 0 < len(changes) <= 50:
             raise BadMessage("expected up to 50 changes")
@@ -385,6 +387,10 @@ class Session:
             if not re.fullmatch(r"[A-Za-z_][\w-]*(\.[\w-]+){0,8}", key):
                 raise BadMessage("that is no key")
         reply = self._change(changes)
+        if message.get("rocking") is True and self._there().deck.motion is not None:
+            for response in self._rocking({}):
+                reply.words |= response.words
+                reply.arrays |= response.arrays
         yield reply
 
     def _analysis(self, message: dict[str, Any]) -> Iterator[Reply]:
@@ -551,6 +557,8 @@ class Session:
 
     def _push(self, _: dict[str, Any]) -> Iterator[Reply]:
         """Limit analysis of what no hand moves: blocks in space, along the deck's directions or all around."""
+        if self.picture is not None:
+            raise BadMessage("a section follows the hand as it is")
         options, building, _ = self._options(Tilt, lambda: Tilt(kind="tilt"))
         result = run_one(self._there().context(), options, building)
         if result.status != "ok":

@@ -406,10 +406,14 @@ class _Maker:
         self.body = {"sort": "mesh", "unit": "", "label": "event"}
 
     def _held(self, events: np.ndarray) -> np.ndarray:
-        """Which states, by their events, are in equilibrium."""
-        if "event_equilibrium" not in self.arrays:
-            return np.ones(len(events), dtype=np.uint8)
-        return (self.arrays["event_equilibrium"][events - 1] > 0).astype(np.uint8)
+        """Which states, by their events, are in equilibrium and no farther than the envelope: beyond it a mechanism moves."""
+        held = np.ones(len(events), dtype=bool)
+        if "event_equilibrium" in self.arrays:
+            held = self.arrays["event_equilibrium"][events - 1] > 0
+        if "envelope_displacement" in self.arrays:
+            reach = 1.05 * np.abs(self.arrays["envelope_displacement"]).max(initial=0.0)
+            held &= np.abs(self.arrays["event_displacement"][events - 1]) <= reach
+        return held.astype(np.uint8)
 
     def _curve(self) -> None:
         series, axis = [], _axis("event_displacement", "displacement", "mm", 1e3)

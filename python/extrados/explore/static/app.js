@@ -121,7 +121,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     flying.delete(entry.lane);
     if (there?.next) ask(there.next.message, there.next);
   }
-  function change(changes, lane) { ask({ do: "set", changes, lane }); }
+  function change(changes, lane, more = {}, when = performance.now()) { ask({ do: "set", changes, lane, ...more }, { when }); }
   function show(view, when) {
     Object.assign(app.view, view);
     if (view.through) app.view.thrust = null;
@@ -167,6 +167,13 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       if (words.to !== "hello") say("");
       rest();
     }
+    else if (words.to === "set" && words.deck) { // a motion alone has changed
+      app.deck = words.deck;
+      dirty = true;
+      if (words.rocking === undefined) tell("scene", false, entry?.when);
+      say("");
+      rest();
+    }
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
     if (words.text !== undefined && words.to === "rest") settled(words);
     for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
@@ -174,14 +181,15 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (entry) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
       if (words.scene && entry.when && ["drag", "show", "set"].includes(entry.message.do)) painted(entry, words.ms);
-      if (words.rocking || words.domain?.stride > 1) painted(entry, words.ms);
+      if (words.rocking) painted(entry, words.ms, "rocking");
+      if (words.domain?.stride > 1) painted(entry, words.ms);
     }
   };
   /** From the event to the picture that the next frame has put on the screen. */
-  function painted(entry, server) {
+  function painted(entry, server, what = entry.message.do) {
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
-      channel.port1.onmessage = () => { app.timings.push({ do: entry.message.do, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); };
+      channel.port1.onmessage = () => { app.timings.push({ do: what, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); };
       channel.port2.postMessage(0);
     });
   }

@@ -102,13 +102,14 @@ export function motionPanel(app, lower, frame) {
     set(slider, { max: end });
     slider.disabled = !arrays.pose;
     it.time = Math.min(it.time, end);
-    draw();
+    draw(false);
     seek(it.time, false);
   });
   app.on("impulse", (told) => { impulse.textContent = told.refused ? `No primary impulse: ${told.refused}` : told.answer; it.impulse = told; draw(); });
   app.on("domain", (told, arrays) => { it.map = { told, arrays }; drawMap(); });
 
-  function draw() {
+  /** map: the map of pulses too, which a new response leaves as it is. */
+  function draw(map = true) {
     if (app.tab !== "motion") return;
     const { arrays, words: told, ground } = it;
     if (!ground?.motion) charts.pulse.draw(blank("Ground acceleration"), {});
@@ -131,7 +132,7 @@ export function motionPanel(app, lower, frame) {
       const big = Math.max(...[...arrays.potential, ...arrays.kinetic].map(Math.abs), 1e-12), kilo = big > 2000 ? [1e-3, "kJ"] : [1, "J"];
       if (shownThird === "energy") charts.energy.draw({ title: "Energy", span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: "supplied less lost", dashed: true, factor: kilo[0] }] }, arrays);
     }
-    drawMap();
+    if (map || !it.map || it.map.why) drawMap(); else dot(charts.map);
     cursors();
   }
   function drawMap() {
@@ -167,12 +168,12 @@ export function motionPanel(app, lower, frame) {
     pulseTo(p.duration_s * (1 + m * step[0]), p.amplitude_g * (1 + m * step[1]));
   }
   /** Give the pulse another duration and amplitude; only pulses have them. */
-  function pulseTo(duration, amplitude) {
+  function pulseTo(duration, amplitude, when) {
     const motion = app.deck?.motion;
     if (!motion?.pulse) return;
     const sign = motion.amplitude < 0 ? -1 : 1;
     const key = motion.kind === "step-pulse" ? "duration" : "period";
-    app.change({ "motion.amplitude": `${Number((sign * Math.max(amplitude, 1e-3)).toPrecision(3))} g`, [`motion.${key}`]: Number(Math.max(duration, 1e-3).toPrecision(3)) }, "pulse");
+    app.change({ "motion.amplitude": `${Number((sign * Math.max(amplitude, 1e-3)).toPrecision(3))} g`, [`motion.${key}`]: Number(Math.max(duration, 1e-3).toPrecision(3)) }, "pulse", { rocking: true }, when);
   }
   function place(x, y) { if (pulse() && !pulse().record) pulseTo(x, y); else if (!app.deck?.motion) begin("step-pulse"); }
   function pulseHandles(c) {
@@ -219,7 +220,7 @@ export function motionPanel(app, lower, frame) {
     const invert = c.invert;
     const move = (e) => {
       const [t, a] = invert(e.clientX - edge.left, e.clientY - edge.top), now = app.deck.motion.pulse;
-      if (name === "amplitude") pulseTo(now.duration_s, Math.max(app.deck.motion.amplitude < 0 ? -a : a, 1e-3)); else pulseTo(Math.max(t, 0.005), now.amplitude_g);
+      if (name === "amplitude") pulseTo(now.duration_s, Math.max(app.deck.motion.amplitude < 0 ? -a : a, 1e-3), e.timeStamp); else pulseTo(Math.max(t, 0.005), now.amplitude_g, e.timeStamp);
     };
     knob.addEventListener(kind, move);
     const up = () => { knob.removeEventListener(kind, move); };
