@@ -377,8 +377,9 @@ def _tell_plan(checked: "Checked", folder: Path) -> None:
     mesh = checked.plan
     for remark in checked.remarks:
         out_console.say(f"warning: {remark}")
+    walls = f"{len(mesh.walls)} walls, " if mesh.walls else ""
     out_console.say(
-        f"{len(mesh.walls)} walls, {mesh.elements()} elements, {len(mesh.xyz)} nodes; walls and floors weigh "
+        f"{walls}{mesh.elements()} elements, {len(mesh.xyz)} nodes; {'walls and floors weigh' if walls else 'weight'} "
         f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
     )
     try:

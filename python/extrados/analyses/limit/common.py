@@ -68,6 +68,7 @@ def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bo
     """The programmes of a building's stones under its joint laws; forces_only: where no motion is asked for, so that how
     sliding dilates does not matter."""
     assembly = building.blocks()
+    building.refuse_weightless()
     try:
         return LimitAnalysis(
             assembly,
