@@ -58,6 +58,7 @@ MAY_USE = {
     "sla": {"common"},
     "shell": {"common", "sla"},
     "dem": {"common"},
+    "dem3": {"common", "dem"},
     "motion": {"common"},
     "limit": {"common"},
 }
