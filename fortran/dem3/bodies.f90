@@ -28,9 +28,17 @@ module dem3_bodies
       real(wp) :: radius = 0.0_wp              !! farthest vertex from the centroid [m]
       real(wp) :: seen(3) = 0.0_wp             !! place and attitude at the last search
       real(wp) :: seen_turn(3, 3) = 0.0_wp
+      real(wp) :: marked(3) = 0.0_wp           !! and at the last mark
+      real(wp) :: marked_turn(3, 3) = 0.0_wp
       real(wp) :: rest(3) = 0.0_wp             !! place after settling
+      real(wp) :: rest_turn(3, 3) = 0.0_wp     !! attitude after settling
       real(wp) :: work = 0.0_wp                !! done by the ground's body force [J]
+      real(wp) :: airborne = 0.0_wp            !! time without contact [s]
+      integer :: marks = 0                     !! times that it has moved so far that its contacts must be looked at anew
+      integer :: bounces = 0                   !! times that it has left all that it touched
       logical :: fixed = .false.
+      logical :: touched = .false.             !! in this step
+      logical :: touching = .false.            !! in the step before
    end type body
 
    !> One convex polyhedron of a body
@@ -47,6 +55,8 @@ module dem3_bodies
       real(wp), allocatable :: vertex(:, :)    !! (3, nv) in the frame of the body [m]
       real(wp), allocatable :: here(:, :)      !! (3, nv) in space [m]
       real(wp), allocatable :: normal(:, :)    !! (3, nf) outward, in the frame of the body
+      real(wp), allocatable :: level(:)        !! (nf) of the faces along them [m]
+      real(wp), allocatable :: area(:)         !! (nf) [m^2]
       integer, allocatable :: loop_first(:)    !! (nf + 1)
       integer, allocatable :: loop(:)          !! vertices of the faces, counter-clockwise from outside
       real(wp) :: size = 0.0_wp                !! least extent of a part of a mobile body [m]
@@ -82,6 +92,7 @@ contains
       if (any(loop_first(2:) - loop_first(:size(loop_first) - 1) < 3)) return
       allocate (set%item(size(mass)), set%parts(size(owner)), set%vertex(3, size(vertex, 2)), &
          set%here(3, size(vertex, 2)), set%normal(3, size(loop_first) - 1), &
+         set%level(size(loop_first) - 1), set%area(size(loop_first) - 1), &
          set%loop_first(size(loop_first)), set%loop(size(loop)), stat=failed)
       status = status_out_of_memory
       if (failed /= 0) return
@@ -110,6 +121,11 @@ contains
          end do
          if (.not. norm2(across) > 0.0_wp) return
          set%normal(:, f) = across / norm2(across)
+         set%area(f) = 0.5_wp * norm2(across)
+         set%level(f) = 0.0_wp
+         do k = loop_first(f), loop_first(f + 1) - 1
+            set%level(f) = set%level(f) + dot_product(set%normal(:, f), vertex(:, loop(k))) / (loop_first(f + 1) - loop_first(f))
+         end do
       end do
       set%size = huge(1.0_wp)
       do k = 1, size(owner)

@@ -4,19 +4,22 @@ module dem3_model
    use common_status, only : status_ok, status_out_of_memory
    use dem_loading, only : loading, mean_acceleration
    use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
-   use dem3_law, only : act, contact_pair, elastic_energy, joint_law
-   use dem3_patch, only : meet, patch
-   use, intrinsic :: iso_c_binding, only : c_int
+   use dem3_law, only : act, contact_pair, drop_points, elastic_energy, find_points, joint_law
+   use dem3_patch, only : measure
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, search, advance, critical_step, energy_terms, energy_now, energy_residual
+   public :: solid_model, set_distances, search, advance, critical_step, energy_terms, energy_now, energy_residual
 
    type :: solid_model
       type(body_set) :: set
       type(contact_pair), allocatable :: pair(:)
       integer :: pairs = 0
+      integer, allocatable :: sweep(:)                !! the pairs by colours
+      integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; after the last what has none
+      integer :: colours = 0
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
-      integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, and their law
+      integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, and their law; ascending
       type(loading) :: load                           !! its gravity is not used: that here is along z
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
@@ -26,8 +29,13 @@ module dem3_model
       real(wp) :: kick = 0.0_wp                       !! velocity step taken last [s]
       real(wp) :: pull(3) = 0.0_wp                    !! body force of the last step [m/s^2]
       real(wp) :: pull_before(3) = 0.0_wp
-      real(wp) :: skin = 0.0_wp                       !! parts nearer than this are looked at [m]
+      real(wp) :: skin = 0.0_wp                       !! parts nearer than this are pairs [m]
+      real(wp) :: reach = 0.0_wp                      !! a body that has moved farther makes them stale [m]
+      real(wp) :: margin = 0.0_wp                     !! features nearer than this are points of a pair [m]
+      real(wp) :: far = 0.0_wp                        !! bodies that have moved farther apart find them anew [m]
+      real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
+      real(wp) :: support_work = 0.0_wp               !! of them [J]
       integer :: segment = 0                          !! of the ground motion
       integer :: steps = 0
       logical :: shaking = .false.                    !! false while settling: the ground rests
@@ -55,6 +63,9 @@ contains
       integer, allocatable :: order(:)
       integer :: i, j, k, n, count, failed, room, axis, old
 
+      do k = 1, size(model%set%parts)
+         call place(model%set, k)
+      end do
       n = size(model%set%parts)
       allocate (low(3, n), high(3, n), order(n), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
@@ -117,21 +128,75 @@ contains
          model%set%item(k)%seen_turn = model%set%item(k)%turn
       end do
       model%stale = .false.
+      call colour(model, status)
    end subroutine search
 
    !> A pair goes: what it lost is kept
    subroutine forget(model, number)
       type(solid_model), intent(inout) :: model
       integer, intent(in) :: number
-      integer :: k
       associate (pair => model%pair(number))
+         call drop_points(model%law(pair%law), pair)
          model%lost = model%lost + [pair%friction_loss, pair%damping_loss]
-         do k = 1, pair%points
-            model%lost(1) = model%lost(1) + 0.5_wp * dot_product(pair%point(k)%spring_s, pair%point(k)%spring_s) &
-               / (model%law(pair%law)%shear_stiffness * pair%point(k)%area)
-         end do
+         model%support_work = model%support_work + pair%support_work
       end associate
    end subroutine forget
+
+   !> How near is near, from the size of the smallest part
+   subroutine set_distances(model)
+      type(solid_model), intent(inout) :: model
+      model%wander = 0.004_wp * model%set%size
+      model%far = 0.004_wp * model%set%size
+      model%margin = 0.02_wp * model%set%size     ! more than far and twice wander
+      model%reach = 0.02_wp * model%set%size
+      model%skin = 0.08_wp * model%set%size       ! more than the margin, twice reach and twice wander
+   end subroutine set_distances
+
+   !> Colours of the pairs: two of one colour have no mobile body in common, so that they may act at once
+   subroutine colour(model, status)
+      type(solid_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer, parameter :: most = 62
+      integer(c_int64_t) :: used(size(model%set%item)), bits
+      integer, allocatable :: of(:)
+      integer :: count(most + 1), k, c, side, who, failed
+      if (allocated(model%sweep)) deallocate (model%sweep)
+      if (.not. allocated(model%colour_first)) allocate (model%colour_first(most + 2))
+      allocate (model%sweep(model%pairs), of(model%pairs), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      used = 0
+      count = 0
+      do k = 1, model%pairs
+         bits = 0
+         do side = 1, 2
+            who = model%set%parts(model%pair(k)%part(side))%owner
+            if (.not. model%set%item(who)%fixed) bits = ior(bits, used(who))
+         end do
+         c = 0
+         do while (c < most .and. btest(bits, c))
+            c = c + 1
+         end do
+         of(k) = c + 1
+         count(c + 1) = count(c + 1) + 1
+         if (c == most) cycle
+         do side = 1, 2
+            who = model%set%parts(model%pair(k)%part(side))%owner
+            used(who) = ibset(used(who), c)
+         end do
+      end do
+      model%colour_first(1) = 1
+      model%colours = 0
+      do c = 1, most + 1
+         model%colour_first(c + 1) = model%colour_first(c) + count(c)
+         if (c <= most .and. count(c) > 0) model%colours = c
+      end do
+      count = model%colour_first(1:most + 1)
+      do k = 1, model%pairs
+         model%sweep(count(of(k))) = k
+         count(of(k)) = count(of(k)) + 1
+      end do
+   end subroutine colour
 
    !> The law of a pair of bodies
    pure function law_between(model, one, two) result(law)
@@ -139,11 +204,23 @@ contains
       integer, intent(in) :: one
       integer, intent(in) :: two
       integer :: law
-      integer :: k
+      integer :: low, high, middle, wanted(2)
       law = 1
       if (.not. allocated(model%law_of)) return
-      do k = 1, size(model%law_of, 2)
-         if (model%law_of(1, k) == min(one, two) .and. model%law_of(2, k) == max(one, two)) law = model%law_of(3, k)
+      wanted = [min(one, two), max(one, two)]
+      low = 1
+      high = size(model%law_of, 2)
+      do while (low <= high)
+         middle = (low + high) / 2
+         if (all(model%law_of(1:2, middle) == wanted)) then
+            law = model%law_of(3, middle)
+            return
+         end if
+         if (before(model%law_of(1:2, middle), wanted)) then
+            low = middle + 1
+         else
+            high = middle - 1
+         end if
       end do
    end function law_between
 
@@ -205,55 +282,96 @@ contains
       end do
    end subroutine by_number
 
-   !> Up to `count` steps; returns early where the contacts must be searched again.
-   !> Threads share the geometry of the pairs, which is most of the work; forces are summed in the order of the pairs,
-   !> so that no bit depends on the threads.
-   subroutine advance(model, count, threads, status)
+   !> Up to `count` steps; returns early where near pairs must be searched again
+   subroutine advance(model, count, threads)
       type(solid_model), intent(inout) :: model
       integer, intent(in) :: count
       integer, intent(in) :: threads
-      integer(c_int), intent(out) :: status
-      type(patch), allocatable :: found(:)
-      integer :: n, k, failed
+      integer :: n, k, c
 
-      allocate (found(model%pairs), stat=failed)
-      status = merge(status_ok, status_out_of_memory, failed == 0)
-      if (failed /= 0) return
+      if (threads > 1) then
+         call advance_threads(model, count, threads)
+         return
+      end if
       do n = 1, count
          call prepare(model)
-         !$omp parallel do default(none) num_threads(threads) if(threads > 1) shared(model, found) private(k) &
-         !$omp schedule(static)
-         do k = 1, model%pairs
-            call meet(model%set, model%pair(k)%part(1), model%pair(k)%part(2), found(k))
-         end do
-         !$omp end parallel do
          do k = 1, size(model%set%item)
             call predict(model, model%set%item(k))
          end do
-         do k = 1, model%pairs
-            if (found(k)%points == 0 .and. model%pair(k)%points == 0) cycle
-            associate (a => model%set%item(model%set%parts(model%pair(k)%part(1))%owner), &
-                       b => model%set%item(model%set%parts(model%pair(k)%part(2))%owner))
-               call act(model%law(model%pair(k)%law), model%kick, model%drift, found(k), a, b, model%pair(k))
-            end associate
+         do c = 1, model%pairs
+            call touch(model, model%pair(model%sweep(c)))
          end do
          do k = 1, size(model%set%item)
-            call move(model, model%set%item(k))
+            call move(model, model%set%item(k), model%stale)
          end do
-         do k = 1, size(model%set%parts)
-            if (.not. model%set%item(model%set%parts(k)%owner)%fixed) call place(model%set, k)
-         end do
-         model%drift = model%step
-         model%t = model%t + model%step
-         model%steps = model%steps + 1
+         call finish(model)
          if (model%stale) return
       end do
    end subroutine advance
 
-   !> Body force of this step
+   !> The same steps shared among threads: pairs of one colour touch no common mobile body
+   subroutine advance_threads(model, count, threads)
+      type(solid_model), intent(inout) :: model
+      integer, intent(in) :: count
+      integer, intent(in) :: threads
+      integer :: n, k, c
+      logical :: stale
+
+      stale = .false.
+      !$omp parallel default(none) num_threads(threads) shared(model, count, stale) private(n, k, c)
+      do n = 1, count
+         !$omp single
+         call prepare(model)
+         stale = .false.
+         !$omp end single
+         !$omp do schedule(static)
+         do k = 1, size(model%set%item)
+            call predict(model, model%set%item(k))
+         end do
+         !$omp end do
+         do c = 1, model%colours
+            !$omp do schedule(static)
+            do k = model%colour_first(c), model%colour_first(c + 1) - 1
+               call touch(model, model%pair(model%sweep(k)))
+            end do
+            !$omp end do
+         end do
+         !$omp single
+         do k = model%colour_first(model%colours + 1), model%pairs
+            call touch(model, model%pair(model%sweep(k)))
+         end do
+         !$omp end single
+         !$omp do schedule(static) reduction(.or. : stale)
+         do k = 1, size(model%set%item)
+            call move(model, model%set%item(k), stale)
+         end do
+         !$omp end do
+         !$omp single
+         model%stale = stale
+         call finish(model)
+         !$omp end single
+         if (model%stale) exit
+      end do
+      !$omp end parallel
+   end subroutine advance_threads
+
+   !> Geometry, where it must be looked at anew, and law of one pair
+   pure subroutine touch(model, pair)
+      type(solid_model), intent(inout) :: model
+      type(contact_pair), intent(inout) :: pair
+      associate (a => model%set%item(model%set%parts(pair%part(1))%owner), &
+                 b => model%set%item(model%set%parts(pair%part(2))%owner))
+         if (pair%marks(1) /= a%marks .or. pair%marks(2) /= b%marks) &
+            call find_points(model%set, model%far, model%margin, model%law(pair%law), pair)
+         if (pair%points > 0) call act(model%law(pair%law), model%kick, model%drift, a, b, pair)
+      end associate
+   end subroutine touch
+
+   !> Body force and velocity of the ground in this step
    subroutine prepare(model)
       type(solid_model), intent(inout) :: model
       real(wp) :: ground(2), half
+      ! At the very start half a velocity step leads from the initial velocity to the half step.
       half = 0.5_wp * model%step
       model%kick = 0.5_wp * model%drift + half
       model%pull_before = model%pull
@@ -271,64 +389,138 @@ contains
       b%spin = spin_of(b, b%swing)
       b%p = b%v + model%kick * (b%force * b%inverse_mass + model%pull)
       b%pspin = spin_of(b, b%swing + model%kick * b%moment)
+      ! Work of the ground's part of the body force; gravity has a potential.
       b%work = b%work + 0.5_wp * model%drift * b%mass &
          * dot_product(model%pull + model%pull_before - 2.0_wp * model%gravity, b%v)
       b%force = 0.0_wp
       b%moment = 0.0_wp
+      b%touched = .false.
    end subroutine predict
 
    !> Velocity and place after the step
-   pure subroutine move(model, b)
-      type(solid_model), intent(inout) :: model
+   pure subroutine move(model, b, stale)
+      type(solid_model), intent(in) :: model
       type(body), intent(inout) :: b
+      logical, intent(inout) :: stale
       if (b%fixed) return
       b%v = b%v + model%kick * (b%force * b%inverse_mass + model%pull)
       b%swing = b%swing + model%kick * b%moment
       b%x = b%x + model%step * b%v
       call turn_freely(b, model%step)
-      if (norm2(b%x - b%seen) + b%radius * norm2(b%turn - b%seen_turn) > 0.5_wp * model%skin) model%stale = .true.
+      if (.not. b%touched) then
+         b%airborne = b%airborne + model%step
+         if (b%touching) b%bounces = b%bounces + 1
+      end if
+      b%touching = b%touched
+      if (norm2(b%x - b%marked) + b%radius * norm2(b%turn - b%marked_turn) < model%wander) return
+      b%marks = b%marks + 1
+      b%marked = b%x
+      b%marked_turn = b%turn
+      if (norm2(b%x - b%seen) + b%radius * norm2(b%turn - b%seen_turn) > model%reach) stale = .true.
    end subroutine move
 
-   !> A step that is stable for all contacts that may close: 2 / omega, omega^2 bounded by the trace of each body's
-   !> stiffness over its mass, twice as stiff where the neighbour moves too [s]
-   subroutine critical_step(model, step)
-      type(solid_model), intent(in) :: model
+   subroutine finish(model)
+      type(solid_model), intent(inout) :: model
+      model%drift = model%step
+      model%t = model%t + model%step
+      model%steps = model%steps + 1
+   end subroutine finish
+
+   !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 above the greatest eigenvalue of any
+   !> body on its springs, twice as stiff where the neighbour moves too [s]
+   subroutine critical_step(model, step, status)
+      type(solid_model), intent(inout) :: model
       real(wp), intent(out) :: step          !! [s]
-      real(wp) :: greatest, stiff, arm(3), area, share, trace(size(model%set%item))
-      type(patch) :: found
-      integer :: k, i, side
-      trace = 0.0_wp
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: stiffness(:, :, :)
+      real(wp) :: greatest, share, normal(3), gap, at(3), area
+      integer :: k, i, side, who, failed
+      step = 0.0_wp
+      allocate (stiffness(6, 6, size(model%set%item)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      stiffness = 0.0_wp
       do k = 1, model%pairs
-         call meet(model%set, model%pair(k)%part(1), model%pair(k)%part(2), found)
-         associate (one => model%set%parts(model%pair(k)%part(1)), two => model%set%parts(model%pair(k)%part(2)))
-            share = merge(1.0_wp, 2.0_wp, model%set%item(one%owner)%fixed .or. model%set%item(two%owner)%fixed)
-            do side = 1, 2
-               associate (b => model%set%item(merge(one%owner, two%owner, side == 1)))
-                  if (b%fixed) cycle
-                  do i = 1, found%points
-                     area = found%area(i)
-                     stiff = share * max(model%law(model%pair(k)%law)%normal_stiffness, &
-                        model%law(model%pair(k)%law)%shear_stiffness) * area
-                     arm = found%at(:, i) - b%x
-                     associate (sum_of => trace(merge(one%owner, two%owner, side == 1)))
-                        sum_of = sum_of + stiff * (b%inverse_mass + dot_product(arm, arm) / minval(b%inertia))
-                     end associate
-                  end do
-               end associate
+         associate (pair => model%pair(k), parts => model%set%parts)
+            call find_points(model%set, model%far, model%margin, model%law(pair%law), pair)
+            share = merge(1.0_wp, 2.0_wp, model%set%item(parts(pair%part(1))%owner)%fixed &
+               .or. model%set%item(parts(pair%part(2))%owner)%fixed)
+            do i = 1, pair%points
+               call measure(pair%point(i)%what, model%set%item(parts(pair%part(1))%owner), &
+                  model%set%item(parts(pair%part(2))%owner), normal, gap, at)
+               do side = 1, 2
+                  who = parts(pair%part(side))%owner
+                  call stiffen(model%law(pair%law), share * pair%point(i)%what%area, normal, at, model%set%item(who), &
+                     stiffness(:, :, who))
+               end do
             end do
          end associate
       end do
-      do k = 1, size(model%set%parts)   ! what touches nothing yet will land, on a face as large as it is
-         associate (b => model%set%item(model%set%parts(k)%owner))
-            if (b%fixed .or. trace(model%set%parts(k)%owner) > 0.0_wp) cycle
-            area = model%set%parts(k)%size**2
-            trace(model%set%parts(k)%owner) = 2.0_wp * model%law(1)%normal_stiffness * area &
-               * (b%inverse_mass + b%radius**2 / minval(b%inertia))
+      do k = 1, size(model%set%parts)   ! what touches nothing yet will land, on its largest face at the worst
+         who = model%set%parts(k)%owner
+         associate (b => model%set%item(who), one => model%set%parts(k))
+            if (b%fixed .or. any(abs(stiffness(:, :, who)) > 0.0_wp)) cycle
+            area = maxval(model%set%area(one%face_first:one%face_last))
+            call stiffen(model%law(1), 2.0_wp * area, [0.0_wp, 0.0_wp, 1.0_wp], b%x + b%radius * b%turn(:, 1), b, &
+               stiffness(:, :, who))
          end associate
       end do
-      greatest = maxval(trace)
+      greatest = 0.0_wp
+      do k = 1, size(model%set%item)
+         if (.not. model%set%item(k)%fixed) greatest = max(greatest, above_eigenvalues(stiffness(:, :, k)))
+      end do
       step = 2.0_wp / sqrt(max(greatest, tiny(1.0_wp)))
    end subroutine critical_step
+
+   !> Add the springs at a point to the 6 x 6 stiffness of a body, scaled by its masses, in its own axes
+   pure subroutine stiffen(law, area, normal, at, b, stiffness)
+      type(joint_law), intent(in) :: law
+      real(wp), intent(in) :: area           !! [m^2]
+      real(wp), intent(in) :: normal(3)
+      real(wp), intent(in) :: at(3)          !! [m]
+      type(body), intent(in) :: b
+      real(wp), intent(inout) :: stiffness(6, 6)
+      real(wp) :: velocity(3, 6), along(6), arm(3), unit(3)
+      integer :: k, i, j
+      if (b%fixed) return
+      arm = matmul(at - b%x, b%turn)
+      along(1:3) = matmul(normal, b%turn)
+      do k = 1, 3
+         unit = 0.0_wp
+         unit(k) = 1.0_wp
+         velocity(:, k) = unit * sqrt(b%inverse_mass)
+         velocity(:, k + 3) = cross(unit, arm) / sqrt(b%inertia(k))
+      end do
+      along = matmul(along(1:3), velocity)
+      do j = 1, 6
+         do i = 1, 6
+            stiffness(i, j) = stiffness(i, j) + area * (law%shear_stiffness * dot_product(velocity(:, i), velocity(:, j)) &
+               + (law%normal_stiffness - law%shear_stiffness) * along(i) * along(j))
+         end do
+      end do
+   end subroutine stiffen
+
+   !> A bound of the eigenvalues of a symmetric matrix, at most 6 % above the greatest: the 32nd root of the sum of their
+   !> 32nd powers
+   pure function above_eigenvalues(matrix) result(bound)
+      real(wp), intent(in) :: matrix(6, 6)
+      real(wp) :: bound
+      real(wp) :: power(6, 6), size, scale
+      integer :: k
+      bound = 0.0_wp
+      size = maxval(abs(matrix))
+      if (.not. size > 0.0_wp) return
+      power = matrix / size
+      scale = 0.0_wp                         ! logarithm of what was taken out
+      do k = 1, 4
+         power = matmul(power, power)
+         bound = maxval(abs(power))
+         power = power / bound
+         scale = 2.0_wp * scale + log(bound)
+      end do
+      ! |A^16| = root of the sum of the 32nd powers.
+      bound = size * exp((scale + log(norm2(power))) / 16.0_wp)
+   end function above_eigenvalues
 
    !> Energy that came from nowhere since the start [J]
    pure function energy_residual(energy, start) result(r)
@@ -362,6 +554,7 @@ contains
       end do
       now%friction = model%lost(1)
       now%damping = model%lost(2)
+      now%work = now%work + model%support_work
       do k = 1, model%pairs
          associate (pair => model%pair(k))
             now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)

@@ -5,10 +5,12 @@ module dem3_run
    use common_lists, only : dem_energy_count, dem_energy_kinetic, dem_energy_potential, dem_energy_elastic, &
       dem_energy_friction, dem_energy_damping, dem_energy_mass_damping, dem_energy_work, dem_energy_residual, &
       dem_energy_leapfrog, stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, &
-      stop_blow_up => dem_stop_blow_up, stop_step => dem_stop_step, stop_unsettled => dem_stop_unsettled
+      stop_blow_up => dem_stop_blow_up, stop_left => dem_stop_left, stop_rest => dem_stop_rest, &
+      stop_step => dem_stop_step, stop_unsettled => dem_stop_unsettled
    use common_status, only : status_ok, status_cancelled, status_not_finite, status_out_of_memory
+   use dem_loading, only : movement_end
    use dem3_bodies, only : body, spin_of, turn_freely
-   use dem3_model, only : advance, critical_step, energy_now, energy_residual, energy_terms, search, solid_model
+   use dem3_model, only : advance, critical_step, energy_now, energy_residual, energy_terms, search, set_distances, solid_model
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -22,7 +24,9 @@ module dem3_run
       integer :: settle_steps = 0               !! at most; 0: no settling
       real(wp) :: settlement = 0.0_wp           !! displacement by which a body falls instead of settling [m]; 0: none
       real(wp) :: collapse = 0.0_wp             !! displacement that counts as collapse [m]; 0: none
+      real(wp) :: domain = 0.0_wp               !! displacement by which a body has left the scene [m]; 0: none
       real(wp) :: residual_limit = 0.1_wp       !! of the energy that went round
+      logical :: stop_at_rest = .false.         !! once the ground is still
       integer :: threads = 1
    end type run_options
 
@@ -46,6 +50,7 @@ module dem3_run
       real(wp) :: residual = 0.0_wp             !! greatest, over the energy that went round
       type(energy_terms) :: start               !! energies as the shaking began
       real(wp) :: round = 0.0_wp                !! greatest energy that went round so far [J]
+      integer :: calm_looks = 0                 !! in a row at which all was at rest
       logical :: paused = .false.               !! it has not come to its end and can go on
    end type run_record
 
@@ -75,10 +80,11 @@ contains
       integer(c_int), intent(out) :: status
       integer :: k
 
-      model%skin = 0.02_wp * model%set%size
+      call set_distances(model)
       call search(model, status)
       if (status /= status_ok) return
-      call critical_step(model, record%critical)
+      call critical_step(model, record%critical, status)
+      if (status /= status_ok) return
       model%step = options%step
       if (.not. model%step > 0.0_wp) model%step = options%fraction * record%critical
       record%least_step = model%step
@@ -86,6 +92,7 @@ contains
       if (record%reason /= stop_end) return
       do k = 1, size(model%set%item)
          model%set%item(k)%rest = model%set%item(k)%x
+         model%set%item(k)%rest_turn = model%set%item(k)%turn
       end do
       if (options%settle_steps > 0) then
          call settle(model, options, record, status)
@@ -93,6 +100,7 @@ contains
       end if
       do k = 1, size(model%set%item)
          model%set%item(k)%rest = model%set%item(k)%x
+         model%set%item(k)%rest_turn = model%set%item(k)%turn
       end do
       model%shaking = .true.
       call several(model, 1, options%threads, record, status)
@@ -136,7 +144,7 @@ contains
          else
             before = energy%kinetic
          end if
-         if (options%settlement > 0.0_wp) call limits(model, options%settlement, record)
+         call limits(model, options%settlement, 0.0_wp, record)
          if (record%reason /= stop_end) exit
          if (cancel_requested()) then
             status = status_cancelled
@@ -144,22 +152,49 @@ contains
          end if
       end do
       record%settling = n
-      if (n >= options%settle_steps .or. record%reason /= stop_end) record%reason = stop_unsettled
+      if (n >= options%settle_steps .or. record%reason /= stop_end) then
+         record%reason = stop_unsettled
+         if (record%blamed == 0) record%blamed = most_unbalanced(model)
+      end if
       do k = 1, model%pairs
-         model%pair(k)%friction_loss = 0.0_wp
-         model%pair(k)%damping_loss = 0.0_wp
-         model%pair(k)%support_work = 0.0_wp
-         model%pair(k)%point%dash_n = 0.0_wp
-         do n = 1, model%pair(k)%points
-            model%pair(k)%point(n)%dash_s = 0.0_wp
-         end do
+         associate (pair => model%pair(k))
+            pair%friction_loss = 0.0_wp
+            pair%damping_loss = 0.0_wp
+            pair%support_work = 0.0_wp
+            do n = 1, pair%points
+               pair%point(n)%dash_n = 0.0_wp
+               pair%point(n)%dash_s = 0.0_wp
+               pair%point(n)%force = pair%point(n)%force - pair%point(n)%dash
+               pair%point(n)%dash = 0.0_wp
+            end do
+         end associate
       end do
       model%lost = 0.0_wp
+      model%support_work = 0.0_wp
       model%set%item%work = 0.0_wp
+      model%set%item%bounces = 0
+      model%set%item%airborne = 0.0_wp
       model%t = 0.0_wp
       model%drift = 0.0_wp
       model%steps = 0
    end subroutine settle
+
+   !> The mobile body on which forces and weight are farthest from balance
+   pure function most_unbalanced(model) result(number)
+      type(solid_model), intent(in) :: model
+      integer :: number
+      integer :: k
+      real(wp) :: most, here
+      number = 0
+      most = -1.0_wp
+      do k = 1, size(model%set%item)
+         if (model%set%item(k)%fixed) cycle
+         here = norm2(model%set%item(k)%force * model%set%item(k)%inverse_mass + model%gravity)
+         if (here <= most) cycle
+         most = here
+         number = k
+      end do
+   end function most_unbalanced
 
    !> Greatest unbalanced force over weight, and moment over weight times radius
    pure function unbalanced(model) result(ratio)
@@ -189,8 +224,7 @@ contains
       status = status_ok
       target_steps = model%steps + count
       do while (model%steps < target_steps)
-         call advance(model, target_steps - model%steps, threads, status)
-         if (status /= status_ok) return
+         call advance(model, target_steps - model%steps, threads)
          if (.not. model%stale) cycle
          do k = 1, size(model%set%item)
             if (all(abs(model%set%item(k)%x) <= huge(1.0_wp))) cycle
@@ -201,7 +235,9 @@ contains
          if (status /= status_ok) return
          record%searches = record%searches + 1
          record%most_pairs = max(record%most_pairs, model%pairs)
-         call critical_step(model, critical)
+         ! New contacts may be stiffer than those of the start.
+         call critical_step(model, critical, status)
+         if (status /= status_ok) return
          if (model%step > 0.9_wp * critical) model%step = 0.5_wp * critical
          record%least_step = min(record%least_step, model%step)
       end do
@@ -217,8 +253,10 @@ contains
       integer(c_int), intent(out) :: status
       type(energy_terms) :: energy
       integer :: n, before
+      real(wp) :: quiet
       logical :: due
 
+      quiet = movement_end(model%load)
       before = model%steps
       record%paused = .false.
       do
@@ -238,7 +276,12 @@ contains
             abs(energy_residual(energy, record%start)) / max(record%round, record%start%elastic, tiny(1.0_wp)))
          if (due) call write_down(model, record, energy)
          if (.not. record%residual <= options%residual_limit) record%reason = stop_blow_up
-         if (record%reason == stop_end .and. options%collapse > 0.0_wp) call limits(model, options%collapse, record)
+         if (record%reason == stop_end) call limits(model, options%collapse, options%domain, record)
+         if (options%stop_at_rest .and. model%t > quiet) then
+            record%calm_looks = merge(record%calm_looks + 1, 0, &
+               unbalanced(model) < 1.0e-3_wp .and. energy%kinetic < 1.0e-6_wp * record%round)
+            if (record%calm_looks >= 50 .and. record%reason == stop_end) record%reason = stop_rest
+         end if
          if (record%reason /= stop_end .or. model%t - model%drift >= options%end_time - 0.5_wp * model%step) exit
          record%paused = .true.
          if (cancel_requested()) status = status_cancelled
@@ -282,16 +325,20 @@ contains
       record%energy(dem_energy_leapfrog, record%points) = now%leapfrog
    end subroutine write_down
 
-   !> Has a body moved farther than a limit [m]?
-   subroutine limits(model, limit, record)
+   !> Has a body moved farther than what counts as collapse, or left the scene?
+   subroutine limits(model, collapse, domain, record)
       type(solid_model), intent(in) :: model
-      real(wp), intent(in) :: limit
+      real(wp), intent(in) :: collapse          !! [m]; 0: no limit
+      real(wp), intent(in) :: domain            !! [m]; 0: no limit
       type(run_record), intent(inout) :: record
       integer :: k
+      real(wp) :: away
       do k = 1, size(model%set%item)
          if (model%set%item(k)%fixed) cycle
-         if (.not. norm2(model%set%item(k)%x - model%set%item(k)%rest) > limit) cycle
-         record%reason = stop_collapse
+         away = norm2(model%set%item(k)%x - model%set%item(k)%rest)
+         if (collapse > 0.0_wp .and. away > collapse) record%reason = stop_collapse
+         if (domain > 0.0_wp .and. away > domain) record%reason = stop_left
+         if (record%reason == stop_end) cycle
          record%blamed = k
          return
       end do
