@@ -1,12 +1,12 @@
 !> Discrete elements in space: a model behind a handle, built in steps, run, and read.
 !>
-!> create, laws, settings; then run as often as wanted; then summary and history tell the last run. A run that pauses
-!> goes on with go_on. Body numbers are 1-based; mass 0 marks a support.
+!> create, laws, settings; then run as often as wanted; then summary, bodies and history tell the last run. A run that
+!> pauses goes on with go_on; its state can be kept, and taken back by resume. Body numbers are 1-based; mass 0 marks a support.
 module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: create, laws, settings, run, go_on, summary, history
+   public :: create, laws, settings, run, go_on, state_size, state, resume, summary, bodies, history
 
 contains
 
@@ -82,15 +82,17 @@ contains
    end subroutine laws
 
    !> How to run, gravity, the direction of horizontal ground motion, and velocities at the start
-   subroutine settings(handle, numbers, settle_steps, gravity, way, nb, rate, status)
+   subroutine settings(handle, numbers, settle_steps, at_rest, threads, gravity, way, nb, rate, status)
       use common_handles, only : handle_leave
       use common_status, only : status_ok, status_invalid_argument, status_out_of_memory
       use dem3_handle, only : built_solids, built_solids_take
       integer(c_int64_t), intent(in) :: handle
-      !> End time, step (0: the fraction of the critical one) [s], that fraction, tolerance of settling, settlement and
-      !> collapse [m], limit of the energy from nowhere
-      real(c_double), intent(in) :: numbers(7)
+      !> End time, step (0: the fraction of the critical one) [s], that fraction, tolerance of settling, settlement,
+      !> collapse and domain [m], limit of the energy from nowhere
+      real(c_double), intent(in) :: numbers(8)
       integer(c_int), intent(in) :: settle_steps              !! 0: no settling
+      integer(c_int), intent(in) :: at_rest                   !! 1: stop once all rests and the ground is still
+      integer(c_int), intent(in) :: threads                   !! 0: all
       real(c_double), intent(in) :: gravity(3)                !! [m/s^2]
       real(c_double), intent(in) :: way(3)
       integer(c_int), intent(in) :: nb
@@ -115,15 +117,19 @@ contains
             built%options%settle_tolerance = numbers(4)
             built%options%settlement = numbers(5)
             built%options%collapse = numbers(6)
-            built%options%residual_limit = numbers(7)
+            built%options%domain = numbers(7)
+            built%options%residual_limit = numbers(8)
             built%options%settle_steps = settle_steps
+            built%options%stop_at_rest = at_rest /= 0
+            built%options%threads = threads
+            built%ready = .true.
          end if
       end if
       call handle_leave(handle)
    end subroutine settings
 
    !> Run from the start under a motion of a set
-   subroutine run(handle, motions, motion, scale, nt, wanted, steps, threads, paused, time, status)
+   subroutine run(handle, motions, motion, scale, nt, wanted, steps, paused, time, status)
       use common_handles, only : handle_leave
       use common_motion_set, only : motion_set, motion_set_take, motion_signal
       use common_signal, only : signal
@@ -136,7 +142,6 @@ contains
       integer(c_int), intent(in) :: nt
       real(c_double), intent(in) :: wanted(nt)                !! output times [s]
       integer(c_int), intent(in) :: steps                     !! after which it pauses; 0: it does not
-      integer(c_int), intent(in) :: threads
       integer(c_int), intent(out) :: paused                   !! 1: it can go on
       real(c_double), intent(out) :: time                     !! that it has come to [s]
       integer(c_int), intent(out) :: status                   !! cancelled leaves what was recorded
@@ -151,7 +156,7 @@ contains
       call motion_set_take(motions, .false., set, status)
       if (status == status_ok) then
          call motion_signal(set, motion, scale, ground, status)
-         if (status == status_ok) call run_solids(built, ground, wanted, int(steps), int(threads), status)
+         if (status == status_ok) call run_solids(built, ground, wanted, int(steps), status)
          if (allocated(built%record)) then
             paused = merge(1_c_int, 0_c_int, built%record%paused)
             time = built%record%stop_time
@@ -161,29 +166,103 @@ contains
       call handle_leave(handle)
    end subroutine run
 
-   !> Go on with a run that has paused
-   subroutine go_on(handle, steps, paused, time, status)
+   !> Go on with a run that has paused, under the same motion
+   subroutine go_on(handle, motions, motion, scale, steps, paused, time, status)
       use common_handles, only : handle_leave
+      use common_motion_set, only : motion_set, motion_set_take, motion_signal
+      use common_signal, only : signal
       use common_status, only : status_ok
       use dem3_handle, only : built_solids, built_solids_take, go_on_solids
       integer(c_int64_t), intent(in) :: handle
+      integer(c_int64_t), intent(in) :: motions               !! handle of a set of motions
+      integer(c_int), intent(in) :: motion                    !! its number in the set, 1-based
+      real(c_double), intent(in) :: scale                     !! factor on the motion
       integer(c_int), intent(in) :: steps                     !! after which it pauses; 0: it does not
       integer(c_int), intent(out) :: paused                   !! 1: it can go on
       real(c_double), intent(out) :: time                     !! that it has come to [s]
       integer(c_int), intent(out) :: status
       type(built_solids), pointer :: built
+      type(motion_set), pointer :: set
+      type(signal) :: ground
       !f2py threadsafe
       paused = 0
       time = 0.0_c_double
       call built_solids_take(handle, built, status)
       if (status /= status_ok) return
-      call go_on_solids(built, int(steps), status)
-      if (allocated(built%record)) then
-         paused = merge(1_c_int, 0_c_int, built%record%paused)
-         time = built%record%stop_time
+      call motion_set_take(motions, .false., set, status)
+      if (status == status_ok) then
+         call motion_signal(set, motion, scale, ground, status)
+         if (status == status_ok) call go_on_solids(built, ground, int(steps), status)
+         if (allocated(built%record)) then
+            paused = merge(1_c_int, 0_c_int, built%record%paused)
+            time = built%record%stop_time
+         end if
+         call handle_leave(motions)
       end if
       call handle_leave(handle)
    end subroutine go_on
+
+   !> Words that the state of a run takes that has paused
+   subroutine state_size(handle, words, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_not_ready
+      use dem3_handle, only : built_solids, built_solids_take
+      use dem3_state, only : state_words
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int64_t), intent(out) :: words
+      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: built
+      words = 0
+      call built_solids_take(handle, built, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(built%record)) then
+         if (built%record%paused) then
+            status = status_ok
+            words = state_words(built%model, built%record)
+         end if
+      end if
+      call handle_leave(handle)
+   end subroutine state_size
+
+   !> That state, for this build alone
+   subroutine state(handle, words, word, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_not_ready
+      use dem3_handle, only : built_solids, built_solids_take
+      use dem3_state, only : state_save
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: words                     !! see state_size
+      integer(c_int64_t), intent(out) :: word(words)
+      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: built
+      word = 0
+      call built_solids_take(handle, built, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(built%record)) then
+         if (built%record%paused) call state_save(built%model, built%record, word, status)
+      end if
+      call handle_leave(handle)
+   end subroutine state
+
+   !> Take a state back; then go_on. It must be undamaged: invalid where its head is of another model, run or build
+   subroutine resume(handle, nt, wanted, words, word, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem3_handle, only : built_solids, built_solids_take, resume_solids
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nt
+      real(c_double), intent(in) :: wanted(nt)                !! output times [s]
+      integer(c_int), intent(in) :: words
+      integer(c_int64_t), intent(in) :: word(words)
+      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: built
+      call built_solids_take(handle, built, status)
+      if (status /= status_ok) return
+      call resume_solids(built, wanted, word, status)
+      call handle_leave(handle)
+   end subroutine resume
 
    !> What the last run came to
    subroutine summary(handle, counts, measures, status)
@@ -213,6 +292,43 @@ contains
       end if
       call handle_leave(handle)
    end subroutine summary
+
+   !> Where the bodies had settled in the last run, and how they left what they touched
+   subroutine bodies(handle, nb, place, turn, bounces, airborne, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok, status_invalid_argument, status_not_ready
+      use dem3_handle, only : built_solids, built_solids_take
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nb                        !! bodies
+      real(c_double), intent(out) :: place(3, nb)             !! settled centroids [m]
+      real(c_double), intent(out) :: turn(3, 3, nb)           !! settled axes in the columns
+      integer(c_int), intent(out) :: bounces(nb)              !! times that each left all that it touched
+      real(c_double), intent(out) :: airborne(nb)             !! time without contact [s]
+      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: built
+      integer :: k
+      place = 0.0_c_double
+      turn = 0.0_c_double
+      bounces = 0
+      airborne = 0.0_c_double
+      call built_solids_take(handle, built, status)
+      if (status /= status_ok) return
+      status = status_not_ready
+      if (allocated(built%model)) then
+         status = merge(status_ok, status_invalid_argument, nb == size(built%set%item))
+         if (status == status_ok) then
+            do k = 1, nb
+               associate (b => built%model%set%item(k))
+                  place(:, k) = b%rest
+                  turn(:, :, k) = b%rest_turn
+                  bounces(k) = int(b%bounces, c_int)
+                  airborne(k) = b%airborne
+               end associate
+            end do
+         end if
+      end if
+      call handle_leave(handle)
+   end subroutine bodies
 
    !> What the last run recorded
    subroutine history(handle, nb, nt, time, place, turn, rate, energy, status)

@@ -11,10 +11,12 @@ module dem3_handle
    use dem3_law, only : joint_law
    use dem3_model, only : solid_model
    use dem3_run, only : run_begin, run_on, run_options, run_record, run_record_new
+   use dem3_state, only : state_load
    use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
    implicit none
    private
-   public :: built_solids, built_solids_register, built_solids_destroy, built_solids_take, run_solids, go_on_solids
+   public :: built_solids, built_solids_register, built_solids_destroy, built_solids_take, run_solids, go_on_solids, &
+      resume_solids
 
    type :: built_solids
       type(body_set) :: set
@@ -24,6 +26,7 @@ module dem3_handle
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
       type(run_options) :: options
+      logical :: ready = .false.                      !! options have been set
       type(solid_model), allocatable :: model         !! as the last run left it
       type(run_record), allocatable :: record         !! of the last run
    end type built_solids
@@ -60,32 +63,19 @@ contains
    end subroutine built_solids_take
 
    !> Run from the start under a ground motion; `steps` 0 to the end, else about so many before it pauses
-   subroutine run_solids(built, ground, wanted, steps, threads, status)
+   subroutine run_solids(built, ground, wanted, steps, status)
       type(built_solids), intent(inout) :: built
       type(signal), intent(in) :: ground              !! acceleration [m/s^2]
       real(wp), intent(in) :: wanted(:)               !! output times [s]
       integer, intent(in) :: steps
-      integer, intent(in) :: threads
       integer(c_int), intent(out) :: status
-      integer :: failed, k, axis
+      type(run_options) :: options
+      type(signal) :: silence
+      integer :: k, axis
 
-      status = status_not_ready
-      if (.not. allocated(built%law)) return
-      if (allocated(built%model)) deallocate (built%model)
-      if (allocated(built%record)) deallocate (built%record)
-      allocate (built%model, built%record, stat=failed)
-      status = merge(status_ok, status_out_of_memory, failed == 0)
-      if (failed /= 0) return
-      built%options%threads = threads_available(threads)
-      call run_record_new(size(built%set%item), wanted, built%record, status)
+      call new_run(built, wanted, status)
       if (status /= status_ok) return
       associate (model => built%model)
-         model%set = built%set
-         model%law = built%law
-         if (allocated(built%law_of)) model%law_of = built%law_of
-         model%gravity = built%gravity
-         model%way = built%way
-         model%load%ground = ground
          if (allocated(built%rate)) then
             do k = 1, size(model%set%item)
                associate (b => model%set%item(k))
@@ -100,19 +90,69 @@ contains
             end do
          end if
       end associate
-      call run_begin(built%model, built%options, built%record, status)
-      if (status == status_ok .and. built%record%paused) call go_on_solids(built, steps, status)
+      built%model%load%ground = ground
+      options = built%options
+      options%threads = threads_available(options%threads)
+      call run_begin(built%model, options, built%record, status)
+      built%model%load%ground = silence               ! it pointed into the caller's set
+      if (status == status_ok .and. built%record%paused) call go_on_solids(built, ground, steps, status)
    end subroutine run_solids
 
-   !> On with a paused run
-   subroutine go_on_solids(built, steps, status)
+   !> On with a paused run, under the same motion
+   subroutine go_on_solids(built, ground, steps, status)
       type(built_solids), intent(inout) :: built
+      type(signal), intent(in) :: ground
       integer, intent(in) :: steps                    !! 0: to the end
       integer(c_int), intent(out) :: status
+      type(run_options) :: options
+      type(signal) :: silence
       status = status_not_ready
       if (.not. allocated(built%record)) return
       if (.not. built%record%paused) return
-      call run_on(built%model, built%options, steps, built%record, status)
+      built%model%load%ground = ground
+      options = built%options
+      options%threads = threads_available(options%threads)
+      call run_on(built%model, options, steps, built%record, status)
+      built%model%load%ground = silence
    end subroutine go_on_solids
+
+   !> Take back the state of a run that had paused; see dem3_state
+   subroutine resume_solids(built, wanted, word, status)
+      type(built_solids), intent(inout) :: built
+      real(wp), intent(in) :: wanted(:)               !! output times [s]
+      integer(c_int64_t), intent(in) :: word(:)
+      integer(c_int), intent(out) :: status
+      call new_run(built, wanted, status)
+      if (status /= status_ok) return
+      call state_load(word, built%model, built%record, status)
+      if (status /= status_ok) deallocate (built%model, built%record)
+   end subroutine resume_solids
+
+   !> A model and a record that have not run yet
+   subroutine new_run(built, wanted, status)
+      type(built_solids), intent(inout) :: built
+      real(wp), intent(in) :: wanted(:)               !! output times [s]
+      integer(c_int), intent(out) :: status
+      integer :: failed
+      status = status_not_ready
+      if (.not. (allocated(built%law) .and. built%ready)) return
+      if (allocated(built%model)) deallocate (built%model)
+      if (allocated(built%record)) deallocate (built%record)
+      allocate (built%model, built%record, stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      call run_record_new(size(built%set%item), wanted, built%record, status)
+      if (status /= status_ok) then
+         deallocate (built%model, built%record)
+         return
+      end if
+      associate (model => built%model)
+         model%set = built%set
+         model%law = built%law
+         if (allocated(built%law_of)) model%law_of = built%law_of
+         model%gravity = built%gravity
+         model%way = built%way
+      end associate
+   end subroutine new_run
 
 end module dem3_handle

@@ -9,7 +9,7 @@ module dem3_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, set_distances, search, advance, critical_step, energy_terms, energy_now, energy_residual
+   public :: solid_model, set_distances, search, colour, advance, critical_step, energy_terms, energy_now, energy_residual
 
    type :: solid_model
       type(body_set) :: set
