@@ -51,23 +51,22 @@ module dem3_law
 
    !> Points nearer to one found anew than this share of the root of its area are the same
    real(wp), parameter :: same = 0.5_wp
-   !> and stay as they are where they are nearer than this, and carry as much but for this share
+   !> and carry on as they are where they are of the same features and their area is the same but for this share
    real(wp), parameter :: still_same = 0.1_wp
 
 contains
 
    !> Where a pair touches, looked at anew if its bodies have moved relative to each other by more than `far`; what goes on
-   !> keeps its springs
-   pure subroutine find_points(set, far, margin, law, pair)
+   !> keeps its springs. What the springs of all gain or lose by that is booked nowhere, so that it shows in the ledger.
+   pure subroutine find_points(set, far, margin, pair)
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: far               !! [m]
       real(wp), intent(in) :: margin            !! [m]
-      type(joint_law), intent(in) :: law
       type(contact_pair), intent(inout) :: pair
       type(contact_point), allocatable :: before(:)
       type(patch) :: found
       real(wp) :: place(3), turn(3, 3)
-      integer :: i, k, old
+      integer :: i, old
       logical, allocatable :: taken(:)
 
       associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
@@ -98,61 +97,31 @@ contains
          taken(old) = .true.
          associate (point => pair%point(i), one => before(old))
             point = one
-            if (norm2(one%what%at - found%point(i)%at) < still_same * sqrt(found%point(i)%area) &
-               .and. one%what%kind == found%point(i)%kind &
-               .and. norm2(one%what%normal - found%point(i)%normal) < 1.0e-9_wp &
-               .and. abs(one%what%area - found%point(i)%area) < still_same * found%point(i)%area) cycle
-            call change(set, law, found%point(i), point, pair)
+            if (equal(one%what, found%point(i))) cycle
+            point%what = found%point(i)
          end associate
       end do
       pair%points = found%points
-      do k = 1, size(before)
-         if (.not. taken(k)) call drop(law, before(k), pair)
-      end do
    end subroutine find_points
 
-   !> A point goes on as another feature. Energy that its springs lose by that is booked; what they gain is not, so that
-   !> it shows as energy from nowhere.
-   pure subroutine change(set, law, what, point, pair)
-      type(body_set), intent(in) :: set
-      type(joint_law), intent(in) :: law
-      type(feature), intent(in) :: what
-      type(contact_point), intent(inout) :: point
-      type(contact_pair), intent(inout) :: pair
-      type(contact_point) :: after
-      real(wp) :: normal(3), gap, at(3)
-      after = point
-      after%what = what
-      if (point%closed) then
-         associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
-            call measure(point%what, a, b, normal, gap, at)
-            point%spring_n = law%normal_stiffness * point%what%area * max(-gap, 0.0_wp)
-            call measure(what, a, b, normal, gap, at)
-            after%spring_n = law%normal_stiffness * what%area * max(-gap, 0.0_wp)
-         end associate
-         pair%friction_loss = pair%friction_loss + max(0.0_wp, energy_of(law, point) - energy_of(law, after))
-      end if
-      point = after
-   end subroutine change
+   !> Whether two points are the same corner over the same plane, or of the same edges
+   pure function equal(one, two) result(same_ones)
+      type(feature), intent(in) :: one
+      type(feature), intent(in) :: two
+      logical :: same_ones
+      same_ones = one%kind == two%kind .and. .not. any(abs(one%own - two%own) > 0.0_wp) &
+         .and. .not. any(abs(one%normal - two%normal) > 0.0_wp) .and. .not. any(abs(one%along - two%along) > 0.0_wp) &
+         .and. .not. any(abs(one%other - two%other) > 0.0_wp) &
+         .and. abs(one%area - two%area) < still_same * two%area
+   end function equal
 
-   !> All points of a pair are no more
+   !> All points of a pair are no more: what their springs held is lost with them
    pure subroutine drop_points(law, pair)
       type(joint_law), intent(in) :: law
       type(contact_pair), intent(inout) :: pair
-      integer :: k
-      do k = 1, pair%points
-         call drop(law, pair%point(k), pair)
-      end do
+      pair%friction_loss = pair%friction_loss + elastic_energy(law, pair)
       pair%points = 0
    end subroutine drop_points
-
-   !> What the springs of a point held is lost with it
-   pure subroutine drop(law, point, pair)
-      type(joint_law), intent(in) :: law
-      type(contact_point), intent(in) :: point
-      type(contact_pair), intent(inout) :: pair
-      if (point%closed) pair%friction_loss = pair%friction_loss + energy_of(law, point)
-   end subroutine drop
 
    !> The closed point of before that a new one is; 0 where there is none
    pure function partner(what, before, taken) result(old)

@@ -145,9 +145,9 @@ contains
    !> How near is near, from the size of the smallest part
    subroutine set_distances(model)
       type(solid_model), intent(inout) :: model
-      model%wander = 0.004_wp * model%set%size
-      model%far = 0.004_wp * model%set%size
-      model%margin = 0.02_wp * model%set%size     ! more than far and twice wander
+      model%wander = 0.001_wp * model%set%size
+      model%far = 0.001_wp * model%set%size
+      model%margin = 0.01_wp * model%set%size     ! more than far and twice wander
       model%reach = 0.02_wp * model%set%size
       model%skin = 0.08_wp * model%set%size       ! more than the margin, twice reach and twice wander
    end subroutine set_distances
@@ -362,7 +362,7 @@ contains
       associate (a => model%set%item(model%set%parts(pair%part(1))%owner), &
                  b => model%set%item(model%set%parts(pair%part(2))%owner))
          if (pair%marks(1) /= a%marks .or. pair%marks(2) /= b%marks) &
-            call find_points(model%set, model%far, model%margin, model%law(pair%law), pair)
+            call find_points(model%set, model%far, model%margin, pair)
          if (pair%points > 0) call act(model%law(pair%law), model%kick, model%drift, a, b, pair)
       end associate
    end subroutine touch
@@ -442,7 +442,7 @@ contains
       stiffness = 0.0_wp
       do k = 1, model%pairs
          associate (pair => model%pair(k), parts => model%set%parts)
-            call find_points(model%set, model%far, model%margin, model%law(pair%law), pair)
+            call find_points(model%set, model%far, model%margin, pair)
             share = merge(1.0_wp, 2.0_wp, model%set%item(parts(pair%part(1))%owner)%fixed &
                .or. model%set%item(parts(pair%part(2))%owner)%fixed)
             do i = 1, pair%points

@@ -24,7 +24,7 @@ module dem3_patch
    !> Of the same: side of the square that a point where edges cross stands for
    real(wp), parameter :: edge_side = 0.05_wp
    !> Of the same: corners nearer than this are one
-   real(wp), parameter :: same = 5.0e-3_wp
+   real(wp), parameter :: same = 1.0e-3_wp
    !> Of the same: as reference the face of before is kept unless another is better by this
    real(wp), parameter :: better = 1.0e-3_wp
    !> Of the lesser face: the corners of a smaller polygon carry as much as those of this
@@ -188,7 +188,11 @@ contains
       type(patch), intent(inout) :: found
       real(wp) :: normal(3), against(3), inward(3), start(3), along(3), kept(3, most_points), next(3, most_points)
       real(wp) :: side(most_points), area(most_points), facing_cosine, cosine, level, gap, limit
+      !> Of each corner the line on which the outline arrives at it, and the two that cross there: above 0 an edge of the
+      !> other face, below 0 one of the reference
+      integer :: lines(3, most_points), next_lines(3, most_points)
       integer :: f, k, n, m, i, j, facing, shift, shift_other
+      logical :: crossing
 
       shift = set%parts(part)%vertex_first - 1
       shift_other = set%parts(other)%vertex_first - 1
@@ -208,6 +212,7 @@ contains
          if (n == most_points) exit
          n = n + 1
          kept(:, n) = corners_other(:, set%loop(k) - shift_other)
+         lines(:, n) = [merge(set%loop_first(facing + 1) - 1, k - 1, n == 1), 0, 0]
       end do
       do k = set%loop_first(face), set%loop_first(face + 1) - 1
          start = corners(:, set%loop(k) - shift)
@@ -224,14 +229,17 @@ contains
             if (side(i) * side(j) < 0.0_wp .and. m < most_points) then
                m = m + 1
                next(:, m) = kept(:, j) + side(j) / (side(j) - side(i)) * (kept(:, i) - kept(:, j))
+               next_lines(:, m) = [merge(lines(1, i), -k, side(i) < 0.0_wp), lines(1, i), -k]
             end if
             if (side(i) >= 0.0_wp .and. m < most_points) then
                m = m + 1
                next(:, m) = kept(:, i)
+               next_lines(:, m) = lines(:, i)
             end if
          end do
          n = m
          kept(:, :n) = next(:, :n)
+         lines(:, :n) = next_lines(:, :n)
          if (n < 3) return
       end do
       limit = same * size
@@ -243,6 +251,7 @@ contains
          end if
          m = m + 1
          kept(:, m) = kept(:, i)
+         lines(:, m) = lines(:, i)
       end do
       if (m < 3) return
       n = m
@@ -260,6 +269,7 @@ contains
             point%own = matmul(kept(:, i) - b%x, b%turn)
             k = closest(kept(:, i), corners_other, set%loop(set%loop_first(facing):set%loop_first(facing + 1) - 1) &
                - shift_other, limit, [0.0_wp, 0.0_wp, 0.0_wp])
+            crossing = k == 0 .and. lines(2, i) > 0 .and. lines(3, i) < 0
             if (k > 0) then                       ! a corner of the other
                point%own = set%vertex(:, k + shift_other)
             else if (facing_cosine < -facing_enough) then
@@ -270,8 +280,11 @@ contains
                   point%normal = set%normal(:, facing)
                   point%level = set%level(facing)
                   point%own = set%vertex(:, k + shift)
+                  crossing = .false.
                end if
             end if
+            if (crossing) call cross_edges(set, edge_of(set, face, -lines(3, i)), edge_of(set, facing, lines(2, i)), &
+               kind == on_first, normal, a, b, point)
             if (kind == on_first) then
                point%at = matmul(kept(:, i) - a%x, a%turn)
             else
@@ -280,6 +293,47 @@ contains
          end associate
       end do
    end subroutine share
+
+   !> Vertices of the edge of a face that begins at a place of the list of loops
+   pure function edge_of(set, face, place) result(ends)
+      type(body_set), intent(in) :: set
+      integer, intent(in) :: face
+      integer, intent(in) :: place
+      integer :: ends(2)
+      ends = [set%loop(place), set%loop(merge(set%loop_first(face), place + 1, place == set%loop_first(face + 1) - 1))]
+   end function edge_of
+
+   !> A corner where an edge of the reference crosses one of the other face: these edges, unless they are nearly parallel
+   pure subroutine cross_edges(set, edge, edge_other, first, normal, a, b, point)
+      type(body_set), intent(in) :: set
+      integer, intent(in) :: edge(2)             !! its vertices, of the reference
+      integer, intent(in) :: edge_other(2)
+      logical, intent(in) :: first               !! the reference is of the first body
+      real(wp), intent(in) :: normal(3)          !! of the reference, outward, in space
+      type(body), intent(in) :: a                !! of the reference
+      type(body), intent(in) :: b
+      type(feature), intent(inout) :: point
+      real(wp), parameter :: sharp = 0.2_wp      !! sine of the angle between them
+      real(wp) :: u(3), v(3), axis(3)
+      u = set%vertex(:, edge(2)) - set%vertex(:, edge(1))
+      v = set%vertex(:, edge_other(2)) - set%vertex(:, edge_other(1))
+      axis = cross(matmul(a%turn, u), matmul(b%turn, v))
+      if (norm2(axis) < sharp * norm2(u) * norm2(v)) return
+      point%kind = on_edges
+      if (first) then
+         point%own = set%vertex(:, edge(1))
+         point%along = u
+         point%normal = set%vertex(:, edge_other(1))
+         point%other = v
+         point%level = sign(1.0_wp, dot_product(axis, normal))
+      else                                       ! the axis of first and second, from the first to the second
+         point%own = set%vertex(:, edge_other(1))
+         point%along = v
+         point%normal = set%vertex(:, edge(1))
+         point%other = u
+         point%level = sign(1.0_wp, dot_product(axis, normal))
+      end if
+   end subroutine cross_edges
 
    !> The vertex of a list that is nearest to a place, within a limit and but for what lies along a direction; 0 none
    pure function closest(at, corners, list, limit, along) result(found)
