@@ -1,7 +1,8 @@
 !> Discrete elements in space: a model behind a handle, built in steps, run, and read.
 !>
-!> create, laws, settings; then run as often as wanted; then summary, bodies and history tell the last run. A run that
-!> pauses goes on with go_on; its state can be kept, and taken back by resume. Body numbers are 1-based; mass 0 marks a support.
+!> create, laws, settings; then run as often as wanted; then summary, bodies and history tell the last run. A run
+!> that pauses goes on with go_on; its state can be kept, and taken back by resume.
+!> Body numbers are 1-based; mass 0 marks a support.
 module api_dem3
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none

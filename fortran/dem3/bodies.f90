@@ -34,7 +34,7 @@ module dem3_bodies
       real(wp) :: rest_turn(3, 3) = 0.0_wp     !! attitude after settling
       real(wp) :: work = 0.0_wp                !! done by the ground's body force [J]
       real(wp) :: airborne = 0.0_wp            !! time without contact [s]
-      integer :: marks = 0                     !! times that it has moved so far that its contacts must be looked at anew
+      integer :: marks = 0                     !! times that it has moved far enough to look at its contacts anew
       integer :: bounces = 0                   !! times that it has left all that it touched
       logical :: fixed = .false.
       logical :: touched = .false.             !! in this step
@@ -124,7 +124,8 @@ contains
          set%area(f) = 0.5_wp * norm2(across)
          set%level(f) = 0.0_wp
          do k = loop_first(f), loop_first(f + 1) - 1
-            set%level(f) = set%level(f) + dot_product(set%normal(:, f), vertex(:, loop(k))) / (loop_first(f + 1) - loop_first(f))
+            set%level(f) = set%level(f) + dot_product(set%normal(:, f), vertex(:, loop(k))) &
+               / (loop_first(f + 1) - loop_first(f))
          end do
       end do
       set%size = huge(1.0_wp)

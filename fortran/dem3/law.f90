@@ -1,5 +1,6 @@
-!> The force at the points of a contact: a spring that knows no tension, Coulomb friction on a shear spring in the plane of
-!> the contact, and dashpots in parallel with both, taken implicitly: the law of the plane room with a cone (dem/law.f90).
+!> The force at the points of a contact: a spring that knows no tension, Coulomb friction on a shear spring in the
+!> plane of the contact, and dashpots in parallel with both, taken implicitly: the law of the plane room with a cone
+!> (dem/law.f90).
 !>
 !> With the normal n from body 1 to body 2, the gap g (negative where bodies overlap), the velocity u of body 2 relative
 !> to body 1 at the point and the area a that it carries:
@@ -46,6 +47,7 @@ module dem3_law
       real(wp) :: friction_loss = 0.0_wp       !! [J]
       real(wp) :: damping_loss = 0.0_wp        !! [J]
       real(wp) :: support_work = 0.0_wp        !! [J]
+      logical :: lacks_memory = .false.        !! there was no room for its points: the run must end
       type(contact_point), allocatable :: point(:)
    end type contact_pair
 
@@ -56,8 +58,8 @@ module dem3_law
 
 contains
 
-   !> Where a pair touches, looked at anew if its bodies have moved relative to each other by more than `far`; what goes on
-   !> keeps its springs. What the springs of all gain or lose by that is booked nowhere, so that it shows in the ledger.
+   !> Where a pair touches, looked at anew if its bodies have moved relative to each other by more than `far`; what goes
+   !> on keeps its springs. What the springs of all gain or lose by that is booked nowhere: it shows in the ledger.
    pure subroutine find_points(set, far, margin, pair)
       type(body_set), intent(in) :: set
       real(wp), intent(in) :: far               !! [m]
@@ -66,7 +68,7 @@ contains
       type(contact_point), allocatable :: before(:)
       type(patch) :: found
       real(wp) :: place(3), turn(3, 3)
-      integer :: i, old
+      integer :: i, old, failed
       logical, allocatable :: taken(:)
 
       associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
@@ -83,13 +85,18 @@ contains
       call meet(set, pair%part(1), pair%part(2), margin, pair%reference, found)
       if (found%reference > 0) pair%reference = found%reference
       if (found%points == 0 .and. pair%points == 0) return
+      pair%points = 0
       if (allocated(pair%point)) then
          call move_alloc(pair%point, before)
       else
-         allocate (before(0))
+         allocate (before(0), stat=failed)
+         pair%lacks_memory = pair%lacks_memory .or. failed /= 0
+         if (failed /= 0) return
       end if
-      allocate (taken(size(before)), source=.false.)
-      allocate (pair%point(found%points))
+      allocate (taken(size(before)), pair%point(found%points), stat=failed)
+      pair%lacks_memory = pair%lacks_memory .or. failed /= 0
+      if (failed /= 0) return
+      taken = .false.
       do i = 1, found%points
          old = partner(found%point(i), before, taken)
          pair%point(i)%what = found%point(i)

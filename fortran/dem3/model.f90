@@ -9,17 +9,18 @@ module dem3_model
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, set_distances, search, colour, advance, critical_step, energy_terms, energy_now, energy_residual
+   public :: solid_model, set_distances, search, colour, advance, critical_step, energy_terms, energy_now, &
+      energy_residual
 
    type :: solid_model
       type(body_set) :: set
       type(contact_pair), allocatable :: pair(:)
       integer :: pairs = 0
       integer, allocatable :: sweep(:)                !! the pairs by colours
-      integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; after the last what has none
+      integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; then what has none
       integer :: colours = 0
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
-      integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, and their law; ascending
+      integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
       type(loading) :: load                           !! its gravity is not used: that here is along z
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
@@ -161,8 +162,8 @@ contains
       integer, allocatable :: of(:)
       integer :: count(most + 1), k, c, side, who, failed
       if (allocated(model%sweep)) deallocate (model%sweep)
-      if (.not. allocated(model%colour_first)) allocate (model%colour_first(most + 2))
-      allocate (model%sweep(model%pairs), of(model%pairs), stat=failed)
+      if (allocated(model%colour_first)) deallocate (model%colour_first)
+      allocate (model%sweep(model%pairs), of(model%pairs), model%colour_first(most + 2), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       used = 0
@@ -361,8 +362,9 @@ contains
       type(contact_pair), intent(inout) :: pair
       associate (a => model%set%item(model%set%parts(pair%part(1))%owner), &
                  b => model%set%item(model%set%parts(pair%part(2))%owner))
-         if (pair%marks(1) /= a%marks .or. pair%marks(2) /= b%marks) &
+         if (pair%marks(1) /= a%marks .or. pair%marks(2) /= b%marks) then
             call find_points(model%set, model%far, model%margin, pair)
+         end if
          if (pair%points > 0) call act(model%law(pair%law), model%kick, model%drift, a, b, pair)
       end associate
    end subroutine touch
@@ -426,8 +428,8 @@ contains
       model%steps = model%steps + 1
    end subroutine finish
 
-   !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 above the greatest eigenvalue of any
-   !> body on its springs, twice as stiff where the neighbour moves too [s]
+   !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 above the greatest eigenvalue of
+   !> any body on its springs, twice as stiff where the neighbour moves too [s]
    subroutine critical_step(model, step, status)
       type(solid_model), intent(inout) :: model
       real(wp), intent(out) :: step          !! [s]
@@ -494,14 +496,15 @@ contains
       along = matmul(along(1:3), velocity)
       do j = 1, 6
          do i = 1, 6
-            stiffness(i, j) = stiffness(i, j) + area * (law%shear_stiffness * dot_product(velocity(:, i), velocity(:, j)) &
+            stiffness(i, j) = stiffness(i, j) &
+               + area * (law%shear_stiffness * dot_product(velocity(:, i), velocity(:, j)) &
                + (law%normal_stiffness - law%shear_stiffness) * along(i) * along(j))
          end do
       end do
    end subroutine stiffen
 
-   !> A bound of the eigenvalues of a symmetric matrix, at most 6 % above the greatest: the 32nd root of the sum of their
-   !> 32nd powers
+   !> A bound of the eigenvalues of a symmetric matrix, at most 6 % above the greatest: the 32nd root of the sum of
+   !> their 32nd powers
    pure function above_eigenvalues(matrix) result(bound)
       real(wp), intent(in) :: matrix(6, 6)
       real(wp) :: bound

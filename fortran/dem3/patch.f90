@@ -1,10 +1,11 @@
-!> Where two convex polyhedra touch or nearly do: the corners of the polygon that their faces share, as pairs of features
-!> that keep their meaning while the bodies move a little; or, where edges cross, these edges.
+!> Where two convex polyhedra touch or nearly do: the corners of the polygon that their faces share, as pairs of
+!> features that keep their meaning while the bodies move a little; or, where edges cross, these edges.
 !>
-!> The face along whose normal the bodies overlap least is the reference; the other body's face that looks against it is
-!> cut to the reference's outline. A corner of that polygon is a corner of one body over the plane of the other's face, or
-!> a place where outlines cross, taken as a point of the face that was cut. The gap of a point over a plane changes by the
-!> velocity of one body relative to the other at that point alone, so that its spring is conservative.
+!> The face along whose normal the bodies overlap least is the reference; the other body's face that looks against it
+!> is cut to the reference's outline. A corner of that polygon is a corner of one body over the plane of the other's
+!> face, or a place where an edge of one crosses an edge of the other; where these are nearly parallel it is taken as a
+!> point of the face that was cut. The gap of such a pair of features changes by the velocity of one body relative to
+!> the other at that place alone, so that its spring is conservative.
 !> Each corner carries what of the polygon lies nearer to it, seen from its middle: of a rectangle a quarter, so that a
 !> plane problem drawn out has the points of the plane, twice.
 module dem3_patch
@@ -32,8 +33,8 @@ module dem3_patch
    !> Cosine between the normals of faces that look against each other, at least, if corners of both are to count
    real(wp), parameter :: facing_enough = 0.9_wp
 
-   !> What touches: own in the frame of the body whose point it is. On edges, own and along are those of the first body's
-   !> edge, normal and other of the second's (start, direction; each in its body's frame).
+   !> What touches: own in the frame of the body whose point it is. On edges, own and along are those of the first
+   !> body's edge, normal and other of the second's (start, direction; each in its body's frame).
    type :: feature
       integer :: kind = 0
       real(wp) :: own(3) = 0.0_wp                !! [m]
@@ -143,7 +144,7 @@ contains
       end do
    end subroutine in_space
 
-   !> The face of a part along whose normal the vertices of another overlap it least: that overlap, negative [m], or a gap
+   !> The face of a part along whose normal the vertices of another overlap it least: that overlap, negative, or a gap
    pure subroutine least_overlap(set, part, b, other, margin, least, face)
       type(body_set), intent(in) :: set
       integer, intent(in) :: part
@@ -188,8 +189,8 @@ contains
       type(patch), intent(inout) :: found
       real(wp) :: normal(3), against(3), inward(3), start(3), along(3), kept(3, most_points), next(3, most_points)
       real(wp) :: side(most_points), area(most_points), facing_cosine, cosine, level, gap, limit
-      !> Of each corner the line on which the outline arrives at it, and the two that cross there: above 0 an edge of the
-      !> other face, below 0 one of the reference
+      !> Of each corner the line on which the outline arrives at it, and the two that cross there: above 0 an edge of
+      !> the other face, below 0 one of the reference
       integer :: lines(3, most_points), next_lines(3, most_points)
       integer :: f, k, n, m, i, j, facing, shift, shift_other
       logical :: crossing
@@ -303,7 +304,7 @@ contains
       ends = [set%loop(place), set%loop(merge(set%loop_first(face), place + 1, place == set%loop_first(face + 1) - 1))]
    end function edge_of
 
-   !> A corner where an edge of the reference crosses one of the other face: these edges, unless they are nearly parallel
+   !> A corner where an edge of the reference crosses one of the other face: these edges, if they are not parallel
    pure subroutine cross_edges(set, edge, edge_other, first, normal, a, b, point)
       type(body_set), intent(in) :: set
       integer, intent(in) :: edge(2)             !! its vertices, of the reference

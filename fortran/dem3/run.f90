@@ -10,7 +10,8 @@ module dem3_run
    use common_status, only : status_ok, status_cancelled, status_not_finite, status_out_of_memory
    use dem_loading, only : movement_end
    use dem3_bodies, only : body, spin_of, turn_freely
-   use dem3_model, only : advance, critical_step, energy_now, energy_residual, energy_terms, search, set_distances, solid_model
+   use dem3_model, only : advance, critical_step, energy_now, energy_residual, energy_terms, search, set_distances, &
+      solid_model
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -225,6 +226,10 @@ contains
       target_steps = model%steps + count
       do while (model%steps < target_steps)
          call advance(model, target_steps - model%steps, threads)
+         if (any(model%pair(:model%pairs)%lacks_memory)) then
+            status = status_out_of_memory
+            return
+         end if
          if (.not. model%stale) cycle
          do k = 1, size(model%set%item)
             if (all(abs(model%set%item(k)%x) <= huge(1.0_wp))) cycle

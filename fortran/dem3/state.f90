@@ -88,7 +88,7 @@ contains
       type(tape), intent(inout) :: on
       type(solid_model), intent(inout), target :: model
       type(run_record), intent(inout), target :: record
-      integer :: n, k
+      integer :: n, k, failed
       n = record%points
       call on%pass(model%set%item, storage_size(model%set%item))
       call on%pass(model%t, storage_size(model%t))
@@ -124,7 +124,9 @@ contains
                   on%short = .true.
                   return
                end if
-               allocate (pair%point(pair%points))
+               allocate (pair%point(pair%points), stat=failed)
+               on%short = failed /= 0
+               if (on%short) return
             end if
             if (allocated(pair%point)) call on%pass(pair%point, storage_size(pair%point))
          end associate

@@ -13,7 +13,7 @@ from extrados.building.geometry.solids.polyhedra import Polyhedron, box, prism
 from extrados.core import dem, dem3
 from extrados.core.dem3 import Law, Options, Solids
 from extrados.core.errors import CoreError
-from extrados.core.ground import Ground
+from extrados.core.ground import Ground, as_motion_set
 from extrados.limit.solids import Programme, SolidLimit
 from extrados.schema.constants import GRAVITY
 
@@ -76,7 +76,7 @@ def test_sliding_down_a_slope_in_any_direction(direction: float) -> None:
     assert np.abs(held.place[-1, 0] - held.place[0, 0]).max() < 1e-7  # tan 25 = .466 < .5
 
 
-K, MU, BETA, WIDE, HIGH = 1e9, 0.7, 2e-5, 1.0, 4.0
+K, MU, BETA, WIDE, HIGH = 1e9, 0.7, 2e-4, 1.0, 4.0
 
 
 def shaken(seconds: float) -> Ground:
@@ -90,17 +90,14 @@ def rocking(
 ) -> tuple[np.ndarray, dem3.Run]:
     """Rotation towards the way of the ground over time, and the run."""
     half = np.array([0.5 * WIDE, 0.5, 0.0]) if way[0] else np.array([0.5, 0.5 * WIDE, 0.0])
-    pauses = options.pop("pauses", ())
     given = Options(**{"end_time": seconds, "step": 5e-5, "way": way, **options})
-    run = dem3.run(
-        solids([box(-half, half + np.array([0, 0, HIGH]))], Law(K, K, MU, BETA)), given, shaken(seconds), pauses=pauses
-    )
+    run = dem3.run(solids([box(-half, half + np.array([0, 0, HIGH]))], Law(K, K, MU, BETA)), given, shaken(seconds))
     up = run.turn[:, 0, :, 2]
     return np.arctan2(up @ np.array(way), up[:, 2]), run
 
 
 def test_a_plane_problem_is_that_of_the_plane_solver() -> None:
-    """Two impacts: the same history, nearer with the step; nothing leaves the plane."""
+    """Two impacts: the same history within what the springs give; nothing leaves the plane."""
     outline = np.array([[-0.5 * WIDE, 0], [0.5 * WIDE, 0], [0.5 * WIDE, HIGH], [-0.5 * WIDE, HIGH]])
     floor = np.array([[-20, -1], [20, -1], [20, 0], [-20, 0.0]])
     mass = DENSITY * WIDE * HIGH
@@ -109,24 +106,69 @@ def test_a_plane_problem_is_that_of_the_plane_solver() -> None:
         np.array([mass * (WIDE**2 + HIGH**2) / 12.0, 0.0]), [outline, floor], [0, 1], [np.ones(4, dtype=bool)] * 2, 1.0,
         [dem.Law(K, K, MU, damping=BETA)],
     )  # fmt: skip
-    off = []
-    for step in (1e-4, 5e-5):
+    for step in (2e-4, 5e-5):
         plane = -dem.run(bodies, dem.Options(end_time=1.5, step=step), shaken(1.5)).place[:, 0, 2]
         space, run = rocking(1.5, step=step)
-        off.append(np.abs(plane - space).max() / np.abs(plane).max())
+        assert np.abs(plane - space).max() < 1.5e-3 * np.abs(plane).max()
         assert np.abs(run.place[:, 0, 1]).max() < 1e-6 and np.abs(run.turn[:, 0, 1, 0]).max() < 1e-6
-        assert run.residual < 1e-3
-    assert off[1] < 0.004 and off[1] < 0.7 * off[0]
+        assert run.residual < 1e-4
 
 
-def test_both_planes_rock_alike_and_no_bit_depends_on_threads_or_pauses() -> None:
-    along, run = rocking(0.8)
+def test_both_planes_rock_alike() -> None:
+    along, _ = rocking(0.8)
     across, _ = rocking(0.8, (0.0, 1.0, 0.0))
     assert across == pytest.approx(along, abs=1e-7)
-    for other in (rocking(0.8, threads=2)[1], rocking(0.8, pauses=(7, 1000, 333))[1]):
-        assert (other.place == run.place).all() and (other.turn == run.turn).all() and other.steps == run.steps
 
 
+def test_no_bit_depends_on_threads_pauses_or_a_state_taken_back(monkeypatch) -> None:
+    """A wall of six stones in two courses that rocks and slides; a state of another run is refused."""
+    parts = [box((x, 0, z), (x + 0.5, 0.3, z + 0.25)) for z in (0.0, 0.25) for x in (0.0, 0.5, 1.0)]
+    model, options = (
+        solids(parts, Law(1e9, 1e9, 0.5, 1e-4)),
+        Options(end_time=0.02, output_step=0.005, way=(0.6, 0.8, 0.0)),
+    )
+    once = dem3.run(model, options, shaken(1.0), scale=3.0)
+    assert once.reason == "end" and np.abs(once.place[-1] - once.place[0]).max() > 1e-5
+    monkeypatch.setattr(dem3, "FIRST_PAUSE", 5)
+    kept = []
+    with dem3.Model(model, replace(options, threads=2)) as other, as_motion_set([shaken(1.0)]) as motions:
+        paused = other.run(motions, scale=3.0, watch=lambda reached: kept.append(other.state()))
+    with dem3.Model(model, options) as other, as_motion_set([shaken(1.0)]) as motions:
+        resumed = other.run(motions, scale=3.0, state=kept[len(kept) // 2])
+        for wrong in (kept[0][:-9], np.where(np.arange(len(kept[0])) == 40, 7, kept[0])):
+            with pytest.raises(ValueError, match="damaged"):
+                other.run(motions, state=wrong)
+    with dem3.Model(solids(parts[:3], Law(1e9, 1e9, 0.5)), options) as other, as_motion_set([shaken(1.0)]) as motions:
+        with pytest.raises(ValueError, match="another model"):
+            other.run(motions, state=kept[0])
+    for run in (paused, resumed):
+        for name in ("place", "turn", "rate", "settled"):
+            assert (getattr(run, name) == getattr(once, name)).all()
+        assert run.steps == once.steps and run.residual == once.residual
+
+
+def test_one_contact_keeps_exact_energy() -> None:
+    """A block that falls on its four springs without damping: weight, spring and motion change into each other, and it
+    comes back to where it fell from. A dashpot takes away what the ledger says."""
+    block = box((0, 0, 0), (1, 1, 1)).moved(np.eye(3), np.array([0.0, 0.0, 0.01]))
+    for step, off in ((4e-4, 1e-2), (1e-4, 1e-3)):
+        run = dem3.run(
+            solids([block], Law(1e7, 1e7, 0.0)),
+            Options(end_time=0.3, step=step, output_step=step),
+            rate=np.zeros((2, 6)),
+        )
+        fall = np.ptp(run.place[:, 0, 2])
+        assert fall == pytest.approx(0.01 + (r := 2000 * GRAVITY / 1e7) + np.sqrt(r**2 + 0.02 * r), rel=1e-3)
+        assert run.residual < off
+        assert run.energy["elastic"].max() == pytest.approx(2000.0 * GRAVITY * fall, rel=1e-3)
+    damped = dem3.run(
+        solids([block], Law(1e7, 1e7, 0.0, 2e-3)), Options(end_time=0.5, step=1e-4), rate=np.zeros((2, 6))
+    )
+    lost = damped.energy["damping"][-1]
+    assert lost > 0.3 * 2000.0 * GRAVITY * 0.01 and damped.residual < 1e-3
+
+
+@pytest.mark.verify
 @pytest.mark.parametrize("direction", [20.0, 75.0])
 def test_a_column_falls_where_limit_analysis_says(direction: float) -> None:
     """Three drums of twelve sides under a constant push along a direction: they stand at .99 of it and fall at 1.01."""
@@ -160,7 +202,7 @@ def test_a_wobbling_cylinder_keeps_its_energy_and_its_swing_about_the_vertical()
     inertia = mass_properties([tilted], DENSITY)[2]
     spin = np.array([0.0, 0.0, 0.8])
     run = dem3.run(
-        solids([tilted], Law(1e9, 1e9, 0.0)), Options(end_time=1.5, output_step=0.05, fraction=0.2),
+        solids([tilted], Law(1e9, 1e9, 0.0)), Options(end_time=1.5, output_step=0.05, fraction=0.1),
         rate=np.array([[0, 0, 0, *spin], [0.0] * 6]),
     )  # fmt: skip
     assert run.reason == "end" and run.residual < 2e-3

@@ -150,7 +150,9 @@ class Falls(Refused):
     """The structure does not stand under its own weight."""
 
 
-def checked(run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")) -> Found:
+def checked(
+    run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")
+) -> Found:
     """The run where it ended in one of the ways of `keep`; Refused says what stopped it and which block, Falls where it
     fell before it was shaken."""
     if run.interrupted or run.reason in keep:

@@ -248,9 +248,7 @@ def answered(
 def answered(
     context: Context, name: str, job: SolidRuns, text: str, tell: Callable[[int], None] | None = None
 ) -> list[dem3.Run]: ...
-def answered(
-    context: Context, name: str, job: Any, text: str, tell: Callable[[int], None] | None = None
-) -> list[Any]:
+def answered(context: Context, name: str, job: Any, text: str, tell: Callable[[int], None] | None = None) -> list[Any]:
     """All runs of the job, kept by the batch layer; Unfinished where some are missing."""
     swept = sweep(context, name, job, len(job.tasks), text, slow=True, parallel=True, tell=tell).whole()
     return [job.run_of(swept.arrays, k) for k in range(swept.count)]

@@ -63,7 +63,9 @@ class SolidModel:
         one, v = self.assembly, self.values
         below = self.supports.bodies
         parts = [*one.parts, *below]
-        laws = [_law(float(np.median(v.stiffness)), float(np.median(v.shear_stiffness)), float(np.median(v.friction)), v)]
+        laws = [
+            _law(float(np.median(v.stiffness)), float(np.median(v.shear_stiffness)), float(np.median(v.friction)), v)
+        ]
         numbers: dict[dem3.Law, int] = {}
         joints: dict[tuple[int, int], int] = {}
         weight: dict[tuple[int, int], list[int]] = {}
@@ -72,7 +74,9 @@ class SolidModel:
             weight.setdefault((min(a, other), max(a, other)), []).append(j)
         for pair, shared in weight.items():
             area = one.area[shared]
-            law = _law(*(float(np.average(x[shared], weights=area)) for x in (v.stiffness, v.shear_stiffness, v.friction)), v)
+            law = _law(
+                *(float(np.average(x[shared], weights=area)) for x in (v.stiffness, v.shear_stiffness, v.friction)), v
+            )
             if law not in numbers:
                 numbers[law] = len(laws)
                 laws.append(law)
@@ -124,7 +128,9 @@ def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
     if assembly.keys is not None:
         raise Refused("dowels: dem of solids does not reckon with them; leave them out", ("structure", "dowels"))
     if len(assembly.fill):
-        raise Refused("fill: dem of solids does not reckon with what rests on the stones; leave it out", ("structure", "fill"))
+        raise Refused(
+            "fill: dem of solids does not reckon with what rests on the stones; leave it out", ("structure", "fill")
+        )
 
 
 def solid_values(building: Building, assembly: SolidAssembly) -> SolidValues:

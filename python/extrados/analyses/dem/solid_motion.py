@@ -133,7 +133,9 @@ def run_arrays(model: SolidModel, run: dem3.Run, shown: np.ndarray) -> dict[str,
 def _store(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen, result: Result) -> None:
     """Arrays, tables and files of the run into `result`."""
     names = model.assembly.block_names
-    energies = {f"{name}_energy": values for name, values in found.energy.items() if name not in ("leapfrog", "mass_damping")}
+    energies = {
+        f"{name}_energy": values for name, values in found.energy.items() if name not in ("leapfrog", "mass_damping")
+    }
     shift = found.place[:, : model.count] - found.settled[: model.count]
     columns = {"time": found.time}
     for i in seen.tracked:

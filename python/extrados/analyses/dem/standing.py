@@ -9,7 +9,7 @@ from extrados.limit.answer import why_not
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import NoAnswer
 from extrados.limit.programme import LimitAnalysis
-from extrados.limit.solids import Falls, SolidLimit
+from extrados.limit.solids import SolidLimit
 
 WEDGED = (
     "limit analysis finds forces by which it could stand, as friction holds a stone that is wedged in; elements begin "
@@ -49,11 +49,11 @@ def solids_against_limit_analysis(building: Building, stands: bool) -> str:
     if len(assembly.mass) > MOST_SOLIDS:
         return ""
     try:
-        found = SolidLimit(assembly, building.friction(assembly)).push(0.0)
-    except NoAnswer:  # Immovable too: it stands
+        found = SolidLimit(assembly, building.friction(assembly)).falls()
+    except NoAnswer:
         return ""
-    if not isinstance(found, Falls):
-        return "" if stands or found.gamma < 0.0 else WEDGED
+    if found is None:
+        return "" if stands else WEDGED
     name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
     reason = f"a motion, fastest at {name}, that no contact hinders and by which the weights do work"
     if not stands:

@@ -68,9 +68,7 @@ def solid_answer(r: SolidDemRun, idle: bool) -> str:
         first = f"No contact opens; greatest displacement {r.peak_displacement_m:.3g} m"
     else:
         fate = f"rocks and still moves at {r.stop_time_s:.2f} s" if r.still_moving else "rocks and stands"
-        first = (
-            f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m, {r.final_displacement_m:.3g} m of it left at the end"
-        )
+        first = f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m, {r.final_displacement_m:.3g} m of it left at the end"
     return (
         f"{first}; {turn[0]} turns by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, {r.bounces} bounces; "
         f"{r.blocks} stones, {r.contacts} contacts; {audit}."
