@@ -268,19 +268,19 @@ contains
             point%normal = set%normal(:, face)
             point%level = set%level(face)
             point%own = matmul(kept(:, i) - b%x, b%turn)
-            k = closest(kept(:, i), corners_other, set%loop(set%loop_first(facing):set%loop_first(facing + 1) - 1) &
-               - shift_other, limit, [0.0_wp, 0.0_wp, 0.0_wp])
+            k = closest(kept(:, i), corners_other, set%loop(set%loop_first(facing):set%loop_first(facing + 1) - 1), &
+               shift_other, limit, [0.0_wp, 0.0_wp, 0.0_wp])
             crossing = k == 0 .and. lines(2, i) > 0 .and. lines(3, i) < 0
             if (k > 0) then                       ! a corner of the other
-               point%own = set%vertex(:, k + shift_other)
+               point%own = set%vertex(:, k)
             else if (facing_cosine < -facing_enough) then
-               k = closest(kept(:, i), corners, set%loop(set%loop_first(face):set%loop_first(face + 1) - 1) - shift, &
+               k = closest(kept(:, i), corners, set%loop(set%loop_first(face):set%loop_first(face + 1) - 1), shift, &
                   limit, normal)
                if (k > 0) then                    ! a corner of the reference, over the plane of the other
                   point%kind = on_first + on_second - kind
                   point%normal = set%normal(:, facing)
                   point%level = set%level(facing)
-                  point%own = set%vertex(:, k + shift)
+                  point%own = set%vertex(:, k)
                   crossing = .false.
                end if
             end if
@@ -337,10 +337,11 @@ contains
    end subroutine cross_edges
 
    !> The vertex of a list that is nearest to a place, within a limit and but for what lies along a direction; 0 none
-   pure function closest(at, corners, list, limit, along) result(found)
+   pure function closest(at, corners, list, shift, limit, along) result(found)
       real(wp), intent(in) :: at(3)
       real(wp), intent(in) :: corners(:, :)
       integer, intent(in) :: list(:)
+      integer, intent(in) :: shift               !! number of the vertex before the first of the corners
       real(wp), intent(in) :: limit              !! [m]
       real(wp), intent(in) :: along(3)           !! unit, or nought
       integer :: found
@@ -349,7 +350,7 @@ contains
       found = 0
       best = limit
       do k = 1, size(list)
-         away = corners(:, list(k)) - at
+         away = corners(:, list(k) - shift) - at
          away = away - dot_product(away, along) * along
          if (norm2(away) >= best) cycle
          best = norm2(away)
@@ -377,6 +378,18 @@ contains
       total = sum(area)
       if (total < least) area = area + (least - total) / n
    end subroutine areas
+
+   !> How far points reach against a direction: the least of their places along it [m]
+   pure function lowest(axis, points) result(least)
+      real(wp), intent(in) :: axis(3)
+      real(wp), intent(in) :: points(:, :)       !! (3, n) [m]
+      real(wp) :: least
+      integer :: k
+      least = huge(1.0_wp)
+      do k = 1, size(points, 2)
+         least = min(least, dot_product(axis, points(:, k)))
+      end do
+   end function lowest
 
    !> Where faces seem to overlap deep: no feature where edges hold the bodies apart by more than the margin, the two
    !> edges that overlap least, -1 where the faces are right
@@ -419,8 +432,8 @@ contains
                      axis = axis / length
                      sense = sign(1.0_wp, dot_product(axis, between))
                      axis = sense * axis
-                     high = maxval(matmul(axis, here_one))
-                     low = minval(matmul(axis, here_two))
+                     high = -lowest(-axis, here_one)
+                     low = lowest(axis, here_two)
                      gap = low - high
                      if (gap > margin) then
                         found%points = 0
