@@ -1,6 +1,6 @@
 """How many faults in Fortran and C the quick tests see: faults are planted one at a time in a copy, built and tested.
 
-    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--only FILE:LINE]
+    python tools/seeded_faults.py [--count 80] [--seed 1] [--place build/faults] [--again] [--room ROOM] [--only FILE:LINE]
 
 A fault is a changed sign or operator, constant, comparison or bound of a loop, at a place drawn from the seed; every
 room gets its share. A fault counts as caught where the build, a quick test of its room or a case fails; without a fault
@@ -19,6 +19,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -61,6 +62,12 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
         ("unit/test_sla_elements.py", "unit/test_sla_teeth.py", "unit/test_sla_joints.py", "unit/test_sla_events.py",
          "unit/test_sla_stones.py", "unit/test_sla_walls.py"),
         "sla/",
+    ),
+    "fortran/shell": (
+        ("test_shell",),
+        ("unit/test_shell_elements.py", "unit/test_shell_events.py", "unit/test_shell_vaults.py", "unit/test_floors.py",
+         "unit/test_vault_shells.py"),
+        "shell/ or building/one-way",
     ),
     "c/quake": (("test_quake", "test_motion"), ("unit/test_motion_core.py", "unit/test_generated.py"), "motion/"),
     "c/sparse": (("test_sparse", "test_sla"), ("unit/test_sla_events.py",), "sla/"),
@@ -127,10 +134,10 @@ def faults_of(path: Path) -> list[Fault]:
     return found
 
 
-def draw(count: int, seed: int) -> list[Fault]:
-    """Faults of all rooms and kinds: each room by the root of what it holds, its kinds in turn."""
+def draw(count: int, seed: int, rooms: Iterable[str] = ROOMS) -> list[Fault]:
+    """Faults of rooms, of all kinds: each room by the root of what it holds, its kinds in turn."""
     by_room = {}
-    for room in ROOMS:
+    for room in rooms:
         files = sorted([*(apart.ROOT / room).glob("*.f90"), *(apart.ROOT / room).glob("*.c")])
         by_room[room] = [fault for path in files for fault in faults_of(path)]
     weight = {room: len(there) ** 0.5 for room, there in by_room.items()}
@@ -214,13 +221,14 @@ def main() -> int:
     parser.add_argument("--patience", type=int, default=300, help="seconds of a processor that a room's tests may take")
     parser.add_argument("--place", type=Path, default=apart.ROOT / "build" / "faults")
     parser.add_argument("--again", action="store_true", help="the faults anew that were not caught")
+    parser.add_argument("--room", choices=list(ROOMS), help="faults of one room alone")
     parser.add_argument("--only", help="FILE:LINE, the faults of one line")
     options = parser.parse_args()
     place = options.place.resolve()
     place.mkdir(parents=True, exist_ok=True)
     apart.copy(place)
     apart.build(place, "-Dbuildtype=plain", "-Doptimization=1")
-    chosen = draw(options.count, options.seed)
+    chosen = draw(options.count, options.seed, [options.room] if options.room else ROOMS)
     if options.only:
         file, line = options.only.split(":")
         chosen = [fault for fault in faults_of(apart.ROOT / file) if fault.line == int(line)]
@@ -241,7 +249,7 @@ def main() -> int:
         kept.write_text(json.dumps(fates, indent=1), encoding="utf-8")
     missed = [str(fault) for fault in chosen if not fates[str(fault)]]
     print(f"{len(chosen) - len(missed)} of {len(chosen)} caught", *missed, sep="\n")
-    if not options.only:
+    if not (options.only or options.room):
         notes = apart.ROOT / "build" / "trials"
         notes.mkdir(parents=True, exist_ok=True)
         row = {"what": "faults planted in Fortran and C that no quick test sees", "tried": len(chosen),

@@ -37,7 +37,7 @@ EXTRADOS_API int extrados_cancel_get(void);
 EXTRADOS_API void extrados_watch_signals(int on);
 
 /* blas.c: `enter` before a call of BLAS or LAPACK that may run beside others, `leave` after it; out_of_memory where
- * there is no room for its buffer. `load`, once at the start, takes the buffer of the first. */
+ * there is no room for its buffer. `load`, once at the start, takes the buffer of the first and keeps BLAS to one thread. */
 EXTRADOS_API int extrados_blas_enter(void);
 EXTRADOS_API void extrados_blas_leave(void);
 EXTRADOS_API int extrados_blas_load(void);
@@ -74,5 +74,11 @@ EXTRADOS_API void extrados_sparse_tree(void *handle, int64_t *blocks, const int6
                                        const int64_t **row);
 /* Factorise and solve by CHOLMOD alone: the algorithm the updates are compared with. */
 EXTRADOS_API int extrados_sparse_plain(void *handle, const double *value, int vectors, double *z);
+
+/* band.c: a symmetric positive matrix of n equations, `width` of them down from the diagonal, the lower triangle by columns
+ * of width + 1; the factor takes its place, with the inverse of each pivot. not_positive_definite where a pivot is negative, or lost
+ * in rounding. */
+EXTRADOS_API int extrados_band_factor(int64_t n, int64_t width, double *band);
+EXTRADOS_API void extrados_band_solve(int64_t n, int64_t width, const double *band, double *x);
 
 #endif

@@ -21,7 +21,8 @@
   ENTRY(1, arch, "arch") \
   ENTRY(2, block, "block") \
   ENTRY(3, table, "table") \
-  ENTRY(4, restrained, "restrained")
+  ENTRY(4, restrained, "restrained") \
+  ENTRY(5, soft_base, "soft-base")
 
 #define EXTRADOS_ROCKING_OUTCOME_LIST(ENTRY) \
   ENTRY(0, no_hinging, "no-hinging") \

@@ -3,7 +3,7 @@ module api_soft_base
    use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: rows, history, contact
+   public :: rows, history, contact, held
 
 contains
 
@@ -34,8 +34,9 @@ contains
       real(c_double), intent(in) :: time(nt)                !! output times [s]
       integer(c_int), intent(in) :: nrows                   !! see rows
       integer(c_int), intent(in) :: room                    !! for events
-      !> outcome, landings of the left and of the right edge, steps, output times reached, events (may exceed room)
-      integer(c_int), intent(out) :: counts(6)
+      !> outcome, landings of the left and of the right edge, steps, half cycles, output times reached, events (may
+      !> exceed room)
+      integer(c_int), intent(out) :: counts(7)
       !> peaks of both coordinates, stop time [s], then the state at the end
       real(c_double), intent(out) :: measures(9)
       real(c_double), intent(out) :: state(nrows, nt)
@@ -78,9 +79,9 @@ contains
             reached = 0.0_c_double
             reached(1:4) = start
             call soft_base_rock(body, ground, reached, options(2), options(3), record, status)
-            counts = [record%outcome, record%impacts, record%steps, int(record%points, c_int), &
+            counts = [record%outcome, record%impacts, record%steps, record%half_cycles, int(record%points, c_int), &
                int(record%events, c_int)]
-            measures = [record%peak, record%stop_time, reached]
+            measures = [record%peak(), record%stop_time, reached]
          end if
          call handle_leave(motions)
       end subroutine with_targets
@@ -108,5 +109,27 @@ contains
       found = contact_of(body, state)
       values = [found%force, found%moment, found%stored, found%spent, found%range, found%most]
    end subroutine contact
+
+   !> The block held at rotations and free to sink under its weight
+   subroutine held(np, parameters, n, rotation, values, status)
+      use common_status, only : status_ok
+      use rocking_soft_base, only : hold, soft_base, soft_base_new
+      integer(c_int), intent(in) :: np
+      real(c_double), intent(in) :: parameters(np)
+      integer(c_int), intent(in) :: n
+      real(c_double), intent(in) :: rotation(n)   !! [rad]
+      !> how far it sinks [m], energy of weight and springs [J], moment that turns it back [N m]
+      real(c_double), intent(out) :: values(3, n)
+      integer(c_int), intent(out) :: status
+      type(soft_base) :: body
+      integer :: k
+      !f2py threadsafe
+      values = 0.0_c_double
+      call soft_base_new(parameters, body, status)
+      if (status /= status_ok) return
+      do k = 1, n
+         call hold(body, rotation(k), values(1, k), values(2, k), values(3, k))
+      end do
+   end subroutine held
 
 end module api_soft_base

@@ -77,7 +77,7 @@ contains
             call stack_rock(body, ground, start, options(2), options(3), record, work, status)
             counts = [record%outcome, record%impacts, record%steps, merge(1_c_int, 0_c_int, record%settled), &
                int(record%points, c_int), int(record%events, c_int)]
-            measures = [record%peak, record%stop_time, work, record%loss]
+            measures = [record%peak(), record%stop_time, work, record%loss]
          end if
          call handle_leave(motions)
       end subroutine with_targets

@@ -3,7 +3,8 @@ module rocking_ensemble
    use common_kinds, only : wp
    use common_cancel, only : cancel_requested
    use common_lists, only : body_arch => rocking_body_arch, body_block => rocking_body_block, &
-      body_restrained => rocking_body_restrained, body_table => rocking_body_table
+      body_restrained => rocking_body_restrained, body_soft_base => rocking_body_soft_base, &
+      body_table => rocking_body_table
    use common_motion_set, only : motion_set, motion_signal
    use common_signal, only : signal
    use common_status, only : status_ok, status_bad_index, status_cancelled, status_invalid_argument, &
@@ -13,15 +14,17 @@ module rocking_ensemble
    use rocking_restrained, only : restrain
    use rocking_response, only : respond, response, response_options
    use rocking_rocker, only : rocker
+   use rocking_soft_base_response, only : soft_base_body, soft_base_body_new, soft_base_respond
    use rocking_table_rocker, only : table_rocker, table_rocker_new
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: body_data, body_list, list_body, run_ensemble
 
-   !> Room for one structure of any kind
+   !> Room for one structure of any kind: of one coordinate, or a block on a base that gives way
    type :: any_body
       class(rocker), allocatable :: model
+      type(soft_base_body), allocatable :: soft
       integer(c_int) :: status = status_ok
    end type any_body
 
@@ -87,7 +90,23 @@ contains
       end select
    end subroutine make_body
 
-   !> Structure `number` of a list
+   !> A structure of any kind as it was given
+   subroutine build(given, made)
+      type(body_data), intent(in) :: given
+      type(any_body), intent(out) :: made
+      integer :: stat
+      made%status = status_not_ready
+      if (.not. allocated(given%parameters)) return
+      if (given%kind == body_soft_base) then
+         made%status = status_out_of_memory
+         allocate (made%soft, stat=stat)
+         if (stat == 0) call soft_base_body_new(given%parameters, made%soft, made%status)
+      else
+         call make_body(given%kind, given%parameters, made%model, made%status)
+      end if
+   end subroutine build
+
+   !> Structure `number` of a list, of one coordinate
    subroutine list_body(list, number, body, status)
       type(body_list), intent(in) :: list
       integer(c_int), intent(in) :: number           !! 1-based
@@ -129,7 +148,7 @@ contains
       !$omp shared(bodies, set, run_body, run_motion, run_scale, options, answers, run_status, built)
       !$omp do schedule(dynamic)
       do k = 1, size(built)
-         call list_body(bodies, int(k, c_int), built(k)%model, built(k)%status)
+         call build(bodies%item(k), built(k))
       end do
       !$omp end do
       !$omp do schedule(dynamic)
@@ -139,7 +158,13 @@ contains
          if (run_status(k) /= status_ok) cycle
          call motion_signal(set, run_motion(k), run_scale(k), ground, run_status(k))
          if (run_status(k) /= status_ok) cycle
-         call respond(built(run_body(k))%model, ground, options(k), answers(k), run_status(k))
+         associate (body => built(run_body(k)))
+            if (allocated(body%soft)) then
+               call soft_base_respond(body%soft, ground, options(k), answers(k), run_status(k))
+            else
+               call respond(body%model, ground, options(k), answers(k), run_status(k))
+            end if
+         end associate
       end do
       !$omp end do
       !$omp end parallel

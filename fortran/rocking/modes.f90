@@ -6,12 +6,13 @@
 !> at every break of the ground motion and at every output time.
 module rocking_modes
    use common_cancel, only : cancel_requested
-   use common_dopri5_system, only : dopri5_system_step, first_order_system
+   use common_dopri5_system, only : dopri5_system_step, first_order_system, most_numbers
    use common_kinds, only : wp
    use common_lists, only : event_collapse => rocking_event_collapse, outcome_collapse => rocking_outcome_collapse, &
       outcome_no_hinging => rocking_outcome_no_hinging, outcome_recovery => rocking_outcome_recovery
    use common_signal, only : signal
-   use common_status, only : status_ok, status_cancelled, status_step_too_small, status_too_many_steps
+   use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_step_too_small, &
+      status_too_many_steps
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
@@ -37,6 +38,8 @@ module rocking_modes
       procedure :: renew
       procedure :: trim_state
       procedure :: resting
+      procedure :: upright
+      procedure :: known
    end type mode_rocker
 
    !> In the caller's arrays
@@ -49,13 +52,17 @@ module rocking_modes
       real(wp), pointer, contiguous :: event(:, :) => null()  !! (2, room): time [s], place: a contact or an edge
       integer(c_int) :: outcome = outcome_no_hinging
       integer(c_int) :: impacts(2) = 0   !! at each contact or edge
+      integer(c_int) :: half_cycles = 0  !! begun, of structures that count them
       integer(c_int) :: steps = 0
-      logical :: settled = .false.       !! came down, or rests after the motion
-      real(wp) :: peak(2) = 0.0_wp       !! of the first two numbers of the state, with sign
+      logical :: settled = .false.       !! came down, or can no longer fall after the motion
+      !> Least and greatest value of the first two numbers of the state
+      real(wp) :: least(2) = 0.0_wp
+      real(wp) :: most(2) = 0.0_wp
       real(wp) :: loss = 0.0_wp          !! energy lost at impacts [J]
       real(wp) :: stop_time = 0.0_wp     !! [s]
    contains
       procedure :: note
+      procedure :: peak
    end type mode_history
 
    abstract interface
@@ -138,6 +145,34 @@ contains
       end associate
    end function resting
 
+   !> Can it no longer fall where the ground is quiet? Not while it moves, unless a structure says otherwise
+   pure function upright(body, y) result(answer)
+      class(mode_rocker), intent(in) :: body
+      real(wp), intent(in) :: y(:)
+      logical :: answer
+      answer = body%resting()
+      associate (unused_y => y)
+      end associate
+   end function upright
+
+   !> Is all known that was asked for, the ground being quiet? Never, unless a structure says otherwise
+   pure function known(body, y, history) result(answer)
+      class(mode_rocker), intent(in) :: body
+      real(wp), intent(in) :: y(:)
+      type(mode_history), intent(in) :: history
+      logical :: answer
+      answer = .false.
+      associate (unused => body%moved, unused_y => y, unused_history => history%events)
+      end associate
+   end function known
+
+   !> The first two numbers of the state where they were farthest from zero
+   pure function peak(history) result(values)
+      class(mode_history), intent(in) :: history
+      real(wp) :: values(2)
+      values = merge(history%most, history%least, history%most >= -history%least)
+   end function peak
+
    !> Keep an event, as far as there is room
    subroutine note(history, kind, t, place)
       class(mode_history), intent(inout) :: history
@@ -159,11 +194,16 @@ contains
       real(wp), intent(in) :: tolerance   !! relative, per step
       type(mode_history), intent(inout) :: history
       integer(c_int), intent(out) :: status
-      real(wp) :: t, fresh(size(y)), rates(size(y), 2), h, h_next, error, t_next
-      integer :: attempts
-      logical :: quiet, ended
+      real(wp), dimension(most_numbers) :: fresh, rate, rate_there
+      real(wp) :: t, h, h_next, error, t_next
+      integer :: attempts, n
+      logical :: quiet, ended, rate_known
 
+      status = status_invalid_argument
+      n = size(y)
+      if (n > most_numbers) return
       status = status_ok
+      rate_known = .false.
       t = 0.0_wp
       body%segment = 0
       do while (body%segment <= body%motion%segments)
@@ -201,6 +241,8 @@ contains
             call next_segment()
             cycle
          end if
+         if (.not. rate_known) call body%slope(t, y, rate(:n))
+         rate_known = .true.
          call step(h)
          if (.not. error <= 1.0_wp) then
             h_next = h * merge(max(0.1_wp, 0.9_wp * error**(-0.2_wp)), 0.1_wp, error <= huge(error))
@@ -212,8 +254,9 @@ contains
          history%steps = history%steps + 1
          call end_of_mode()
          t = merge(t_next, t + h, h >= t_next - t)
-         y = fresh
          call note_peaks()
+         y = fresh(:n)
+         rate = rate_there
          if (body%fallen(y) /= 0) then
             call history%note(event_collapse, t, body%fallen(y))
             history%outcome = outcome_collapse
@@ -221,15 +264,19 @@ contains
          end if
          if (ended) then
             call body%leave(t, y, history)
+            rate_known = .false.
             h_next = min(h_next, 1.0e-3_wp)
          end if
          call next_segment()
+         if (quiet) then
+            if (body%known(y, history)) exit
+         end if
       end do
       history%stop_time = t
       call write_out()
       if (history%outcome /= outcome_collapse) then
          if (body%moved) history%outcome = outcome_recovery
-         history%settled = body%segment > body%motion%segments .and. body%resting() .and. status == status_ok
+         history%settled = body%segment > body%motion%segments .and. body%upright(y) .and. status == status_ok
       else
          history%settled = .true.
       end if
@@ -239,29 +286,29 @@ contains
       !> One step from the present state
       subroutine step(length)
          real(wp), intent(in) :: length
-         call dopri5_system_step(body, t, length, y, atol, tolerance, fresh, rates, error)
-         call body%trim_state(fresh)
+         call dopri5_system_step(body, t, length, y, rate(:n), atol, tolerance, fresh(:n), rate_there(:n), error)
+         call body%trim_state(fresh(:n))
       end subroutine step
 
       !> Where the mode ends within the step, the step ends there
       subroutine end_of_mode()
-         real(wp) :: low, high, middle, between(size(y))
+         real(wp) :: low, high, middle, between(most_numbers)
          integer :: i
          low = 0.0_wp
          do i = 1, size(looks)
-            between = within(looks(i))
-            call body%trim_state(between)
-            if (body%inside(t + looks(i) * h, between) <= 0.0_wp) exit
+            call within(looks(i), between(:n))
+            call body%trim_state(between(:n))
+            if (body%inside(t + looks(i) * h, between(:n)) <= 0.0_wp) exit
             low = looks(i) * h
          end do
          if (i <= size(looks)) then
             ! the step itself decides, not its polynomial
             call step(looks(i) * h)
-            ended = body%inside(t + looks(i) * h, fresh) <= 0.0_wp
+            ended = body%inside(t + looks(i) * h, fresh(:n)) <= 0.0_wp
             h = looks(i) * h
             low = 0.0_wp
          else
-            ended = body%inside(t + h, fresh) <= 0.0_wp
+            ended = body%inside(t + h, fresh(:n)) <= 0.0_wp
          end if
          if (.not. ended) return
          high = h
@@ -269,7 +316,7 @@ contains
             middle = 0.5_wp * (low + high)
             if (high - low <= 4.0_wp * spacing(t + h)) exit
             call step(middle)
-            if (body%inside(t + middle, fresh) <= 0.0_wp) then
+            if (body%inside(t + middle, fresh(:n)) <= 0.0_wp) then
                high = middle
             else
                low = middle
@@ -280,28 +327,59 @@ contains
       end subroutine end_of_mode
 
       !> The state at a fraction of the step, by the cubic through its ends
-      pure function within(s) result(z)
+      pure subroutine within(s, z)
          real(wp), intent(in) :: s
-         real(wp) :: z(size(y))
-         z = y + s**2 * (3.0_wp - 2.0_wp * s) * (fresh - y) &
-            + h * s * (1.0_wp - s) * ((1.0_wp - s) * rates(:, 1) - s * rates(:, 2))
-      end function within
+         real(wp), intent(out) :: z(:)
+         z = y + s**2 * (3.0_wp - 2.0_wp * s) * (fresh(:n) - y) &
+            + h * s * (1.0_wp - s) * ((1.0_wp - s) * rate(:n) - s * rate_there(:n))
+      end subroutine within
 
       !> To the next segment of the ground motion where its break is reached
       subroutine next_segment()
          if (body%segment > body%motion%segments) return
          if (t < body%motion%break_time(body%segment + 1)) return
-         if (.not. body%motion%smooth_to_next(body%segment)) h_next = min(h_next, 1.0e-3_wp)
+         if (.not. body%motion%smooth_to_next(body%segment)) then
+            h_next = min(h_next, 1.0e-3_wp)
+            rate_known = .false.
+         end if
          body%segment = body%segment + 1
          call body%renew(t, y, history)
       end subroutine next_segment
 
+      !> The end of the step, and where a number turns within it
       subroutine note_peaks()
          integer :: k
          do k = 1, 2
-            if (abs(y(k)) > abs(history%peak(k))) history%peak(k) = y(k)
+            call note_value(k, fresh(k))
+            if (rate(k) * rate_there(k) < 0.0_wp) call note_value(k, turning(k))
          end do
       end subroutine note_peaks
+
+      subroutine note_value(k, value)
+         integer, intent(in) :: k
+         real(wp), intent(in) :: value
+         history%least(k) = min(history%least(k), value)
+         history%most(k) = max(history%most(k), value)
+      end subroutine note_value
+
+      !> Number k of the state where its rate changes sign within the step, by the cubic through its ends
+      pure function turning(k) result(value)
+         integer, intent(in) :: k
+         real(wp) :: value
+         real(wp) :: s, a, b, c, root, z(most_numbers)
+         ! rate over the step: a s^2 + b s + c
+         c = h * rate(k)
+         a = 3.0_wp * (c + h * rate_there(k)) - 6.0_wp * (fresh(k) - y(k))
+         b = h * rate_there(k) - c - a
+         ! its ends are of unlike sign: one of the two roots lies within
+         root = b + sign(sqrt(max(b * b - 4.0_wp * a * c, 0.0_wp)), b)
+         s = -2.0_wp * c / root
+         if (.not. (s >= 0.0_wp .and. s <= 1.0_wp)) s = -root / (2.0_wp * a)
+         value = fresh(k)
+         if (.not. (s >= 0.0_wp .and. s <= 1.0_wp)) return
+         call within(s, z(:n))
+         value = z(k)
+      end function turning
 
       !> The output time that has come
       subroutine write_out()

@@ -14,7 +14,7 @@ module rocking_soft_base
    implicit none
    private
    public :: soft_base, soft_base_new, base_contact, contact_of, soft_base_parameters
-   public :: accelerations, direction, lever, velocity, watched, decides, look
+   public :: accelerations, direction, energies, hold, lever, look, settled, velocity, watched, decides
 
    !> Numbers of a block: mass [kg], inertia about its centre [kg m^2], height of the centre [m], distance of the left
    !> and of the right edge from its foot [m]; stiffness [N/m^2] and damping [N s/m^2] of the base per length; 1 where
@@ -236,6 +236,69 @@ contains
       x = lever(body, y(1))
       u = [x(1) * y(3), -y(4) - body%height * d(1) * y(3)]
    end function velocity
+
+   !> Kinetic energy, and potential energy with that of the springs [J]
+   pure function energies(body, y, base) result(e)
+      type(soft_base), intent(in) :: body
+      real(wp), intent(in) :: y(:)
+      type(base_contact), intent(in) :: base
+      real(wp) :: e(2)
+      real(wp) :: d(2)
+      d = direction(body, y(1))
+      e(1) = 0.5_wp * body%inertia * y(3)**2
+      if (body%linear) then
+         e(1) = e(1) + 0.5_wp * body%mass * ((body%height * y(3))**2 + y(4)**2)
+         e(2) = -body%mass * gravity * (y(2) + 0.5_wp * body%height * y(1)**2)
+      else
+         e(1) = e(1) + 0.5_wp * body%mass * sum(velocity(body, y)**2)
+         e(2) = body%mass * gravity * (body%height * (d(2) - 1.0_wp) - y(2))
+      end if
+      e(2) = e(2) + base%stored
+   end function energies
+
+   !> How far it sinks where it is held at a rotation and free to sink under its weight [m]
+   pure function settled(body, q) result(z)
+      type(soft_base), intent(in) :: body
+      real(wp), intent(in) :: q  !! [rad]
+      real(wp) :: z
+      real(wp) :: d(2), at_edges(2), weight, deep
+      d = direction(body, q)
+      at_edges = d(1) * body%place
+      weight = body%mass * gravity
+      if (body%edges) then
+         z = weight / body%stiffness - maxval(at_edges)
+         if (z + minval(at_edges) > 0.0_wp) z = 0.5_wp * (weight / body%stiffness - sum(at_edges))
+         return
+      end if
+      ! what presses is a triangle: stiffness deep^2 / (2 |d|) is the weight, until it reaches the other edge
+      deep = sqrt(2.0_wp * weight * abs(d(1)) / body%stiffness)
+      if (deep < maxval(at_edges) - minval(at_edges)) then
+         z = deep - maxval(at_edges)
+      else
+         z = weight / (body%stiffness * (body%place(2) - body%place(1))) - 0.5_wp * sum(at_edges)
+      end if
+   end function settled
+
+   !> The block at a rotation, free to sink: its energy, the least that it can have there, and the moment that turns it
+   !> back from a rotation to +x, of its weight and the base
+   pure subroutine hold(body, q, sunk, energy, moment)
+      type(soft_base), intent(in) :: body
+      real(wp), intent(in) :: q         !! [rad]
+      real(wp), intent(out) :: sunk     !! [m]
+      real(wp), intent(out) :: energy   !! of weight and springs [J]
+      real(wp), intent(out) :: moment   !! [N m]
+      type(soft_base) :: held
+      type(base_contact) :: base
+      real(wp) :: y(4), d(2)
+      held = body
+      sunk = settled(body, q)
+      y = [q, sunk, 0.0_wp, 0.0_wp]
+      call look(held, y)
+      base = contact_of(held, y)
+      d = direction(body, q)
+      energy = sum(energies(held, y, base))
+      moment = d(2) * base%moment - d(1) * body%height * body%mass * gravity
+   end subroutine hold
 
    !> The values whose signs make the mode: both edges pressed, both pushing, the base where it lifts, the side [m]
    pure function watched(body, y) result(value)

@@ -5,12 +5,13 @@ module rocking_soft_base_response
    use common_signal, only : signal
    use common_status, only : status_invalid_argument
    use rocking_modes, only : mode_history, mode_rocker, respond_in_modes
-   use rocking_soft_base, only : accelerations, base_contact, contact_of, decides, direction, lever, look, soft_base, &
-      velocity, watched
+   use rocking_response, only : response, response_options
+   use rocking_soft_base, only : accelerations, base_contact, contact_of, energies, decides, hold, lever, look, &
+      settled, soft_base, soft_base_new, soft_base_parameters, velocity, watched
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: soft_base_rock, soft_base_rows, soft_base_state
+   public :: soft_base_body, soft_base_body_new, soft_base_respond, soft_base_rock, soft_base_rows, soft_base_state
 
    !> Numbers of the state: q [rad], z [m], their rates, work of the ground, energy that the base has taken up [J]
    integer, parameter :: soft_base_state = 6
@@ -23,15 +24,75 @@ module rocking_soft_base_response
    !> A block in one of its modes; events name the left (-1) or the right (1) edge
    type, extends(mode_rocker) :: soft_base_rocker
       type(soft_base) :: block
+      real(wp) :: critical(2) = 0.0_wp   !! from which gravity takes it down, to +x and to -x; 0 not known [rad]
+      logical :: stop_when_safe = .false.
+      integer :: half_cycle = 0          !! side of the last half cycle begun, 0 none
    contains
       procedure :: slope
       procedure :: inside
       procedure :: leave
       procedure :: fallen
+      procedure :: upright
+      procedure :: known
       procedure :: row
    end type soft_base_rocker
 
+   !> A block as an ensemble rocks it: its numbers (see soft_base_parameters), then the critical rotations to +x and to
+   !> -x, both above zero [rad]
+   type :: soft_base_body
+      type(soft_base) :: block
+      real(wp) :: critical(2) = 0.0_wp
+   end type soft_base_body
+
 contains
+
+   !> Set up from the flat parameter list
+   subroutine soft_base_body_new(parameters, body, status)
+      real(wp), intent(in) :: parameters(:)  !! see soft_base_body
+      type(soft_base_body), intent(out) :: body
+      integer(c_int), intent(out) :: status
+      status = status_invalid_argument
+      if (size(parameters) /= soft_base_parameters + 2) return
+      body%critical = parameters(soft_base_parameters + 1:)
+      if (any(body%critical <= 0.0_wp)) return
+      call soft_base_new(parameters(:soft_base_parameters), body%block, status)
+   end subroutine soft_base_body_new
+
+   !> One member of an ensemble: started turned and free to sink, its outcome alone
+   subroutine soft_base_respond(body, motion, options, answer, status)
+      type(soft_base_body), intent(in) :: body
+      type(signal), intent(in) :: motion
+      type(response_options), intent(in) :: options
+      type(response), intent(out) :: answer
+      integer(c_int), intent(out) :: status
+      type(soft_base_rocker) :: rocker
+      type(mode_history) :: record
+      real(wp) :: y(soft_base_state), peaks(2)
+      real(wp), target :: no_time(0), no_rows(0, 0), no_events(2, 0)
+      integer(c_int), target :: no_kinds(0)
+
+      record%time => no_time
+      record%state => no_rows
+      record%event_kind => no_kinds
+      record%event => no_events
+      rocker%block = body%block
+      rocker%critical = body%critical
+      rocker%stop_when_safe = options%stop_when_safe
+      y = 0.0_wp
+      y(1) = real(options%start_side, wp) * options%start_q
+      y(2) = settled(body%block, y(1))
+      y(3) = real(options%start_side, wp) * options%start_v
+      call rock(rocker, motion, y, options%end_time, options%tolerance, record, status)
+      peaks = record%peak()
+      answer%outcome = record%outcome
+      answer%half_cycles = record%half_cycles
+      answer%impacts = sum(record%impacts)
+      answer%peak = peaks(1)
+      answer%peak_ratio = reached(rocker, record)
+      answer%stop_time = record%stop_time
+      answer%steps = record%steps
+      answer%settled = record%settled
+   end subroutine soft_base_respond
 
    !> Rock the block from a state until the end time or collapse
    subroutine soft_base_rock(block, motion, y, end_time, tolerance, history, status)
@@ -43,32 +104,97 @@ contains
       type(mode_history), intent(inout) :: history
       integer(c_int), intent(out) :: status
       type(soft_base_rocker) :: rocker
+      rocker%block = block
+      call rock(rocker, motion, y, end_time, tolerance, history, status)
+   end subroutine soft_base_rock
+
+   !> The same of a block that knows what is asked
+   subroutine rock(rocker, motion, y, end_time, tolerance, history, status)
+      type(soft_base_rocker), intent(inout) :: rocker
+      type(signal), intent(in) :: motion
+      real(wp), intent(inout) :: y(:)
+      real(wp), intent(in) :: end_time
+      real(wp), intent(in) :: tolerance
+      type(mode_history), intent(inout) :: history
+      integer(c_int), intent(out) :: status
       real(wp) :: atol(soft_base_state), stiffness, sunk, angle, unit
 
       status = status_invalid_argument
       if (size(y) /= soft_base_state) return
-      rocker%block = block
       rocker%motion = motion
-      ! a step that is longer than a cycle of the springs may be blind to it
-      stiffness = block%stiffness * merge(2.0_wp, block%place(2) - block%place(1), block%edges)
-      rocker%longest = min(rocker%longest, 0.25_wp * pi * sqrt(block%mass / stiffness))
-      sunk = block%mass * gravity / stiffness
-      angle = maxval(block%limit)
-      unit = sqrt(gravity / block%height)
-      atol(1:4) = 0.01_wp * tolerance * [angle, sunk, angle * unit, sqrt(gravity * sunk)]
-      atol(5:6) = tolerance * block%mass * gravity * maxval(abs(block%place)) * angle
-      call look(rocker%block, y)
-      if (.not. abs(y(1)) > 0.0_wp) rocker%block%side = 1
-      rocker%moved = any(rocker%block%down < 0)
+      associate (block => rocker%block)
+         ! a step that is longer than a cycle of the springs may be blind to it
+         stiffness = block%stiffness * merge(2.0_wp, block%place(2) - block%place(1), block%edges)
+         rocker%longest = min(rocker%longest, 0.25_wp * pi * sqrt(block%mass / stiffness))
+         sunk = block%mass * gravity / stiffness
+         angle = maxval(block%limit)
+         unit = sqrt(gravity / block%height)
+         atol(1:4) = 0.01_wp * tolerance * [angle, sunk, angle * unit, sqrt(gravity * sunk)]
+         atol(5:6) = tolerance * block%mass * gravity * maxval(abs(block%place)) * angle
+         call look(rocker%block, y)
+         if (.not. abs(y(1)) > 0.0_wp) rocker%block%side = 1
+         rocker%moved = any(rocker%block%down < 0)
+         if (rocker%moved) call begin_half_cycle(rocker, rocker%block%side, history)
+      end associate
       call respond_in_modes(rocker, y, end_time, atol, tolerance, history, status)
-   end subroutine soft_base_rock
+   end subroutine rock
+
+   !> A half cycle begins where the edge away from which it leans lifts, unless the last one was to the same side
+   subroutine begin_half_cycle(rocker, side, history)
+      type(soft_base_rocker), intent(inout) :: rocker
+      integer, intent(in) :: side  !! to which it leans
+      type(mode_history), intent(inout) :: history
+      if (side == rocker%half_cycle) return
+      rocker%half_cycle = side
+      history%half_cycles = history%half_cycles + 1
+   end subroutine begin_half_cycle
+
+   !> Greatest rotation so far over the critical one of its side
+   pure function reached(rocker, history) result(ratio)
+      type(soft_base_rocker), intent(in) :: rocker
+      type(mode_history), intent(in) :: history
+      real(wp) :: ratio
+      ratio = max(history%most(1) / rocker%critical(1), -history%least(1) / rocker%critical(2))
+   end function reached
+
+   !> Too little energy is left to reach the critical rotation of either side; false where these are not known
+   pure function upright(body, y) result(answer)
+      class(soft_base_rocker), intent(in) :: body
+      real(wp), intent(in) :: y(:)
+      logical :: answer
+      answer = all(body%critical > 0.0_wp) .and. y(1) < body%critical(1) .and. y(1) > -body%critical(2)
+      if (answer) answer = stays_below(body, y, 1.0_wp)
+   end function upright
+
+   !> Outcome and peak are known where the energy left reaches no further than so far
+   pure function known(body, y, history) result(answer)
+      class(soft_base_rocker), intent(in) :: body
+      real(wp), intent(in) :: y(:)
+      type(mode_history), intent(in) :: history
+      logical :: answer
+      answer = body%stop_when_safe .and. body%moved
+      if (answer) answer = body%upright(y)
+      if (answer) answer = stays_below(body, y, min(1.0_wp, reached(body, history)))
+   end function known
+
+   !> Too little energy is left to reach a share of the critical rotation of either side
+   pure function stays_below(rocker, y, share) result(answer)
+      type(soft_base_rocker), intent(in) :: rocker
+      real(wp), intent(in) :: y(:)
+      real(wp), intent(in) :: share
+      logical :: answer
+      real(wp) :: energy(2), sunk, moment
+      call hold(rocker%block, share * rocker%critical(1), sunk, energy(1), moment)
+      call hold(rocker%block, -share * rocker%critical(2), sunk, energy(2), moment)
+      answer = sum(energies(rocker%block, y, contact_of(rocker%block, y))) < minval(energy)
+   end function stays_below
 
    !> Rates of the state
-   function slope(system, t, y) result(rate)
+   subroutine slope(system, t, y, rate)
       class(soft_base_rocker), intent(in) :: system
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
-      real(wp) :: rate(size(y))
+      real(wp), intent(out) :: rate(:)
       real(wp) :: shaking(2)
       type(base_contact) :: base
       shaking = system%ground(t)
@@ -77,7 +203,7 @@ contains
       rate(3:4) = accelerations(system%block, y, base, shaking)
       rate(5) = -system%block%mass * dot_product(shaking, velocity(system%block, y))
       rate(6) = base%spent
-   end function slope
+   end subroutine slope
 
    !> Above zero while all signs stay
    function inside(body, t, y) result(margin)
@@ -112,6 +238,7 @@ contains
          if (body%block%down(i) < 0) then
             body%moved = .true.
             call history%note(event_uplift, t, 2 * i - 3)
+            if (y(1) * body%block%place(i) < 0.0_wp) call begin_half_cycle(body, 3 - 2 * i, history)
          else
             history%impacts(i) = history%impacts(i) + 1
             call history%note(event_impact, t, 2 * i - 3)
@@ -138,22 +265,13 @@ contains
       integer, intent(in) :: rows
       real(wp) :: values(rows)
       type(base_contact) :: base
-      real(wp) :: shaking(2), a(2), x(2), d(2), kinetic, potential
+      real(wp) :: shaking(2), a(2), x(2)
       shaking = body%ground(t)
       associate (block => body%block)
          base = contact_of(block, y)
          a = accelerations(block, y, base, shaking)
          x = lever(block, y(1))
-         d = direction(block, y(1))
-         kinetic = 0.5_wp * block%inertia * y(3)**2
-         if (block%linear) then
-            kinetic = kinetic + 0.5_wp * block%mass * ((block%height * y(3))**2 + y(4)**2)
-            potential = -block%mass * gravity * (y(2) + 0.5_wp * block%height * y(1)**2)
-         else
-            kinetic = kinetic + 0.5_wp * block%mass * sum(velocity(block, y)**2)
-            potential = block%mass * gravity * (block%height * (d(2) - 1.0_wp) - y(2))
-         end if
-         values = [y(1:4), shaking, kinetic, potential + base%stored, y(5) - y(6) - loss, &
+         values = [y(1:4), shaking, energies(block, y, base), y(5) - y(6) - loss, &
             block%mass * (x(1) * a(1) + x(2) * y(3)**2 + shaking(1)), base%force, base%range, base%most, a(1)]
       end associate
    end function row

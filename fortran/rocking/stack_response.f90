@@ -68,17 +68,17 @@ contains
    end subroutine stack_rock
 
    !> Rates of the state
-   function slope(system, t, y) result(rate)
+   subroutine slope(system, t, y, rate)
       class(stack_rocker), intent(in) :: system
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
-      real(wp) :: rate(size(y))
+      real(wp), intent(out) :: rate(:)
       real(wp) :: shaking(2)
       shaking = system%ground(t)
       rate(1:2) = y(3:4)
       rate(3:4) = solved(motion_about(system%body, system%s, y(1:2), y(3:4), shaking), system%s)
       rate(5) = power(system%body, system%s, y(1:2), y(3:4), shaking)
-   end function slope
+   end subroutine slope
 
    !> Above zero while open contacts are open and shut ones press
    function inside(body, t, y) result(margin)

@@ -29,6 +29,7 @@ module sla_interface
       procedure :: report
       procedure :: state
       procedure :: origins
+      procedure :: slipped
       procedure :: sliding
       procedure :: sliders
       procedure :: turned_back
@@ -60,7 +61,7 @@ contains
       group%points = 2 * n
       group%freedoms = 8
       group%directions = 1
-      group%slides = .true.
+      group%slides = any(law%friction >= 0.0_wp)
       group%options = options
       call tooth_tables_copy(teeth, group%teeth, status)
       if (status /= status_ok) return
@@ -158,6 +159,19 @@ contains
       end do
    end subroutine add
 
+   pure function slipped(group) result(yes)
+      class(interface_group), intent(in) :: group
+      logical :: yes
+      integer :: p
+      yes = .false.
+      if (.not. group%slides) return
+      do p = 1, group%points
+         yes = abs(group%start(p)) > 0.0_wp
+         if (.not. yes .and. is_closed(group, p)) yes = group%mode(p) /= sticks .or. abs(group%mark(p)) > 0.0_wp
+         if (yes) return
+      end do
+   end function slipped
+
    !> Forces and energy of springs that do not begin at zero slip, and forces of sliding friction
    pure subroutine origins(group, springs, held, energy)
       class(interface_group), intent(in) :: group
@@ -222,9 +236,10 @@ contains
       e = (p + 1) / 2
       as%point = p
       as%index = group%equation(:, e)
-      as%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%across = nodal(group, e, p, [1.0_wp, 0.0_wp]) * group%factor(:, e)
       as%slip = nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
-      as%strength = nodal(group, e, p, [-group%law%friction(e) * across(group, e, p), 0.0_wp]) * group%factor(:, e)
+      as%area = group%area(p)
+      as%strength = -group%law%friction(e) * across(group, e, p)
       as%elastic = shear(group, e, p) - bond(group, e, p)
       if (group%mode(p) == sticks) then
          as%spring = as%elastic
@@ -232,8 +247,7 @@ contains
          return
       end if
       as%sense = merge(1.0_wp, -1.0_wp, group%mode(p) == slides_up)
-      as%law = nodal(group, e, p, [-as%sense * group%law%friction(e) * across(group, e, p), &
-         -soft * shear(group, e, p)]) * group%factor(:, e)
+      as%law = [as%sense * as%strength, -soft * shear(group, e, p)]
       as%spring = soft * shear(group, e, p)
       as%held = group%held(:, p)
    end subroutine describe

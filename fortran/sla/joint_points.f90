@@ -72,6 +72,7 @@ module sla_joint_points
       real(wp), allocatable :: stuck(:)          !! multiplier at which a sliding point has stuck last
    contains
       procedure :: scan
+      procedure :: margin
    end type joint_points
 
    !> The law along the joint, tau = k ds - k0 + h; its elastic energy is k ds^2 / 2 - k0 ds + e0
@@ -309,6 +310,87 @@ contains
             code_stick, found)
       end associate
    end subroutine scan_point
+
+   !> See point_group: the same limits as scan_point, of points that have not slid
+   pure subroutine margin(group, first, last, ua, ub, lambda, least)
+      class(joint_points), intent(in) :: group
+      integer, intent(in) :: first
+      integer, intent(in) :: last
+      real(wp), intent(in) :: ua(0:)
+      real(wp), intent(in) :: ub(0:)
+      real(wp), intent(in) :: lambda(:)
+      real(wp), intent(inout) :: least(:)
+      real(wp) :: la(8), lb(8), da(2), db(2), k, f, w, mu, bonded, spring
+      integer :: e, p
+      do e = first, last
+         call group%gather(e, ua, la)
+         call group%gather(e, ub, lb)
+         do p = 2 * e - 1, 2 * e
+            if (.not. group%area(p) > 0.0_wp) cycle
+            if (group%mode(p) /= sticks) then
+               least = -1.0_wp
+               return
+            end if
+            w = group%area(p)
+            da = jump(group, e, p, la)
+            db = jump(group, e, p, lb)
+            k = across(group, e, p)
+            f = group%teeth%strength_of(group%law%crush_table(e), group%crush(p), 1.0_wp)
+            if (f < unbounded) call lower([-k, 0.0_wp], f, k, w, da, db, lambda, least)
+            if (is_closed(group, p) .and. group%tooth(p) > 1) then
+               call lower([k, 0.0_wp], 0.0_wp, k, w, da, db, lambda, least)
+            else
+               f = group%teeth%strength_of(group%law%table(e), group%tooth(p), 1.0_wp)
+               if (f < unbounded) call lower([k, 0.0_wp], f, k, w, da, db, lambda, least)
+               if (group%tooth(p) > 1 .and. group%changes(p) < group%options%most_changes) call lower([-k, 0.0_wp], &
+                  0.0_wp, k, w, da, db, lambda, least)
+            end if
+            mu = group%law%friction(e)
+            if (mu < 0.0_wp) cycle
+            bonded = bond(group, e, p)
+            f = group%teeth%strength_of(group%law%slip_table(e), group%slip(p), 1.0_wp)
+            if (group%slip(p) == 1) then
+               spring = group%law%ks(e)
+               call lower_both([mu * k, spring], 0.0_wp, f, mu**2 * k + spring, w, da, db, lambda, least)
+            else if (f < unbounded) then
+               call lower_both([0.0_wp, bonded], group%start(p), f, bonded, w, da, db, lambda, least)
+            end if
+            if (.not. (is_closed(group, p) .and. slips(group, e, p))) cycle
+            spring = shear(group, e, p) - bonded
+            call lower_both([mu * k, spring], group%mark(p), 0.0_wp, mu**2 * k + spring, w, da, db, lambda, least)
+         end do
+      end do
+   end subroutine margin
+
+   !> What a limit c.d <= f of the jumps d = da + lambda db leaves. A change with the energy U adds at most
+   !> sqrt(2 U stiff / w), where the joint is no softer than k across and s along and stiff = c_n^2 / k + c_s^2 / s
+   pure subroutine lower(c, f, stiff, area, da, db, lambda, least)
+      real(wp), intent(in) :: c(2)            !! [Pa/m]
+      real(wp), intent(in) :: f               !! [Pa]
+      real(wp), intent(in) :: stiff           !! [Pa/m]
+      real(wp), intent(in) :: area            !! w [m^2]
+      real(wp), intent(in) :: da(2)           !! [m]
+      real(wp), intent(in) :: db(2)           !! [m]
+      real(wp), intent(in) :: lambda(:)
+      real(wp), intent(inout) :: least(:)     !! see point_group
+      if (.not. stiff > 0.0_wp) return
+      least = min(least, sqrt(area / stiff) * (f - dot_product(c, da) - lambda * dot_product(c, db)))
+   end subroutine lower
+
+   !> As lower, of slip from `start` in both senses
+   pure subroutine lower_both(c, start, f, stiff, area, da, db, lambda, least)
+      real(wp), intent(in) :: c(2)            !! [Pa/m]
+      real(wp), intent(in) :: start           !! [m]
+      real(wp), intent(in) :: f               !! [Pa]
+      real(wp), intent(in) :: stiff           !! [Pa/m]
+      real(wp), intent(in) :: area            !! w [m^2]
+      real(wp), intent(in) :: da(2)           !! [m]
+      real(wp), intent(in) :: db(2)           !! [m]
+      real(wp), intent(in) :: lambda(:)
+      real(wp), intent(inout) :: least(:)     !! see point_group
+      call lower(c, f + c(2) * start, stiff, area, da, db, lambda, least)
+      call lower([c(1), -c(2)], f - c(2) * start, stiff, area, da, db, lambda, least)
+   end subroutine lower_both
 
    !> What grows by `rate` per unit multiplier reaches `room` as the load grows, or at once where it is beyond: it never
    !> asks for less load than there is. A load that falls for the next tooth is the method's, no reversal.

@@ -11,7 +11,7 @@ module sla_model
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
    use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
       most_entries, most_rank, report_rows
-   use sla_friction, only : friction_store, friction_balance
+   use sla_friction, only : friction_store, friction_balance, friction_follow
    use sla_turns, only : friction_turns
    use sla_regions, only : region_tree, regions_new, regions_measure, regions_settled, regions_made_up
    use sla_tables, only : tooth_tables
@@ -20,7 +20,8 @@ module sla_model
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
    public :: model_displacements, model_settled, model_balance, model_reactions, model_recorded
-   public :: model_turns, held_work, model_damage, model_standing, model_resume, standing_values
+   public :: model_follow, model_slips, model_turns, held_work, model_damage, model_standing, model_resume
+   public :: standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
@@ -55,7 +56,7 @@ module sla_model
       real(wp) :: held(2) = 0.0_wp                       !! fh.u of the last state [J]
       real(wp) :: origin_energy = 0.0_wp                 !! [J]
       type(friction_store) :: friction
-      logical :: slides = .false.                        !! a group has origins: no region may wait
+      logical :: slides = .false.                        !! a point has slipped: no region may wait
       real(wp), allocatable :: moved(:, :)               !! (moved, 2) supports, constant and per multiplier [m]
       real(wp), allocatable :: reaction(:, :)            !! (moved, 2) their forces under A and per multiplier [N]
       integer, allocatable :: beside(:, :)               !! (2, elements) group and element at a moved support
@@ -225,14 +226,8 @@ contains
          return
       end if
       call regions_new(model%tree, model%handle, model%holders, n, status)
-      do g = 1, size(model%holders)
-         select type (group => model%holders(g)%group)
-         class is (point_group)
-            model%slides = model%slides .or. group%slides
-         end select
-      end do
       ! Regions that were not measured are looked at in each event
-      if (status == status_ok .and. .not. (model%refactor .or. model%slides)) then
+      if (status == status_ok .and. .not. model%refactor) then
          call regions_measure(model%tree, model%holders, model%xy, model%equation, model%factor, status)
       end if
       if (status /= status_ok) return
@@ -348,6 +343,7 @@ contains
       end do
       model%fo(0) = 0.0_wp
       model%fh(0, :) = 0.0_wp
+      call find_slips(model)
       model%z(:, 1) = model%fa(1:n) + model%fo(1:n) + model%fh(1:n, 1)
       model%z(:, 2) = model%fb(1:n) + model%fh(1:n, 2)
       if (m > 0) call push_supports(model)
@@ -360,16 +356,39 @@ contains
       model%ua(1:n) = model%z(:, 1)
       model%ub(1:n) = model%z(:, 2)
       model%friction%known = .false.
-      call model_balance(model, [0, 0], status)
+      call model_balance(model, status)
    end subroutine model_solve
 
-   !> Where all displacements are known: let friction balance with them, then see `model_settled`
-   subroutine model_balance(model, place, status)
+   !> Once a point has slipped there are forces beside the stiffness
+   pure subroutine find_slips(model)
       type(element_model), intent(inout) :: model
-      integer, intent(in) :: place(2)             !! group and point of the last event, 0 none
+      integer :: g
+      do g = 1, size(model%holders)
+         select type (group => model%holders(g)%group)
+         class is (point_group)
+            model%slides = model%slides .or. group%slipped()
+         end select
+      end do
+   end subroutine find_slips
+
+   !> The first slip: all displacements are known, those of the last state are what sliding is compared with
+   subroutine model_slips(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      model%slides = .true.
+      model%tree%settled = .false.
+      model%friction%known = .false.
+      model%held = 0.0_wp
+      model%cross = dot_product(model%fb, model%ua(0:model%equations)) + model%support(2, 1)
+      call model_recorded(model, model%lambda_recorded, status)
+   end subroutine model_slips
+
+   !> Where all displacements are known: let friction balance with them, then see `model_settled`
+   subroutine model_balance(model, status)
+      type(element_model), intent(inout) :: model
       integer(c_int), intent(out) :: status        !! not_positive_definite: what slides is a mechanism
       status = status_ok
-      if (model%slides) call friction_balance(model%friction, model%holders, model%event, place, model%handle, &
+      if (model%slides) call friction_balance(model%friction, model%holders, model%event, model%handle, &
          model%refactor, model%value, model%equations, model%ua, model%ub, model%fh, status)
       call model_settled(model)
    end subroutine model_balance
@@ -380,10 +399,17 @@ contains
       integer, allocatable, intent(out) :: change(:, :)    !! (3, changes) group, point, code
       logical, intent(out) :: found
       integer(c_int), intent(out) :: status
-      call friction_turns(model%holders, model%handle, model%refactor, model%value, model%equations, model%lambda, &
-         model%ua, model%ub, change, found, status)
-      model%friction%known = .false.
+      call friction_turns(model%friction, model%holders, model%event, model%handle, model%refactor, model%value, &
+         model%equations, model%lambda, model%ua, model%ub, change, found, status)
    end subroutine model_turns
+
+   !> What sliding points do to each other, after an event without a balance
+   subroutine model_follow(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      call friction_follow(model%friction, model%event, model%handle, model%refactor, model%value, model%equations, &
+         status)
+   end subroutine model_follow
 
    !> The forces by which moved supports act on the unknowns, into z; the supports move
    subroutine push_supports(model)
@@ -454,6 +480,7 @@ contains
       model%fa(0) = 0.0_wp
       model%fb(0) = 0.0_wp
       if (model%refactor) call assemble(model%holders, model%start, model%row, model%value)
+      model%slides = .false.
       call model_solve(model, status)
       if (status /= status_ok) return
       model%pending = 0
@@ -534,6 +561,7 @@ contains
       model%lambda_held = values(30)
       model%first_constant = values(31)
       model%event%rank = 0
+      model%slides = .false.
       call model_solve(model, status)
       model%held = held_work(model, model%lambda_recorded)
       call model_recorded(model, model%lambda_recorded, status)

@@ -66,7 +66,8 @@ contains
             model%list(k) = k
          end do
          call scan_list(model, model%ua, model%ub, model%noise, guess_limits(model), 1, count, found)
-         tree%settled = tree%measured .and. found%hi%value < unbounded .and. found%lo%value > -unbounded
+         tree%settled = tree%measured .and. .not. model%slides
+         if (tree%settled) tree%settled = found%hi%value < unbounded .and. found%lo%value > -unbounded
          if (.not. tree%settled) return
          call regions_window(tree, found%hi%value, found%lo%value)
          call regions_margins(tree, model%holders, model%ua, model%ub)

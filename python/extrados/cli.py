@@ -6,7 +6,6 @@ import logging
 import os
 import signal
 import sys
-import time
 from collections import namedtuple
 from collections.abc import Callable
 from contextlib import contextmanager
@@ -18,6 +17,7 @@ import typer
 
 from extrados import interrupts
 from extrados._build_info import VERSION
+from extrados.running.progress import Progress
 from extrados.schema.text import printable
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class _Commands(typer.Typer):
         return guarded
 
 
-app = _Commands(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
+app = _Commands(no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__)
 
 
 class _Console:
@@ -75,35 +75,9 @@ out_console, err_console = _Console(stderr=False), _Console(stderr=True)
 WRONG_DECK, NOT_DONE = 2, 3
 
 
-class _Progress:
-    """A bar on a terminal, plain lines every few seconds elsewhere, nothing before the first second."""
-
-    def __init__(self, quiet: bool):
-        self.quiet = quiet
-        self.begin = self.last = time.monotonic()
-        self.bar = None
-        self.task = None
-
-    def __call__(self, done: float, total: float, text: str) -> None:
-        now = time.monotonic()
-        if self.quiet or now - self.begin < 1.0:
-            return
-        if err_console.is_terminal:
-            if self.bar is None:
-                from rich.progress import Progress
-
-                # without its refreshing thread: a process with threads of its own draws its figures alone
-                self.bar = Progress(console=err_console._rich, transient=True, auto_refresh=False)
-                self.bar.start()
-                self.task = self.bar.add_task(text, total=total)
-            self.bar.update(self.task, completed=done, total=total, description=text, refresh=True)
-        elif now - self.last > 5.0:
-            err_console.say(f"{text}: {100 * done / max(total, 1e-300):.0f} %")
-            self.last = now
-
-    def stop(self) -> None:
-        if self.bar is not None:
-            self.bar.stop()
+def _progress(quiet: bool) -> Progress:
+    """How far a command is."""
+    return Progress(quiet, lambda: err_console._rich, err_console.say)
 
 
 @contextmanager
@@ -128,6 +102,39 @@ def _errors(json_out: bool = False):
         tell([str(error)], NOT_DONE)
     except KeyboardInterrupt:
         tell(["interrupted"], interrupts.exit_code())
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        version()
+        raise typer.Exit()
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="version, commit and compilers")
+    ] = False,
+) -> None:
+    pass
+
+
+def _kinds(begun: str) -> list[str]:
+    """The kinds that begin so, for the shell that completes a word."""
+    from extrados import kinds
+
+    return [kind for there in kinds.TABLES.values() for kind in there if kind.startswith(begun)]
+
+
+def _words(begun: str) -> list[str]:
+    """What `explain` knows that begins so."""
+    from extrados.decks import manual, synonyms
+
+    tables = manual.stored()
+    known = [table.kind or table.section for table in tables]
+    known += [f"{table.kind or table.section}.{name}" for table in tables for name in table.keys]
+    known += [name.rsplit(".", 1)[-1] for table in tables for name in table.keys] + synonyms.words()
+    return sorted({word for word in known if word.startswith(begun) and " " not in word})
 
 
 @app.command()
@@ -157,7 +164,7 @@ def run(
         if twice is not None:
             raise DeckError([f"two decks would write to {twice}: run them one by one with --out"])
         for deck in checked:
-            progress = _Progress(quiet or as_json)
+            progress = _progress(quiet or as_json)
             tell = (lambda text: None) if quiet or as_json else out_console.say
             context = Context(deck, _threads(threads), progress, tell, resume=resume, scheduler=scheduler)
             try:
@@ -370,8 +377,9 @@ def _tell_plan(checked: "Checked", folder: Path) -> None:
     mesh = checked.plan
     for remark in checked.remarks:
         out_console.say(f"warning: {remark}")
+    walls = f"{len(mesh.walls)} walls, " if mesh.walls else ""
     out_console.say(
-        f"{len(mesh.walls)} walls, {mesh.elements()} elements, {len(mesh.xyz)} nodes; walls and floors weigh "
+        f"{walls}{mesh.elements()} elements, {len(mesh.xyz)} nodes; {'walls and floors weigh' if walls else 'weight'} "
         f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
     )
     try:
@@ -413,23 +421,28 @@ def schema(
 
 @app.command()
 def explain(
-    key: Annotated[
-        str | None,
-        typer.Argument(help="a key, a kind or a section of decks; results, results.KIND or results.KIND.KEY"),
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[WORD]",
+            help="a key, a kind or a section of decks, or a word of the trade; results, results.KIND or results.KIND.KEY",
+            autocompletion=_words,
+        ),
     ] = None,
     manual: Annotated[bool, typer.Option("--manual", help="the whole reference manual of decks in Markdown")] = False,
     results: Annotated[
         bool, typer.Option("--results", help="the whole reference manual of results in Markdown")
     ] = False,
 ) -> None:
-    """Say what a deck key, a kind or a result means: unit, default, bounds, source."""
+    """Say what a deck key, a kind or a result means: unit, default, bounds, source; and where a thing is found."""
     told: Any
-    if results or (key or "").split(".")[0] == "results":
+    key = " ".join(words or [])
+    if results or key.split(".")[0] == "results":
         from extrados.results import manual as told
     else:
         from extrados.decks import manual as told
 
-    if manual or results or key is None:
+    if manual or results or not key:
         print(told.manual(told.stored()))
         return
     try:
@@ -442,17 +455,24 @@ def explain(
 @app.command()
 def new(
     kind: Annotated[
-        str | None, typer.Argument(help="a kind of analysis, structure or motion; default lists them")
+        str | None,
+        typer.Argument(help="a kind of analysis, structure or motion; default lists them", autocompletion=_kinds),
     ] = None,
 ) -> None:
     """Print a commented starter deck that runs as it is."""
-    from extrados import kinds
+    if kind is None:
+        from extrados import kinds
+        from extrados.decks import manual
+
+        tables = manual.stored()
+        for section in kinds.TABLES:
+            out_console.say(f"{section}:", "bold")
+            for table in tables:
+                if table.section == section:
+                    out_console.say(f"  {table.kind:16} {manual.first_sentence(table.summary)}")
+        return
     from extrados.decks.explain import starter
 
-    if kind is None:
-        for section, known in kinds.TABLES.items():
-            out_console.say(f"{section}: {', '.join(known)}")
-        return
     try:
         print(starter(kind))
     except KeyError as error:
@@ -573,7 +593,7 @@ def assess(
     with _errors():
         total = len(decks_of(folder))
         place = out or Path("results") / (folder.resolve().name or "survey")
-        progress = _Progress(quiet)
+        progress = _progress(quiet)
         try:
             rows = assess_folder(folder, place, _threads(threads), progress, resume, scheduler, figures)
         finally:
@@ -625,6 +645,37 @@ def explore(
     from extrados.explore.supervisor import explore as serve_pages
 
     raise typer.Exit(serve_pages(folder, first, port, browser, lambda text: out_console.say(text)))
+
+
+def _forms(begun: str) -> list[str]:
+    from extrados.bridges.forms import FORMS
+
+    return [form for form in FORMS if form.startswith(begun)]
+
+
+@app.command()
+def export(
+    deck: Annotated[Path, typer.Argument(help="the deck")],
+    form: Annotated[
+        str, typer.Option("--to", help="compas, udec, 3dec or opensees", autocompletion=_forms, show_default=False)
+    ],
+    out: Annotated[Path | None, typer.Option(help="file; default results/<deck name>.<ending>")] = None,
+) -> None:
+    """Write the building of a deck for another program."""
+    from extrados.bridges.forms import FORMS, exported
+    from extrados.decks.reader import read_deck
+    from extrados.results.store import StoreError, reason
+
+    with _errors():
+        checked = read_deck(deck)
+        text = exported(checked, form)
+        place = out or checked.default_out.with_name(f"{checked.default_out.name}-{form}{FORMS[form][1]}")
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise StoreError(f"{place}: cannot be written: {reason(error)}") from None
+    out_console.say(f"{FORMS[form][2]}: {place}")
 
 
 @app.command()

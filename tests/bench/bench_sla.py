@@ -12,11 +12,40 @@ import time
 
 import numpy as np
 
+from extrados.analyses.context import Context
+from extrados.analyses.sla.model import build
 from extrados.building.building import Building
 from extrados.building.mesh.options import MeshOptions
 from extrados.building.templates.walls import Panel
-from extrados.core.sla import Freedoms, Model, Monitor, Plane, Softening, body_force
+from extrados.core.sla import EVENT, Freedoms, Model, Monitor, Plane, Softening, body_force
+from extrados.decks.reader import make_deck
 
+WHOLE = {
+    "structure": {
+        "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "openings": [{"x": [1.0, 2.0], "y": [1.0, 2.0]}],
+        "regions": [{"y": [2.9, 3.0], "linear": True}],
+    },
+    "material": {
+        "young": 6.9e9, "poisson": 0.25, "density": 1950.0, "tensile_strength": 2e5, "fracture_energy": 50.0,
+    },
+}  # fmt: skip
+UNITS = {
+    "structure": {
+        "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "unit_length": 0.5, "unit_height": 0.25,
+    },
+    "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0}, "mesh": {"joints": "interfaces"},
+}  # fmt: skip
+TORN = {
+    "tension": 1e5,
+    "fracture_energy": 20.0,
+    "normal_stiffness": 8e10,
+    "shear_stiffness": 3.6e10,
+    "friction": "no-sliding",
+}
+PUSH = {
+    "kind": "sla", "ripple": 0.2, "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
+    "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}],
+}  # fmt: skip
 #: elements a side -> events by update, by refactorisation
 SIZES = {52: (400, 40), 106: (200, 20), 212: (60, 8), 336: (30, 4)}
 
@@ -88,6 +117,33 @@ def against_refactorisation() -> None:
     )
 
 
+def rates() -> None:
+    """Time per event and equation of walls of quadratic elements, and of units with joints, beside bilinear elements."""
+    print("\nsla: time per event and equation; joints of no thickness, without sliding and until and as they slide")
+    for size in (0.058, 0.028):
+        for name, deck in {
+            "Q4": WHOLE, "Q8": WHOLE | {"mesh": {"element": "Q8"}, "coarser": 1.6},
+            "units, no sliding": UNITS | {"joints": TORN},
+            "units, friction 0.7": UNITS | {"joints": TORN | {"friction": 0.7, "cohesion": 1.5e5, "shear_energy": 100.0}},
+        }.items():  # fmt: skip
+            deck = dict(deck)
+            mesh = {"size": size * deck.pop("coarser", 1.0)} | deck.pop("mesh", {})
+            context = Context(make_deck(deck | {"analysis": PUSH | {"mesh": mesh}}))
+            options = context.deck.analyses[0]
+            wall = build(context.building.mesh(options.mesh), options)
+            with wall.open(options, 1) as model:
+                model.loads(wall.constant, wall.reference)
+                model.run(3, [wall.control])
+                begin = time.process_time()
+                found = model.run(200, [wall.control])
+                each = (time.process_time() - begin) / len(found)
+                slid = int((found.code >= EVENT["wear"]).sum())
+            print(
+                f"{name:>20} {model.equations:8d} equations {1e3 * each:8.3f} ms {1e9 * each / model.equations:7.1f} ns an "
+                f"equation, {len(found)} events, {slid} of friction"
+            )
+
+
 def long_run() -> None:
     """4,000 events on 6.6 thousand equations, and what is left of the equations after 20,000."""
     wall = Wall(60)
@@ -102,6 +158,7 @@ def long_run() -> None:
 
 def main() -> None:
     against_refactorisation()
+    rates()
     long_run()
 
 

@@ -13,6 +13,7 @@ import pytest
 from served import SHOTS, Served
 
 import extrados
+from extrados.schema.places import CASES
 
 DXF_UNIT = 6  # metres
 
@@ -68,7 +69,7 @@ def test_span_rise_and_angle_follow_the_hand(page: Any) -> None:
         before = settled(page)
         at = page.locator(f"[data-handle={name}] .dot").bounding_box()
         drag(page, f"[data-handle={name}] .hit", dx, dy)
-        assert settled(page) != before, name
+        until(page, "t => window.extrados.text !== t", arg=before)
         now = page.locator(f"[data-handle={name}] .dot").bounding_box()
         moved = (now["x"] - at["x"]) * dx + (now["y"] - at["y"]) * dy
         assert moved > 0.25 * (dx * dx + dy * dy), f"{name} does not follow: {at} {now}"
@@ -220,6 +221,89 @@ def test_a_load_is_added_and_dragged(page: Any) -> None:
     text = settled(page)
     run = extrados.run(_data(text))
     assert run["tilt"].collapse_acceleration_g == pytest.approx(capacity(page), rel=1e-12)
+
+
+def test_the_line_follows_a_drag_from_the_stones_and_its_thrust_is_a_handle(page: Any) -> None:
+    place = """k => {
+        const { joint_p: p, joint_q: q } = window.extrados.arrays, edge = document.querySelector(".stage").getBoundingClientRect();
+        const [x, y] = window.extrados.drawing.screenOf((p[2 * k] + q[2 * k]) / 2, (p[2 * k + 1] + q[2 * k + 1]) / 2);
+        return [edge.x + x, edge.y + y];
+    }"""
+    x, y = page.evaluate(place, 24)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    until(page, "window.extrados.scene.through")
+    before = page.evaluate("window.extrados.scene.through")
+    page.mouse.move(*page.evaluate(place, 28), steps=4)
+    page.mouse.up()
+    until(page, "b => window.extrados.scene.through.joint !== b", arg=before["joint"])
+    least, most = (page.evaluate(f"window.extrados.scene.{k}_N") for k in ("least", "most"))
+    page.locator("[data-handle=thrust]").focus()
+    page.keyboard.press("End")
+    until(page, "window.extrados.scene.chosen && !window.extrados.scene.through")
+    assert page.evaluate("window.extrados.scene.chosen.thrust_N") == pytest.approx(most, rel=1e-9)
+    page.keyboard.press("Home")
+    until(page, "m => window.extrados.scene.chosen.thrust_N < m", arg=0.999 * most)
+    assert page.evaluate("window.extrados.scene.chosen.thrust_N") == pytest.approx(least, rel=1e-9)
+    drag(page, "[data-handle=thrust] .hit", 30, 0)
+    until(page, "l => window.extrados.scene.chosen.thrust_N > l", arg=1.001 * least)
+    middle = 0.5 * (least + most)
+    page.keyboard.press("Enter")
+    page.fill("dialog input", f"{middle / 1e3:.6f} kN")
+    page.keyboard.press("Enter")
+    until(page, "m => Math.abs(window.extrados.scene.chosen.thrust_N / m - 1) < 1e-6", arg=middle)
+    assert page.locator("[data-handle=thrust]").get_attribute("aria-valuetext").startswith(f"{middle / 1e3:.4g}"[:4])
+
+
+def test_what_stands_in_space_is_turned_and_pushed(page: Any) -> None:
+    page.evaluate("window.extrados.open({ preset: 'solid/column' })")
+    until(page, "window.extrados.scene?.seen?.of === 'solids'")
+    page.wait_for_selector(".stage-box .space")
+    shades = "() => { const c = document.querySelector('.stage-box .space-canvas'); return new Set(new Uint32Array(c.getContext('2d').getImageData(0, 0, c.width, c.height).data.buffer)).size; }"
+    assert page.evaluate(shades) > 12, "faces are lit by how they lie"
+    look = page.evaluate("document.querySelector('.stage-box .space-canvas').toDataURL()")
+    seen = page.locator(".stage-box .space").get_attribute("aria-label")
+    page.locator(".stage-box .space").focus()
+    page.keyboard.press("ArrowLeft")
+    drag(page, ".stage-box .space", 60, -20)
+    page.wait_for_timeout(400)
+    assert page.locator(".stage-box .space").get_attribute("aria-label") != seen
+    assert page.evaluate("document.querySelector('.stage-box .space-canvas').toDataURL()") != look
+    page.click("text=Push it")
+    page.wait_for_selector("[data-number=push]")
+    run = extrados.run(CASES / "solid" / "column.toml")["tilt"]
+    assert f"{run.collapse_acceleration_g:.4f} g" in page.locator("[data-number=push]").inner_text()
+    page.wait_for_timeout(300)
+    page.screenshot(path=SHOTS / "solids.png")
+    page.click("text=Export")
+    with page.expect_download() as waited:
+        page.click("text=Drawing, SVG")
+    assert b"data:image/png" in waited.value.path().read_bytes()
+    page.evaluate("window.extrados.open({ preset: 'building/two-rooms' })")
+    until(page, "window.extrados.scene?.seen?.of === 'walls'")
+    page.screenshot(path=SHOTS / "building.png")
+    page.evaluate("window.extrados.open({ preset: 'sla/yi-wall-1' })")
+    page.wait_for_selector("[data-handle='openings.0.x.1']")
+    before = settled(page)
+    drag(page, "[data-handle='openings.0.x.1'] .hit", 15, 0)
+    until(page, "t => window.extrados.text !== t", arg=before)
+    page.screenshot(path=SHOTS / "wall.png")
+
+
+def test_what_has_no_map_still_rocks_and_a_motion_is_drawn_alone(page: Any) -> None:
+    page.click("[data-tab=motion]")
+    page.evaluate("window.extrados.open({ preset: 'rocking/stack' })")
+    until(page, "window.extrados.motion.arrays?.rotation_upper && window.extrados.motion.map?.why")
+    assert "two stacked blocks" in page.locator(".map-why").inner_text()
+    page.wait_for_timeout(300)
+    page.evaluate("window.extrados.motion.seek(0.5 * window.extrados.motion.end)")
+    assert page.locator(".ghost").get_attribute("d")
+    page.screenshot(path=SHOTS / "stack.png")
+    page.evaluate("window.extrados.open({ preset: 'motion/el-centro' })")
+    until(page, "window.extrados.motion.ground?.motion && !window.extrados.motion.arrays")
+    page.wait_for_timeout(200)
+    assert page.locator("[data-chart=pulse] .chart .line").count() == 1
+    assert "no [structure]" in page.locator(".outcome").inner_text()
 
 
 def test_motion_plays_and_the_map_knows_the_pulse(page: Any) -> None:

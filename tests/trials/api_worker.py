@@ -21,7 +21,7 @@ from extrados import _core
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import arch, dem, dem3, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
+from extrados.core import arch, dem, dem3, limit, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
@@ -221,8 +221,8 @@ def stacks(mass, inertia, centre, foot, height, contact, samples, dt, end_time, 
 
 
 def soft_bases(mass, inertia, height, left, right, stiffness, damping, edges, linear, samples, dt, end_time, output_step, scale,
-               tolerance, start, room) -> Any:  # fmt: skip
-    """A block on a base that gives way, shaken, and what the base does in a state."""
+               tolerance, start, room, rotation, critical) -> Any:  # fmt: skip
+    """A block on a base that gives way, shaken, in an ensemble too, what the base does in a state, and its statics."""
     base = soft_base.SoftBase(mass, inertia, height, left, right, stiffness, damping, edges, linear)
     run = soft_base.soft_base_history(
         base,
@@ -234,7 +234,15 @@ def soft_bases(mass, inertia, height, left, right, stiffness, damping, edges, li
         start=start,
         room=room,
     )
-    return run.rotation, run.force, astuple(soft_base.base_contact(base, *start))
+    many = rocking.ensemble([soft_base.soft_base_body(base, critical)], [Ground(samples=samples, step=dt)], [0, 0], [0, 0],
+                            scale, end_time, start_rotation=start[0], tolerance=tolerance)  # fmt: skip
+    return (
+        run.rotation,
+        run.force,
+        astuple(soft_base.base_contact(base, *start)),
+        soft_base.base_held(base, rotation),
+        many.peak,
+    )
 
 
 def motions(kind, parameters, points, step, intensity, frequency, amplitude, wanted, lines, spacing, scaling, factor, duration, seed,
@@ -253,13 +261,31 @@ def motions(kind, parameters, points, step, intensity, frequency, amplitude, wan
 
 
 def small(
-    mass, centroid, inertia, joint, hinge, opposite, before, after, alpha, beta, a, b, kind, points, connect, force
+    mass,
+    centroid,
+    inertia,
+    joint,
+    hinge,
+    opposite,
+    before,
+    after,
+    alpha,
+    beta,
+    a,
+    b,
+    kind,
+    points,
+    connect,
+    force,
+    band,
+    right,
 ) -> Any:
     """The functions that keep nothing."""
     return (
         arch.restitution(mass, centroid, inertia, joint, hinge, opposite), mechanism.restitution(mass, inertia, before, after),
         sla.intervals(alpha, beta, a, b), sla.body_force(kind, points, BOX, connect, force),
         sla.teeth(sla.Softening(1e5, 50.0), alpha, beta), sla.largest_band(sla.Softening(1e5, 50.0), alpha),
+        limit.BandFactor(np.array(band)).solve(right),
     )  # fmt: skip
 
 
@@ -312,7 +338,7 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
         (soft_bases, dict(
             mass=6000.0, inertia=5000.0, height=1.5, left=0.5, right=0.4, stiffness=1e8, damping=1e5, edges=False, linear=False,
             samples=4.0 * rng.normal(size=(1, 9)), dt=0.05, end_time=1.0, output_step=0.1, scale=1.0, tolerance=1e-8,
-            start=(0.01, 0.002, 0.0, 0.0), room=100,
+            start=(0.01, 0.002, 0.0, 0.0), room=100, rotation=[0.0, 0.01], critical=(0.3, 0.25),
         )),
         (hinges, dict(
             hinge=four.hinge, joint=four.joint, mass=four.mass, centroid=four.centroid, inertia=four.inertia, masses=stones.mass,
@@ -348,6 +374,7 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             mass=np.ones(3), centroid=rng.normal(size=(3, 2)), inertia=np.ones(3), joint=np.array([0, 1, 2, 3]), hinge=rng.normal(size=(4, 2)),
             opposite=rng.normal(size=(4, 2)), before=rng.normal(size=(3, 3)), after=rng.normal(size=(3, 3)), alpha=1e9, beta=0.5,
             a=np.ones((2, 3)), b=np.ones((2, 3)), kind="Q4", points=(2, 2), connect=[[0, 1, 2, 3]], force=[[0.0, 1.0]],
+            band=np.tile([4.0, 1.0, 0.5], (12, 1)), right=np.ones(12),
         )),
     ]  # fmt: skip
 

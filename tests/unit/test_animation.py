@@ -12,6 +12,7 @@ from extrados.plots import animation
 from extrados.schema.programs import ffmpeg
 
 ARCH = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
+STACK = {"kind": "stack", "lower_width": 1.0, "lower_height": 2.0, "upper_width": 0.6, "upper_height": 2.4}
 PULSE = {"kind": "step-pulse", "amplitude": "0.8 g", "duration": 0.2}
 FAST = {"animation": "gif", "animation_speed": 10.0}
 
@@ -32,11 +33,12 @@ def pictures(path: Path) -> list[np.ndarray]:
         ("tilt", {"structure": ARCH, "analysis": [{"kind": "tilt", **FAST}]}),
         ("rocking", {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]}),
         ("rocking", {"structure": {"kind": "block", "width": 1.0, "height": 4.0}, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]}),
+        ("rocking", {"structure": STACK, "motion": PULSE, "analysis": [{"kind": "rocking", "end_time": 2.0, **FAST, "animation_speed": 3.0}]}),
         ("supports", {"structure": ARCH, "analysis": [{"kind": "supports", **FAST}]}),
         ("dem", {"structure": ARCH, "motion": PULSE, "analysis": [{"kind": "dem", "end_time": 0.6, **FAST, "animation_speed": 1.0}]}),
         ("sla", None),
     ],
-    ids=["tilt", "rocking of an arch", "rocking of a block", "supports", "dem", "sla"],
+    ids=["tilt", "rocking of an arch", "rocking of a block", "rocking of a stack", "supports", "dem", "sla"],
 )  # fmt: skip
 def test_what_moves_is_filmed(tmp_path: Path, name: str, deck: dict | None) -> None:
     if deck is None:

@@ -32,14 +32,16 @@ MAY_IMPORT = {
         "schema", "interrupts",
     },
     "plots": {"kinds", "results", "schema"},
-    "running": {"kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
+    "running": {"objects", "kinds", "analyses", "tables", "building", "geometry", "errors", "decks", "motions", "results", "plots", "schema", "_build_info"},
     "explore": {
         "kinds", "analyses", "tables", "building", "geometry", "errors", "limit", "decks", "motions", "core", "results", "plots",
         "running", "schema", "_build_info",
     },
-    "cli": {"interrupts", "kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info"},
+    "objects": {"kinds", "decks", "schema"},
+    "bridges": {"decks", "building", "geometry", "errors", "rockers", "schema", "_build_info"},
+    "cli": {"bridges", "interrupts", "kinds", "analyses", "decks", "results", "plots", "running", "explore", "schema", "_build_info"},
     "__main__": {"cli", "interrupts"},
-    "": {"analyses", "decks", "running", "explore"},
+    "": {"analyses", "bridges", "decks", "objects", "results", "running", "explore"},
 }  # fmt: skip
 #: Rooms within rooms: the deck tables of analyses are what decks read; views of a building that rock need limit
 #: analysis, which knows blocks and joints alone

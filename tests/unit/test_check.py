@@ -124,7 +124,9 @@ WRONG = {
         "give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',
     ),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
-    "film of a stack": ("draws no film", STACK + PULSE + ROCKING + 'animation = "gif" # here\n'),
+    "block without weight": ("weighs nothing", BLOCK + "[material]\ndensity = 0.0 # here\n" + TILT),
+    "arch without weight that rocks": ("weighs nothing", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + ROCKING),
+    "arch without weight, discrete elements": ("weighs nothing", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + DEM),
 }  # fmt: skip
 
 

@@ -69,3 +69,17 @@ def test_the_deck_reference_is_up_to_date() -> None:
         [sys.executable, "-m", "extrados.cli", "explain", "--manual"], capture_output=True, text=True, check=True
     )
     assert made.stdout == (ROOT / "docs" / "decks.md").read_text(encoding="utf-8"), "run `make docs`"
+
+
+def test_the_conda_recipe_has_the_libraries_of_the_project() -> None:
+    """By the names of PyPI: two are called otherwise on conda-forge."""
+    asked = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    recipe = (ROOT / "tools" / "conda" / "recipe.yaml").read_text(encoding="utf-8")
+    run = re.search(r"^  run:\n((?:    - .*\n)+)", recipe, re.M)
+    assert run is not None
+    known = {line.removeprefix("    - ").replace(" ", "") for line in run[1].splitlines()} - {"python"}
+    renamed = {"matplotlib-base": "matplotlib", "typst-py": "typst"}
+    for theirs, ours in renamed.items():
+        known = {line.replace(theirs, ours) for line in known}
+    assert known == set(asked["dependencies"])
+    assert f'version: "{asked["version"]}"' in recipe

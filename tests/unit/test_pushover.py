@@ -230,3 +230,48 @@ def test_variants_make_a_band(tmp_path):
 def test_what_cannot_be_pushed_is_refused(tmp_path, more, words):
     run = extrados.run(deck(tmp_path, more=more.replace("\n", "\n    "))).results[0]
     assert run.status == "refused" and words in run.reason
+
+
+def test_a_frame_of_piers_beside_the_push(tmp_path):
+    """Two piers beside a door, by hand from half of the wall above them; a storey bears what its piers do."""
+    path = tmp_path / "wall.toml"
+    path.write_text(
+        textwrap.dedent("""
+        [structure]
+        kind = "building"
+        storeys = [3.0]
+        walls = [{ name = "a", start = [0, 0], end = [3, 0], thickness = 0.25, openings = [{ x = [1.0, 2.0], z = [0.0, 2.0] }] }]
+        prestress = [{ wall = "a", force = 60e3 }]
+        [material]
+        density = 1900
+        young = 3e9
+        tensile_strength = 1e5
+        fracture_energy = 40
+        compressive_strength = 3e6
+        [[analysis]]
+        kind = "pushover"
+        mesh = { size = 0.25, layers = 3 }
+        ripple = 0.2
+        events = 20
+        frame = { cohesion = 0.1e6, diagonal_strength = 0.05e6 }
+        """)
+    )
+    run = extrados.run(path).results[0]
+    frame = {row.code: row for row in run.results.frame}
+    gravity = 9.80665
+    load = 0.5 * (60e3 + 1900 * gravity * 0.25 * (3.0 + 2 * 1.0))  # of half the wall above the middle of the door
+    total = 1900 * gravity * 0.25 * (9.0 - 2.0)
+    above = 1900 * gravity * 0.25 * (3.0 + 2 * 0.5) / total  # of the push, over the middle of the storey
+    area, height = 0.25, 2.0
+    stress = load / area
+    fema = min(
+        0.9 * load / height, area * 0.75 * (0.75 * 0.1e6 + stress) / 1.5, load / height * (1 - stress / (0.7 * 3e6))
+    )
+    tension = 1.5 * 0.05e6
+    ntc = min(load / height * (1 - stress / (0.85 * 3e6)), area * tension / 1.5 * np.sqrt(1 + stress / tension))
+    assert frame["FEMA 356"].base_shear_N == pytest.approx(2 * fema / above, rel=0.03)
+    assert frame["NTC 2018"].base_shear_N == pytest.approx(2 * ntc / above, rel=0.03)
+    table = run.tables["frame"].columns
+    assert table["load"] == pytest.approx([load, load], rel=0.02)  # of a row of elements
+    assert table["height"] == [2.0, 2.0]
+    assert "by the formulas of codes" in run.answer

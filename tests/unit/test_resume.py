@@ -375,7 +375,7 @@ def test_constant_loads_are_not_brought_on_again(kept: int, tmp_path: Path, monk
 @pytest.mark.parametrize(
     "structure, friction",
     [
-        ("kind = 'brickwork'\nunit_length = 0.5\nunit_height = 0.25\nunits = 3\ncourses = 4", 0.4),
+        ("kind = 'brickwork'\nunit_length = 0.5\nunit_height = 0.25\nunits = 2\ncourses = 3", 0.4),
         ("kind = 'vault'\npreset = 'dejong-a'", 0.35),
     ],
 )

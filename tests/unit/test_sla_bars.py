@@ -8,6 +8,9 @@ from test_sla_events import run_deck
 
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
+from extrados.analyses.sla.bar_forces import along, bar_rows, history
+from extrados.analyses.sla.events import run_curves
+from extrados.analyses.sla.model import build
 from extrados.core.sla import Softening, teeth
 from extrados.decks.reader import make_deck
 
@@ -120,3 +123,41 @@ def test_bars_that_make_no_sense_are_told() -> None:
     assert "runs through no element" in run_deck(prism([bar(2, 3, bonded=True)])).reason
     tie = {"start": [0.1, 3.5], "ground": [-3.0, 0.0], "prestress": 1e3}
     assert "prestress" in capacity("sla", BLOCK, tie).reason
+
+
+def test_forces_of_bars_are_those_of_their_strains() -> None:
+    """From event to event, by teeth and slackening counted from the log, as the core reports them at kept states; the
+    force of a tie in the mechanism is that of limit analysis, a slack one has none."""
+    rods = [
+        bar(0, 1, yield_strength=YIELD, ultimate_strain=0.02), bar(0, 1, bonded=True, yield_strength=YIELD), bar(0, 0.5),
+    ]  # fmt: skip
+    deck = prism(rods, states=[1, 5, 20, 60], ripple=0.05)
+    del deck["material"]["tensile_strength"], deck["material"]["fracture_energy"]
+    context = Context(
+        make_deck(deck | {"ties": [{"start": [0.9, 0.02], "end": [0.1, 0.02], "works_in": "compression"}]})
+    )
+    options = context.deck.analyses[0]
+    model = build(context.building.mesh(options.mesh), options)
+    curve = run_curves(model, options, 1, lambda *_: None)[0]
+    followed = history(model, curve)
+    assert list(followed) == ["bar 1", "bar 3", "tie 1"]
+    for named in model.bars:
+        for state in curve.states:
+            reported = along(named, model, curve, state)
+            assert len(reported) == (20 if named.name == "bar 2" else 1)
+            if named.held_at_ends:
+                assert followed[named.name][state.event] == pytest.approx(reported[0], rel=1e-9, abs=1e-9)
+    rows = {row.name: row for row in bar_rows(model, curve)}
+    assert [rows[name].state for name in ("bar 1", "bar 2", "tie 1")] == ["yielded", "yielded", "slack"]
+    assert 0.75 * AREA * YIELD < rows["bar 1"].greatest_force_N <= AREA * YIELD * (1 + 1e-12)
+    assert rows["bar 2"].greatest_force_N is None and rows["bar 2"].last_force_N > 0.75 * AREA * YIELD
+    tie = {"start": [-7.03, 7.03], "end": [7.03, 7.03], "yield_force": 1e5, "name": "tie at the haunches"}
+    (limit,) = capacity("tilt", ARCH, tie).results["ties"]
+    found = capacity("sla", ARCH, tie)
+    (force,) = found.results["bars"]
+    assert force.force_at_greatest_load_N == pytest.approx(limit.force_N, rel=1e-6) and force.state == "yielded"
+    table = found.tables["bar_forces"]
+    assert table.units["tie at the haunches"] == "N"
+    assert (
+        table.columns["tie at the haunches"][found.results["greatest_load_event"] - 1] == force.force_at_greatest_load_N
+    )

@@ -113,7 +113,7 @@ def capacity(structure: dict, friction: float | str, kind: str, **options):
         ("block", 0.7, 1e-4, 1e-4),  # rocks at width over height
         ("block", 0.2, 1e-6, 1e-6),  # slides
         ("column", 0.2, 1e-6, 1e-6),
-        ("brickwork", 0.5, 1e-5, 1e-5),
+        pytest.param("brickwork", 0.5, 1e-5, 1e-5, marks=pytest.mark.verify),
         ("brickwork", 0.2, 1e-5, 1e-5),
         ("arch", 0.4, 1e-5, 1e-5),  # hinges and joints that slide
         ("arch", 0.25, 5e-5, 5e-5),
@@ -170,7 +170,8 @@ def test_no_point_is_sheared_beyond_its_friction() -> None:
 def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
     """Forces that friction holds go with the change of the factor; all regions are looked at."""
     update, refactor = (
-        capacity(STRUCTURES["brickwork"], 0.7, "sla", events=60, algorithm=name) for name in ("update", "refactor")
+        capacity(STRUCTURES["brickwork"] | {"units": 2, "courses": 3}, 0.7, "sla", events=60, algorithm=name)
+        for name in ("update", "refactor")
     )
     grown = update["event_load"] > 1e-6 * update["event_load"].max()  # at none, points that slide at once have no order
     assert grown.sum() > 40
@@ -178,6 +179,58 @@ def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
         assert (update[name] == refactor[name])[grown].all()
     for name in ("event_load", "event_displacement"):
         np.testing.assert_allclose(update[name][grown], refactor[name][grown], rtol=1e-6)
+
+
+@pytest.mark.verify
+def test_a_church_whose_joints_slide_under_its_weight() -> None:
+    """Turns from the state that sticks find none; friction that falls to it does. The load is that of limit analysis."""
+    church = {"kind": "aisled-vault", "preset": "vezelay-like"}
+    limit = capacity(church, 0.35, "tilt").results["collapse_acceleration_g"]
+    found = capacity(church, 0.35, "sla")
+    assert not found.warnings and found.results["events_without_equilibrium"] <= 3
+    assert found.results["peak_acceleration_g"] == pytest.approx(limit, rel=1e-4)
+
+
+def test_friction_that_falls_to_what_is_asked(monkeypatch) -> None:
+    """Where turns give up at once the state is found from more friction, with the same load at the end."""
+    direct = capacity(STRUCTURES["arch"], 0.25, "sla")
+    monkeypatch.setattr("extrados.analyses.sla.contact.MOST_SLIDING", 10)
+    falling = capacity(STRUCTURES["arch"], 0.25, "sla")
+    assert not direct.warnings and not falling.warnings
+    assert falling.results["peak_acceleration_g"] == pytest.approx(direct.results["peak_acceleration_g"], rel=1e-4)
+    monkeypatch.setattr("extrados.analyses.sla.contact.MORE_FRICTION", ())
+    assert any("was not found" in text for text in capacity(STRUCTURES["arch"], 0.25, "sla", events=5).warnings)
+
+
+@pytest.mark.parametrize(("friction", "events"), [("no-sliding", 150), (0.7, 150)])
+def test_regions_of_units_and_joints_wait_until_one_slips(friction, events) -> None:
+    """What is left out holds no event: those of a new factor and of all points, also as the first joints slide."""
+    joints = {
+        "tension": 1e5, "fracture_energy": 20.0, "friction": friction, "normal_stiffness": 8e10, "shear_stiffness": 3.6e10,
+    }  # fmt: skip
+    if friction != "no-sliding":
+        joints |= {"cohesion": 1.5e5, "shear_energy": 100.0}
+    found = []
+    for algorithm in ("update", "refactor"):
+        data = {
+            "structure": {
+                "kind": "panel", "width": 3.0, "height": 3.0, "thickness": 0.2, "unit_length": 0.5, "unit_height": 0.25,
+            },
+            "material": {"young": 6.9e9, "poisson": 0.25, "density": 1950.0}, "joints": joints,
+            "analysis": {
+                "kind": "sla", "ripple": 0.2, "mesh": {"size": 0.15, "joints": "interfaces"}, "events": events,
+                "constant": [{"kind": "gravity"}, {"kind": "pressure", "edge": "top", "value": "0.1 MPa"}],
+                "reference": [{"kind": "spread", "edge": "top", "fx": "1 kN"}], "algorithm": algorithm,
+            },
+        }  # fmt: skip
+        found.append(run_analyses(Context(make_deck(data)))[0])
+    update, refactor = found
+    assert len(update["event_load"]) == events and (update["event_code"] >= EVENT["wear"]).any() == (friction == 0.7)
+    for name in ("event_point", "event_code"):
+        assert (update[name] == refactor[name]).all()
+    for name in ("event_load", "event_displacement", "event_stored"):
+        np.testing.assert_allclose(update[name], refactor[name], rtol=1e-9)
+    assert update.results["energy_residual_ratio"] < 1e-9
 
 
 @pytest.mark.parametrize("options", [{"solution": "incremental"}, {"without_equilibrium": "proportional"}])

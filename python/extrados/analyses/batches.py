@@ -19,6 +19,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from extrados.analyses import workers
 from extrados.analyses.context import Context, Refused
 from extrados.core.calls import cancel_requested, interruptible, thread_count
 from extrados.core.errors import Cancelled, status_code
@@ -222,13 +223,15 @@ def sweep(
     parallel: bool = False,
     tell: Callable[[int], None] | None = None,
     large: bool = False,
+    processes: int = 1,
 ) -> Swept:
     """Run all `count` members of the job here, or on the scheduler of the context; see Swept for what may be missing.
 
     slow: a member may take seconds, batches begin with one. parallel: each thread runs a batch of its own, for slow
     members that the core computes; else one batch after the other has all threads. tell: is given the number of
     finished members instead of the context's progress, where the sweep is one round of a search. large: rows of very many
-    members stay in the checkpoint, where there is one.
+    members stay in the checkpoint, where there is one. processes: so many of this machine run a batch each, for members
+    whose work is done in Python; a scheduler comes first.
     """
     if count < 1:
         raise ValueError(f"a sweep needs at least one member, got {count}")
@@ -239,7 +242,13 @@ def sweep(
         pace = _Pace(1 if slow else FIRST_BATCH)
         if context.scheduler:
             return _on_cluster(context, batches, job, pace)
-        return (_in_threads if parallel else _in_turn)(context, batches, job, pace)
+        if processes > 1:
+            with workers.processes(job, processes) as elsewhere:
+                return _in_threads(batches, elsewhere, pace, processes, context.threads)
+        if parallel:
+            threads = thread_count(max(1, context.threads))
+            return _in_threads(batches, job, pace, threads, max(1, threads // (count - batches.done)))
+        return _in_turn(context, batches, job, pace)
 
 
 def _in_turn(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:
@@ -256,11 +265,9 @@ def _in_turn(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swep
     return batches.swept()
 
 
-def _in_threads(context: Context, batches: _Batches, job: Job, pace: _Pace) -> Swept:
-    """A batch for each thread at a time, kept as they come; few members have several threads each."""
+def _in_threads(batches: _Batches, job: Job, pace: _Pace, threads: int, each: int) -> Swept:
+    """A batch for each of `threads` at a time, kept as they come; a batch has `each` threads of the core."""
     todo = _pieces(batches.missing(), lambda: pace.size)
-    threads = thread_count(max(1, context.threads))
-    each = max(1, threads // (batches.count - batches.done))
     pending: dict[Future, int] = {}
     stopped = False
     pool = ThreadPoolExecutor(threads)

@@ -76,6 +76,7 @@ def stones_of(building: Building, options: Analysis) -> "Assembly | SolidAssembl
 def _bound(building: Building, options: Analysis) -> None:
     """The stones with their joints and ties."""
     stones = stones_of(building, options)
+    building.refuse_weightless(None if isinstance(stones, Assembly) else stones)
     if isinstance(stones, Assembly):
         building.friction()
         if building.ties:

@@ -128,14 +128,16 @@ class Building:
         from extrados.building.geometry.rigid import rigid_bodies
 
         self.refuse_mixture()
+        self.refuse_weightless()
         worn = self.joints.worn_corners
         return self._view(
             "rigid", (self.structure, self.material.density, *self.materials.items(), worn, groups, floor),
             lambda: rigid_bodies(self.blocks(), groups, worn, floor),
         )  # fmt: skip
 
-    def rocker(self, linear: bool = False) -> "Rocker":
-        """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations."""
+    def rocker(self, linear: bool = False, soft_base: bool = False) -> "Rocker":
+        """The one degree of freedom in which it rocks; `linear` for the slender form of a block's equations. soft_base:
+        also a block on a base that gives way, which has two."""
         from extrados.building.rockers.rocker import make_rocker
 
         tables = (
@@ -146,8 +148,9 @@ class Building:
             self.initial.rotation_ratio,
             self.restraints,
             linear,
+            soft_base,
         )
-        return self._view("rocker", tables, lambda: make_rocker(self, linear))
+        return self._view("rocker", tables, lambda: make_rocker(self, linear, soft_base=soft_base))
 
     def refuse_mixture(self) -> None:
         """BadGeometry where stones are of a named material that gives more than a density: what looks at their elastic
@@ -167,6 +170,17 @@ class Building:
         if all(t.friction is None for t in self.joints.types):
             return self.joints.coefficient
         return self.joint_property("friction", assembly)
+
+    def refuse_weightless(self, assembly: "Assembly | SolidAssembly | None" = None) -> None:
+        """NoView where a stone of the building, or of the solids given, has no mass: weight is what makes stones stand,
+        rock and fall."""
+        stones = self.blocks() if assembly is None else assembly
+        if not (stones.mass > 0.0).all():
+            raise NoView(
+                f"'{stones.block_names[int(stones.mass.argmin())]}' weighs nothing, and stones stand, rock and fall by their "
+                "weight: give a density above zero",
+                ("material", "density"),
+            )
 
     def joint_property(self, name: str, assembly: "SolidAssembly | None" = None) -> np.ndarray:
         """Friction, cohesion, tension, fracture_energy or normal_stiffness of every joint (NaN where no value is given), of

@@ -70,7 +70,10 @@ class Structure(Table):
 
     def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
         """Flat shells in space; NoView where the kind stands in a plane. BadGeometry says what is wrong."""
-        raise NoView(f"a structure of kind '{self.kind}' stands in a plane: shells are made of kind `building`")
+        raise NoView(
+            f"a structure of kind '{self.kind}' has no shells; they are made of the kinds building, arch, vault, dome, "
+            "cross-vault and mesh"
+        )
 
     def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
         """Finite elements: of the stones, with a row of elements along every joint, where a kind does not mesh itself.

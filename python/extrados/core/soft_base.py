@@ -6,10 +6,11 @@ import numpy as np
 import numpy.typing as npt
 
 from extrados import _core
+from extrados.core import lists
 from extrados.core.calls import long_call, real, room_for
 from extrados.core.errors import check, status_code
 from extrados.core.ground import Ground, MotionSet
-from extrados.core.rocking import EVENTS, OUTCOMES
+from extrados.core.rocking import EVENTS, OUTCOMES, Body
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,26 @@ class SoftBase:
              float(self.edges), float(self.linear)]
         )  # fmt: skip
 
+    @classmethod
+    def of(cls, body: Body) -> "SoftBase":
+        """What `soft_base_body` made a body of."""
+        mass, inertia, height, left, right, stiffness, damping, edges, linear = (float(x) for x in body.parameters[:9])
+        return cls(mass, inertia, height, left, right, stiffness, damping, bool(edges), bool(linear))
+
+
+#: Kind of bodies on a base that gives way
+KIND = lists.number("rocking_body", "soft_base")
+
+
+def soft_base_body(base: SoftBase, critical: tuple[float, float]) -> Body:
+    """The block for ensembles; critical: rotations from which gravity takes it down, to +x and to -x, both above zero [rad].
+
+    A member starts at its rotation, free to sink. A half cycle begins where the edge away from which it leans lifts, unless
+    the last one was to the same side."""
+    if not (np.isfinite(critical).all() and min(critical) > 0.0):
+        raise ValueError(f"critical rotations are {critical}, expected two above zero")
+    return Body(KIND, np.append(base.numbers, critical))
+
 
 @dataclass(frozen=True)
 class BaseContact:
@@ -57,11 +78,12 @@ class SoftBaseResponse:
     acceleration [m/s^2], kinetic energy, potential energy with that of the springs, and the ledger, work of the ground less
     what the base took up [J], force of the base (points, 2) to +x and up [N], range of the base that pushes (points, 2),
     from the foot of the centre [m], greatest pressure per length [N/m] or force of an edge [N]. peak: of both coordinates;
-    end: rotation, sinking and their rates; landings of the left and the right edge; events: (kind, time [s], edge), -1 left,
+    end: rotation, sinking and their rates; landings of the left and the right edge; half_cycles: see soft_base_body; events: (kind, time [s], edge), -1 left,
     1 right."""
 
     outcome: str
     landings: tuple[int, int]
+    half_cycles: int
     peak: tuple[float, float]
     stop_time: float
     steps: int
@@ -98,6 +120,21 @@ def base_contact(
     return BaseContact(force, moment, stored, spent, (low, high), most)
 
 
+def base_held(base: SoftBase, rotation: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The block held at rotations [rad] and free to sink under its weight: how far it sinks [m], the energy of weight and
+    springs [J], and the moment that turns it back from a rotation to +x [N m]."""
+    values, status = _core.api_soft_base.held(
+        real("base", base.numbers, (9,)), real("rotation", np.atleast_1d(rotation), (None,))
+    )
+    check(status, "statics of a soft base")
+    return values[0], values[1], values[2]
+
+
+def soft_base_start(base: SoftBase, rotation: float) -> tuple[float, float, float, float]:
+    """The state of a block that is held at a rotation [rad] and free to sink, for `soft_base_history`."""
+    return rotation, float(base_held(base, rotation)[0][0]), 0.0, 0.0
+
+
 def soft_base_history(
     base: SoftBase, ground: Ground, end_time: float, output_step: float, *, scale: float = 1.0, tolerance: float = 1e-8,
     start: npt.ArrayLike = (0.0, 0.0, 0.0, 0.0), room: int = 20000,
@@ -119,14 +156,14 @@ def soft_base_history(
     interrupted = status == status_code("cancelled")
     if not interrupted:
         check(status, "rocking on a soft base")
-    outcome, left, right, steps, points, events = (int(k) for k in counts)
+    outcome, left, right, steps, half_cycles, points, events = (int(k) for k in counts)
     s = state[:, :points].T
     if not (np.isfinite(s).all() and np.isfinite(measures).all()):
         check(status_code("not_finite"), "rocking on a soft base")
     found = min(events, room)
     turn, sunk, stop, *end = (float(x) for x in measures)
     return SoftBaseResponse(
-        OUTCOMES[outcome], (left, right), (turn, sunk), stop, steps, np.array(end[:4]), times[:points], s[:, 0], s[:, 1],
+        OUTCOMES[outcome], (left, right), half_cycles, (turn, sunk), stop, steps, np.array(end[:4]), times[:points], s[:, 0], s[:, 1],
         s[:, 2], s[:, 3], s[:, 4], s[:, 5], s[:, 6], s[:, 7], s[:, 8], s[:, 9:11], s[:, 11:13], s[:, 13],
         [(EVENTS[int(k)], float(t), int(e)) for k, (t, e) in zip(kinds[:found], event.T[:found], strict=True)], events,
         end[4], end[5], interrupted,

@@ -6,12 +6,14 @@ The facts are kept beside this file, since to load all tables takes longer than 
 
 import difflib
 import json
+import re
 import textwrap
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from extrados import kinds
+from extrados.decks import synonyms
 
 STORED = Path(__file__).with_name("facts.json")
 
@@ -55,7 +57,8 @@ def written(tables: Sequence[TableFacts]) -> str:
 def explain(word: str, tables: Sequence[TableFacts]) -> str:
     """What a key, a kind or a section means; KeyError with the nearest known word where there is none.
 
-    A key may follow its table or its kind: "friction", "joints.friction", "analysis.tilt", "tilt.fracture".
+    A key may follow its table or its kind: "friction", "joints.friction", "analysis.tilt", "tilt.fracture". Another word
+    for a thing ("backfill", "PGA") leads to where the thing is found.
     """
     if word == "materials":
         return "[materials.NAME]: Further materials, with the keys of [material], for the parts that name them."
@@ -76,10 +79,33 @@ def explain(word: str, tables: Sequence[TableFacts]) -> str:
             for name in table.keys
             if any(name == one or name.startswith(f"{one}.") for one in asked)
         ]
+    found += [_pointed(line, tables) for line in synonyms.meanings(word)]
     if not found:
+        known |= set(synonyms.words())
         close = difflib.get_close_matches(word, sorted(known), n=3, cutoff=0.4)
         raise KeyError(f"no key or kind '{word}'" + (f"; near are {', '.join(close)}" if close else ""))
     return "\n".join(found)
+
+
+def _pointed(line: synonyms.Synonym, tables: Sequence[TableFacts]) -> str:
+    """What a word of the trade means here, and where it is found."""
+    rows = []
+    for place in line.see:
+        if place.startswith("results."):
+            rows.append(f"{place}: see extrados explain {place}")
+            continue
+        for table in tables:
+            if place in (table.kind or table.section, f"{table.section}.{table.kind}"):
+                head = f'[{table.section}] kind = "{table.kind}"' if table.kind else table.header
+                rows.append(f"{head}: {table.summary}")
+            rows += [_entry(table, name) for name in table.keys if "." in place and place in _called(table, name)]
+    page = f"\n  Read docs/{line.page}" if line.page else ""
+    return f"{', '.join(line.words)}: {line.about}\n" + textwrap.indent("\n".join(rows), "  ") + page
+
+
+def first_sentence(text: str) -> str:
+    """The first sentence of a summary, without what stands in parentheses."""
+    return re.split(r"[.;:] (?=[A-Z\[])|; ", re.sub(r" \([^)]*\)", "", text))[0].rstrip(".")
 
 
 def _called(table: TableFacts, name: str) -> set[str]:

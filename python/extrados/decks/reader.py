@@ -148,6 +148,15 @@ def make_deck(data: dict[str, Any], folder: Path | None = None) -> Deck:
     return _Checker(Positions()).deck(data, folder or Path.cwd(), "")
 
 
+def check_table(model: type[Table], section: str, data: dict[str, Any], name: str) -> Any:
+    """A table of a section from Python's values, checked like that of a file; `name` is what complaints call it."""
+    checker = _Checker(Positions(name))
+    made = checker.table(model, data, (section,))
+    if checker.complaints:
+        raise DeckError([text for _, text in checker.complaints])
+    return made
+
+
 def _syntax(message: str, text: str) -> tuple[int, str]:
     what, _, where = message.partition(" (at ")
     if where.startswith("line "):

@@ -7,7 +7,6 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from extrados.plots.animation import gif
 from extrados.schema.programs import ffmpeg
 
 MOST_PICTURES, LARGEST_SIDE = 1200, 2560
@@ -60,6 +59,8 @@ def _size(picture: bytes) -> tuple[int, int]:
 
 def _gif(pictures: list[bytes], rate: int) -> bytes:
     from PIL import Image
+
+    from extrados.plots.animation import gif  # and with it what draws figures, which pages do not need
 
     first, *_ = {_size(p) for p in pictures}
 

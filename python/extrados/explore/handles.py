@@ -15,6 +15,8 @@ from extrados.building.structure import Structure
 
 #: More vertices than these are not for hands
 MOST_VERTICES = 400
+#: Openings of a wall whose edges have handles
+MOST_OPENINGS = 6
 Changes = dict[str, Any]
 
 
@@ -51,8 +53,8 @@ def anchor_of(structure: Structure, assembly: Assembly) -> np.ndarray:
     return np.zeros(2)
 
 
-def handles_of(structure: Structure, assembly: Assembly) -> list[Handle]:
-    """The handles of a building, in the order in which the keyboard passes them."""
+def handles_of(structure: Structure, assembly: Assembly | None) -> list[Handle]:
+    """The handles of a building, in the order in which the keyboard passes them; assembly: its stones, where it has any."""
     made = _KINDS.get(structure.kind)
     return list(made(structure, assembly)) if made else []
 
@@ -209,6 +211,91 @@ def _block(s: Any, _: Assembly) -> Iterator[Handle]:
         yield _length("height", "Height", 0.0, s.height, s.height, lambda x, y: y, "y")
 
 
+def _panel(s: Any, _: Assembly | None) -> Iterator[Handle]:
+    if s.width is not None and s.height is not None:
+        yield _length("width", "Width", s.width, 0.5 * s.height, s.width, lambda x, y: x)
+        yield _length("height", "Height", 0.5 * s.width, s.height, s.height, lambda x, y: y, "y")
+        yield from _openings(s.openings)
+
+
+def _openings(openings: list[Any]) -> Iterator[Handle]:
+    """The four edges of each opening of a wall."""
+    for i, opening in enumerate(openings[:MOST_OPENINGS]):
+        middle = [0.5 * sum(opening.x), 0.5 * sum(opening.y)]
+        number = "" if len(openings) == 1 else f" of opening {i + 1}"
+        for axis, ends, words in (("x", opening.x, ("Left", "Right")), ("y", opening.y, ("Lower", "Upper"))):
+            for k, word in enumerate(words):
+                x, y = (ends[k], middle[1]) if axis == "x" else (middle[0], ends[k])
+                yield _length(
+                    f"openings.{i}.{axis}.{k}", f"{word} edge{number or ' of the opening'}", x, y, ends[k],
+                    (lambda x, y: x) if axis == "x" else (lambda x, y: y), axis,
+                )  # fmt: skip
+
+
+def _brickwork(s: Any, _: Assembly) -> Iterator[Handle]:
+    wide, high = s.units * s.unit_length, s.courses * s.unit_height
+    yield _length(
+        "unit_length",
+        "Length of a unit, by that of the wall",
+        wide,
+        0.5 * high,
+        s.unit_length,
+        lambda x, y: x / s.units,
+    )
+    yield _length(
+        "unit_height",
+        "Height of a unit, by that of the wall",
+        0.5 * wide,
+        high,
+        s.unit_height,
+        lambda x, y: y / s.courses,
+        "y",
+    )
+    yield from _openings(s.openings)
+
+
+def _stack(s: Any, assembly: Assembly) -> Iterator[Handle]:
+    """Two blocks: of each its right side and its head."""
+    for name, outline in zip(("lower", "upper"), assembly.outlines, strict=True):
+        (x0, y0), (x1, y1) = outline.min(axis=0).tolist(), outline.max(axis=0).tolist()
+        middle = 0.5 * (x0 + x1)
+        yield _length(
+            f"{name}_width", f"Width of the {name} block", x1, 0.5 * (y0 + y1), x1 - x0, lambda x, y, m=middle: 2.0 * (x - m)
+        )  # fmt: skip
+        yield _length(
+            f"{name}_height", f"Height of the {name} block", middle, y1, y1 - y0, lambda x, y, low=y0: y - low, "y"
+        )
+
+
+def _frame(s: Any, assembly: Assembly) -> Iterator[Handle]:
+    """The last column and the lintel."""
+    *columns, lintel = assembly.outlines
+    middle, first = (0.5 * float(o[:, 0].min() + o[:, 0].max()) for o in (columns[-1], columns[0]))
+    top = float(lintel[:, 1].max())
+    yield _length(
+        "width",
+        "Width of the columns",
+        middle + 0.5 * s.width,
+        0.5 * s.height,
+        s.width,
+        lambda x, y: 2.0 * (x - middle),
+    )
+    yield _length("height", "Height of the columns", first, s.height, s.height, lambda x, y: y, "y")
+    yield _length(
+        "lintel_height",
+        "Height of the lintel",
+        0.5 * (first + middle),
+        top,
+        s.lintel_height,
+        lambda x, y: y - s.height,
+        "y",
+    )
+    share = (middle - 0.5 * (first + middle)) / s.spacing  # the drawing is centred
+    yield _length(
+        "spacing", "Spacing of the columns", middle, 0.0, s.spacing, lambda x, y: (x - 0.5 * (first + middle)) / share
+    )
+
+
 def _column(s: Any, assembly: Assembly) -> Iterator[Handle]:
     yield _length("width", "Width at the base", 0.5 * s.width, 0.0, s.width, lambda x, y: 2.0 * x)
     high = float(max(o[:, 1].max() for o in assembly.outlines))
@@ -284,6 +371,7 @@ def _vertices(s: Any, _: Assembly) -> Iterator[Handle]:
 _KINDS: dict[str, Callable[[Any, Assembly], Iterator[Handle]]] = {
     "arch": _arch, "vault": _vault, "aisled-vault": _church, "block": _block, "column": _column, "pointed-arch": _pointed,
     "elliptical-arch": _elliptical, "bridge": _bridge, "blocks": _vertices,
+    "panel": _panel, "brickwork": _brickwork, "stack": _stack, "frame": _frame,
 }  # fmt: skip
 
 

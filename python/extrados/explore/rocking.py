@@ -5,13 +5,14 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.context import Context
+from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.failure_domain import MODE_I, Mapper, natural_durations
 from extrados.analyses.rocking.history import answer, rest_time, run_history
 from extrados.analyses.rocking.shapes import States, shapes
 from extrados.analyses.rocking.tables import Assessment, FailureDomain, Rocking
 from extrados.analyses.run import run_one
 from extrados.building.building import Building
+from extrados.building.geometry.assembly import Assembly
 from extrados.motions.motion import Motion
 from extrados.schema.constants import GRAVITY
 
@@ -29,6 +30,10 @@ def history(
     context: Context, building: Building, options: Rocking, anchor: np.ndarray, still: bool
 ) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
     """Words and arrays of a response; `still`: without shapes, as where a hand only looks for an amplitude."""
+    if building.structure is not None and (
+        building.structure.rocks_as == "stack" or building.supports.stiffness is not None
+    ):
+        return _in_two(context, building, options, anchor)
     rocker = building.rocker(options.form == "linear")
     motion = context.motion
     end = options.end_time or motion.end + rest_time(rocker)
@@ -65,6 +70,54 @@ def history(
         arrays["line"] = made.line - anchor
     if made.friction is not None:
         arrays["friction"] = made.friction
+    if building.structure is not None and building.structure.rocks_as == "piers":
+        piers = building.pier_blocks()
+        block = getattr(rocker.model, "block", None)
+        if block is not None:  # a wall without openings, whose own place is about its foot
+            foot = np.append(piers.centroid[0] - block.centroid[0], 0.0)
+            arrays["pose"] = arrays["pose"] + foot
+            if "line" in arrays:
+                arrays["line"] = arrays["line"] + foot[:2]
+        arrays |= _outlines(piers, anchor)
+    return words, arrays
+
+
+def _outlines(piers: Assembly, anchor: np.ndarray) -> dict[str, np.ndarray]:
+    """The piers that a wall rocks by, in place of its stones."""
+    return {
+        "moving_outline": np.concatenate(piers.outlines) - anchor,
+        "moving_start": np.cumsum([0, *map(len, piers.outlines)]),
+        "moving_centroid": piers.centroid - anchor,
+    }
+
+
+def _in_two(
+    context: Context, building: Building, options: Rocking, anchor: np.ndarray
+) -> tuple[dict[str, Any], dict[str, np.ndarray]]:
+    """What rocks in two coordinates, by the analysis itself: stacked blocks, and a block on a base that gives way."""
+    result = run_one(context, options.model_copy(update={"animation": "gif"}), building)
+    if result.status != "ok":
+        raise Refused(result.reason)
+    r: Any = result.results
+    get = {name: array.data for name, array in result.arrays.items()}
+    time = get["time"]
+    moving = np.flatnonzero(np.abs(get["rotation"]) > 1e-3 * np.abs(get["rotation"]).max(initial=0.0))
+    end = float(time[-1]) if len(time) else 1.0
+    words: dict[str, Any] = {
+        "outcome": r.outcome, "settled": r.settled, "half_cycles": r.half_cycles, "impacts": r.impacts,
+        "impact_times_s": get["impact_time"].tolist()[:400], "peak_rotation_rad": r.peak_rotation_rad,
+        "peak_rotation_ratio": r.peak_rotation_ratio, "critical_rad": [r.critical_rotation_rad] * 2,
+        "uplift_g": r.uplift_acceleration_g, "restitution": r.restitution, "peak_ground_g": r.peak_ground_acceleration_g,
+        "stop_time_s": end, "end_time_s": end, "word": building._structure().word, "answer": result.answer,
+        "warnings": result.warnings, "active_s": min(1.05 * float(time[moving[-1]]), end) if len(moving) else end,
+    }  # fmt: skip
+    keep = slice(0, None, max(1, -(-len(time) // MOST_POINTS)))
+    arrays = {name: get[name][keep] for name in ("time", "rotation", "kinetic", "potential", "ledger")}
+    arrays["ground"] = get["ground"][keep] / GRAVITY
+    if "rotation_upper" in get:
+        arrays["rotation_upper"] = get["rotation_upper"][keep]
+    if "film_time" in get:
+        arrays |= {"picture_time": get["film_time"], "pose": get["film_pose"] - np.append(anchor, 0.0)}
     return words, arrays
 
 

@@ -3,6 +3,7 @@
 import base64
 import binascii
 import copy
+import logging
 import re
 import shutil
 import tempfile
@@ -21,12 +22,13 @@ from extrados.analyses.context import Refused
 from extrados.analyses.limit.applied import block_under
 from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
 from extrados.analyses.rocking.tables import FailureDomain, Rocking
+from extrados.analyses.run import run_one
 from extrados.building.errors import BadGeometry, NoView
 from extrados.core.errors import CoreError
 from extrados.decks.explain import starter
 from extrados.decks.reader import LARGEST, DeckError, read_text
+from extrados.explore import bodies, rocking, statics, stored
 from extrados.explore import handles as hands
-from extrados.explore import rocking, statics, stored
 from extrados.explore.document import Document, as_written, tidy
 from extrados.explore.folder import CASES, Folder, NotThere
 from extrados.explore.frames import Reply
@@ -34,6 +36,7 @@ from extrados.limit.programme import NoAnswer, NoEquilibrium
 from extrados.running.live import Live
 from extrados.schema import quantities
 
+log = logging.getLogger(__name__)
 #: Bytes of a drawing or a record that is dropped on the page
 LARGEST_DROP = 8_000_000
 DROPS = {".dxf", ".json", ".csv", ".txt", ".at2", ".toml"}
@@ -109,6 +112,10 @@ class Session:
             yield Reply({"of": number, "to": str(message.get("do"))[:40], "bad": str(error)[:2000]})
         except RecursionError:
             yield Reply({"of": number, "to": message["do"], "complaints": ["is nested too deeply for a deck"]})
+        except Exception as error:  # the page lives on: it is told, and what it holds stays as it was
+            log.exception("a page asked for %s", message["do"])
+            told = f"this is a fault of the program, please report it: {type(error).__name__}: {error}"
+            yield Reply({"of": number, "to": message["do"], "complaints": [told[:2000]]})
 
     # Decks
 
@@ -165,7 +172,7 @@ class Session:
         self._held = None
         try:
             reply = self._scene()
-        except TOLD:
+        except BaseException:
             self.live, self.place, self.name, self.document, self.view = before
             raise
         source_words = source or ({"here": "dropped"} if place == self._scratch else {})
@@ -275,8 +282,9 @@ class Session:
         before = live.deck
         live.update(written)
         try:
-            reply = self._scene()
-        except TOLD:
+            moved = all(key.split(".")[0] == "motion" for key in written) and self.picture is not None
+            reply = Reply({"deck": self._deck_words()}) if moved else self._scene()  # statics know no motion
+        except BaseException:
             live.back_to(before)
             raise
         for key, value in written.items():
@@ -370,7 +378,8 @@ class Session:
         return _quantity(text, handle.unit, handle.label)
 
     def _set(self, message: dict[str, Any]) -> Iterator[Reply]:
-        """Keys of the deck given values: numbers, words, or text with units as it would stand in the deck."""
+        """Keys of the deck given values: numbers, words, or text with units as it would stand in the deck. `rocking`: the
+        response comes with the same reply, for a hand that draws a pulse."""
         changes = message.get("changes")
         if not isinstance(changes, dict) or not 0 < len(changes) <= 50:
             raise BadMessage("expected up to 50 changes")
@@ -378,6 +387,10 @@ class Session:
             if not re.fullmatch(r"[A-Za-z_][\w-]*(\.[\w-]+){0,8}", key):
                 raise BadMessage("that is no key")
         reply = self._change(changes)
+        if message.get("rocking") is True and self._there().deck.motion is not None:
+            for response in self._rocking({}):
+                reply.words |= response.words
+                reply.arrays |= response.arrays
         yield reply
 
     def _analysis(self, message: dict[str, Any]) -> Iterator[Reply]:
@@ -406,8 +419,12 @@ class Session:
             (gamma,) = _numbers([message["gamma"]], 1)
             gamma = float(np.clip(gamma, -5.0, 5.0))
         chain = message["chain"] if isinstance(message.get("chain"), str) else view.chain
-        through = view.through
+        through, thrust = view.through, view.thrust
+        if "thrust" in message:
+            thrust = None if message["thrust"] is None else self._thrust(message["thrust"])
+            through = None if thrust is not None else through
         if "through" in message:
+            thrust = None if message["through"] is not None else thrust
             wanted = message["through"]
             if wanted is None:
                 through = None
@@ -421,12 +438,18 @@ class Session:
             else:
                 place = np.array(_numbers(wanted, 2)) + self.anchor
                 assembly = self._there().deck.building.blocks()
-                through = statics.nearest(assembly, place, chain or next(iter(assembly.chains), None))
+                through = statics.nearest(assembly, place, chain or statics.first_chain(assembly))
         lines = view.lines
         if isinstance(message.get("lines"), list):
             lines = frozenset(str(name)[:20] for name in message["lines"][:20])
-        self.view = statics.View(gamma, chain, through, lines)
+        self.view = statics.View(gamma, chain, through, thrust, lines)
         yield self._scene()
+
+    def _thrust(self, wanted: Any) -> float:
+        """A thrust [N] that a line shall have: a number, or text with a unit."""
+        if isinstance(wanted, str):
+            return _quantity(wanted, "N", "Thrust of the line")
+        return _numbers([wanted], 1)[0]
 
     def _rest(self, _: dict[str, Any]) -> Iterator[Reply]:
         """What is told when the hand rests: the text of the deck, its forms, then mechanisms and safety."""
@@ -460,7 +483,7 @@ class Session:
         try:
             assembly = building.blocks()
         except NoView as error:
-            return Reply({"scene": {"empty": str(error)}, "deck": self._deck_words()})
+            return self._body(str(error))
         self.anchor = hands.anchor_of(structure, assembly) if self._held is None else self._held
         if self.view.through is not None and self.view.through[0] >= len(assembly.a):
             self.view = replace(self.view, through=None)
@@ -478,15 +501,40 @@ class Session:
             ]  # fmt: skip
         made.words["limit_analysis"] = name
         self.picture, self.handles = made, {h.name: h for h in found}
-        words = [
-            {"name": h.name, "label": h.label, "unit": h.unit, "at": [h.x - self.anchor[0], h.y - self.anchor[1]],
-             "value": h.value, "along": h.along}
-            for h in found
-        ]  # fmt: skip
         return Reply(
-            {"scene": made.words, "handles": words, "anchor": self.anchor.tolist(), "deck": self._deck_words()},
+            {
+                "scene": made.words,
+                "handles": self._told(found),
+                "anchor": self.anchor.tolist(),
+                "deck": self._deck_words(),
+            },
             made.arrays,
         )
+
+    def _body(self, why: str) -> Reply:
+        """A building without stones in a plane: what there is to look at, and why there is no more."""
+        live = self._there()
+        meshes = [
+            (a.mesh, b) for a, b in zip(live.deck.analyses, live.deck.buildings, strict=True) if hasattr(a, "mesh")
+        ]
+        mesh, building = meshes[0] if meshes else (None, live.deck.building)
+        found = bodies.seen(building, mesh)
+        words, arrays = found or ({}, {})
+        self.picture, self.anchor = None, np.zeros(2)
+        made = hands.handles_of(live.deck.structure, None) if words.get("sort") == "elements" else []
+        self.handles = {h.name: h for h in made}
+        scene = {"empty": why, "seen": words or None, "gamma": 0.0}
+        return Reply(
+            {"scene": scene, "handles": self._told(made), "anchor": [0.0, 0.0], "deck": self._deck_words()}, arrays
+        )
+
+    def _told(self, found: list[hands.Handle]) -> list[dict[str, Any]]:
+        """Handles as the page takes them, from the anchor [m]."""
+        x, y = self.anchor.tolist()
+        return [
+            {"name": h.name, "label": h.label, "unit": h.unit, "at": [h.x - x, h.y - y], "value": h.value, "along": h.along}
+            for h in found
+        ]  # fmt: skip
 
     def _deck_words(self) -> dict[str, Any]:
         live = self._there()
@@ -507,6 +555,19 @@ class Session:
         """The keys of building and motion with values, units, bounds and meaning, for the form beside the drawing."""
         return stored.forms(self._there().deck)
 
+    def _push(self, _: dict[str, Any]) -> Iterator[Reply]:
+        """Limit analysis of what no hand moves: blocks in space, along the deck's directions or all around."""
+        if self.picture is not None:
+            raise BadMessage("a section follows the hand as it is")
+        options, building, _ = self._options(Tilt, lambda: Tilt(kind="tilt"))
+        result = run_one(self._there().context(), options, building)
+        if result.status != "ok":
+            raise Refused(result.reason)
+        wanted = ("mechanism_pose", "rose_direction", "rose_capacity")
+        arrays = {name: result.arrays[name].data for name in wanted if name in result.arrays}
+        numbers = {k: v for k, v in result.results.as_json().items() if isinstance(v, int | float | str)}
+        yield Reply({"push": {"answer": result.answer, "numbers": numbers, "warnings": result.warnings}}, arrays)
+
     # Motion
 
     def _rocking(self, message: dict[str, Any]) -> Iterator[Reply]:
@@ -514,11 +575,13 @@ class Session:
         if self._there().deck.motion is None:
             raise Refused("the deck has no [motion]")
         context = self._there().context()
-        motion = context.motion
-        drawn = rocking.curve(motion)
+        drawn = rocking.curve(context.motion)
         options, building, _ = self._options(Rocking, lambda: Rocking(kind="rocking"))
         context.building = building
-        words, arrays = rocking.history(context, building, options, self.anchor, message.get("still") is True)
+        try:
+            words, arrays = rocking.history(context, building, options, self.anchor, message.get("still") is True)
+        except (Refused, BadGeometry, NoAnswer, NoEquilibrium, CoreError) as error:
+            words, arrays = {"refused": str(error)}, {}  # the motion is shown all the same
         yield Reply({"rocking": words, "deck": self._deck_words()}, {**arrays, **drawn})
 
     def _impulse(self, _: dict[str, Any]) -> Iterator[Reply]:
@@ -642,7 +705,7 @@ def _tables(name: str, rows: list[dict[str, Any]]) -> str:
 _DOES: dict[str, Callable[[Session, dict[str, Any]], Iterator[Reply]]] = {
     "hello": Session._hello, "list": Session._list, "open": Session._open, "drop": Session._drop, "blocks": Session._blocks,
     "save": Session._save, "drag": Session._drag, "set": Session._set, "analysis": Session._analysis, "show": Session._show,
-    "rest": Session._rest, "rocking": Session._rocking, "impulse": Session._impulse, "domain": Session._domain,
+    "rest": Session._rest, "push": Session._push, "rocking": Session._rocking, "impulse": Session._impulse, "domain": Session._domain,
     "run": Session._run, "compute": Session._compute,
 }  # fmt: skip
 

@@ -12,29 +12,35 @@ from extrados.analyses.context import Refused
 from extrados.analyses.limit.common import limit_of, tie_rows
 from extrados.analyses.limit.tables import LimitAnalysisTable
 from extrados.building.building import Building
+from extrados.building.errors import NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.chains import is_stack
 from extrados.limit.answer import CannotStand, assess
 from extrados.limit.graphic import force_polygon, thrust_joint, thrust_of
 from extrados.limit.lines import thrust_paths
 from extrados.limit.motion import finite_motion
 from extrados.limit.places import place_of
 from extrados.limit.programme import Immovable, LimitAnalysis, Mechanism, NoAnswer, NoEquilibrium, State
+from extrados.limit.states import blended
 
 #: Of a joint: so near to its end the line makes a hinge
 TOUCHES = 1e-4
 #: Walls of more loops take long: their lines at a tilt are left for when the hand rests
 QUICK_LOOPS = 40
+#: Of the greatest force: what is smaller is none
+ROUNDING = 1e-12
 PICTURES = 13  # of a mechanism that moves
 
 
 @dataclass(frozen=True)
 class View:
     """What the page wants to see: the tilt as gamma [g]; the chain whose thrust is least and greatest; the place
-    [joint, share] that a line shall pass; which lines are drawn."""
+    [joint, share] that a line shall pass, or the thrust [N] that it shall have; which lines are drawn."""
 
     gamma: float = 0.0
     chain: str | None = None
     through: tuple[int, float] | None = None
+    thrust: float | None = None
     lines: frozenset[str] = frozenset(("least", "most", "through", "plus"))
 
 
@@ -72,7 +78,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     """The structure and all that is drawn on it; where it cannot stand the words say so and the lines are missing."""
     assembly = building.blocks()
     chains = assembly.chains
-    chain = view.chain if view.chain in chains else next(iter(chains), None)
+    chain = view.chain if view.chain in chains else first_chain(assembly)
     words: dict[str, Any] = {
         "blocks": len(assembly.mass), "joints": len(assembly.a), "depth_m": assembly.depth, "chains": list(chains),
         "chain": chain, "weight_N": float(assembly.mass.sum()) * 9.80665, "size_m": assembly.size, "gamma": view.gamma,
@@ -91,7 +97,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     except Immovable as error:
         words |= {"stands": True, "immovable": str(error)}
         return made
-    except (NoAnswer, Refused) as error:
+    except (NoAnswer, NoView, Refused) as error:
         words |= {"stands": None, "unknown": str(error)}
         return made
     plus, minus = ends["plus"][0].gamma, -ends["minus"][0].gamma
@@ -137,11 +143,19 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
                     "reached": float(shown.position[joint]), "at": at.tolist(),
                     "thrust_N": thrust_of(assembly, shown, chains[chain], told),
                 }  # fmt: skip
+            elif view.thrust is not None and "through" in view.lines:
+                low, high = words["least_N"], words["most_N"]
+                share = min(max((view.thrust - low) / (high - low), 0.0), 1.0) if high > low else 0.0
+                shown = blended(least, most, share)
+                _line(made, "through", shown, anchor)
+                words["chosen"] = {"thrust_N": thrust_of(assembly, shown, chains[chain], told), "wanted_N": view.thrust}
         except (NoEquilibrium, NoAnswer) as error:
             words["remark"] = str(error)
     shown = shown or ends["plus"][0]
     words["reactions"] = _reactions(assembly, shown, anchor)
-    words["reactions_of"] = "through" if "through" in words else "least" if shown is not ends["plus"][0] else "plus"
+    words["reactions_of"] = (
+        "through" if "through" in words or "chosen" in words else "least" if shown is not ends["plus"][0] else "plus"
+    )
     _polygon(made, shown, chain)
     return made
 
@@ -207,6 +221,7 @@ def _touches(assembly: Assembly, state: State, anchor: np.ndarray) -> list[list[
 def _reactions(assembly: Assembly, state: State, anchor: np.ndarray) -> list[dict[str, Any]]:
     """Forces of the ground on the structure, and where they act."""
     points, force = state.points(assembly), state.force(assembly)
+    force = np.where(np.abs(force) > ROUNDING * np.abs(force).max(initial=0.0), force, 0.0)
     on_b = assembly.a == GROUND
     return [
         {"name": assembly.joint_names[j], "at": (points[j] - anchor).tolist(), "x_N": float(f[0]), "y_N": float(f[1])}
@@ -219,6 +234,12 @@ def _polygon(made: Picture, state: State, chain: str | None) -> None:
     """Rays of the force polygon of a chain [N]."""
     if chain is not None:
         made.arrays["polygon"] = force_polygon(made.assembly, state, made.assembly.chains[chain])
+
+
+def first_chain(assembly: Assembly) -> str | None:
+    """The chain whose thrust is shown unless another is chosen: the first that is an arch, else the first; None of none."""
+    chains = assembly.chains
+    return next((name for name, joints in chains.items() if not is_stack(assembly, joints)), next(iter(chains), None))
 
 
 def nearest(assembly: Assembly, point: np.ndarray, chain: str | None) -> tuple[int, float]:

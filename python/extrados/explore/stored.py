@@ -8,7 +8,7 @@ import numpy as np
 
 from extrados.decks.reader import Deck
 from extrados.kinds import STRUCTURES, table
-from extrados.plots.sla import CORNERS
+from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored, StoreError
 from extrados.schema.constants import GRAVITY
 from extrados.schema.table import Table
@@ -16,10 +16,18 @@ from extrados.schema.table import Table
 __all__ = ["StoreError", "forms", "shown", "unit_of"]
 
 MOST_POINTS, MOST_PICTURES, MOST_STATES, MOST_MEMBERS = 4000, 600, 60, 4000
+MOST_ROWS, MOST_COLUMNS = 200, 10
+#: Values that stand in one cell
+SINGLE = int | float | str | None
 #: Sections of the form, those of the building first
 SECTIONS = ("structure", "motion", "joints", "material", "supports", "initial")
 #: Arrays of supports that move: those of a film, or of the states that figures show, and how each calls its thrust lines
 FILM, SHOWN = ("film", "line"), ("shown", "point")
+#: Blocks in space: how the page calls their arrays, and how results do
+SOLIDS = {
+    "vertex": "solid_vertex", "face": "solid_face", "face_start": "solid_face_start", "face_body": "solid_face_block",
+    "body_centre": "solid_centroid",
+}  # fmt: skip
 Arrays = dict[str, np.ndarray]
 Chart = dict[str, Any]
 
@@ -111,9 +119,32 @@ def shown(run: Stored, name: str | None) -> tuple[dict[str, Any], Arrays]:
         getattr(made, kind.replace("-", "_"), made.others)()
     except KeyError as error:
         raise StoreError(f"the results of {name} lack the array {error}") from None
-    numbers = [[k, v] for k, v in run.analysis(name)["results"].items() if isinstance(v, int | float | str | None)]
-    words |= {"analysis": name, "kind": kind, "charts": made.charts, "body": made.body, "numbers": numbers[:60]}
+    results = run.analysis(name)["results"]
+    numbers = [[k, v] for k, v in results.items() if isinstance(v, SINGLE)]
+    words |= {
+        "analysis": name, "kind": kind, "charts": made.charts, "body": made.body, "numbers": numbers[:60],
+        "tables": made.tables + [t for k, v in results.items() if (t := _rows(k, v)) is not None],
+    }  # fmt: skip
     return words, made.out
+
+
+def _rows(name: str, value: Any) -> dict[str, Any] | None:
+    """Rows of a result as a table: those of a list, those of a mapping by their names, or the parts of one thing."""
+    if isinstance(value, dict) and value and all(isinstance(v, SINGLE) for v in value.values()):
+        value = [value]
+    elif isinstance(value, dict) and all(isinstance(v, dict) for v in value.values()):
+        value = [{"": key, **row} for key, row in value.items()]
+    if not isinstance(value, list) or not value or not all(isinstance(row, dict) for row in value):
+        return None
+    columns = list(dict.fromkeys(k for row in value for k, v in row.items() if isinstance(v, SINGLE)))[:MOST_COLUMNS]
+    columns = [k for k in columns if any(row.get(k) not in (None, "") for row in value)]
+    rows = [[row.get(k) if isinstance(row.get(k), SINGLE) else None for k in columns] for row in value[:MOST_ROWS]]
+    return {
+        "title": name.replace("_", " "),
+        "columns": columns,
+        "rows": rows,
+        "left_out": max(0, len(value) - MOST_ROWS),
+    }
 
 
 class _Maker:
@@ -123,6 +154,7 @@ class _Maker:
         self.run, self.name, self.arrays = run, name, arrays
         self.out: Arrays = {}
         self.charts: list[Chart] = []
+        self.tables: list[dict[str, Any]] = []
         self.body: dict[str, Any] | None = None
 
     def send(self, *names: str, keep: slice | np.ndarray = slice(None)) -> None:
@@ -165,7 +197,73 @@ class _Maker:
 
     # Kinds
 
+    def _solids(self) -> None:
+        """Blocks in space that move along a mechanism, and what they bear over the direction."""
+        for name, source in SOLIDS.items():
+            self.out[name] = self.arrays[source]
+        self.out |= {"body_time": np.linspace(0.0, 1.0, 24), "pose": self.arrays["mechanism_pose"]}
+        self.body = {
+            "sort": "space",
+            "unit": "",
+            "label": "mechanism",
+            "swings": True,
+            "push": self.run[self.name].load_direction_deg,
+        }
+        if len(self.arrays["rose_direction"]) > 2:
+            self.send("rose_direction", "rose_capacity")
+            self.charts.append(
+                _chart("Capacity over the direction of the push", _axis("rose_direction", "direction in plan", "deg"),
+                       _axis("", "collapse acceleration", "g"), [_series("rose_capacity", "capacity", sort="both")], least=0.0)
+            )  # fmt: skip
+
+    def pushover(self) -> None:
+        """Base shear over displacement both ways, and the building as it cracks from state to state under the first."""
+        series = []
+        for prefix, numbers in zip(PREFIXES, (self.run[self.name], self.run[self.name].minus), strict=True):
+            if f"{prefix}envelope_load" in self.arrays and numbers is not None:
+                self.send(f"{prefix}envelope_load", f"{prefix}envelope_displacement")
+                series.append(_series(f"{prefix}envelope_load", f"push to {numbers.sense}", x=f"{prefix}envelope_displacement",
+                                      factor=1e-3, dashed=bool(prefix)))  # fmt: skip
+        axis = _axis("envelope_displacement", "displacement", "mm", 1e3)
+        self.charts.append(
+            _chart("Base shear and displacement", axis, _axis("", "base shear", "kN"), series, trace="state")
+        )
+        if "state_event" not in self.arrays:
+            return
+        events = self.arrays["state_event"]
+        pick = np.unique(np.linspace(0, len(events) - 1, min(len(events), MOST_STATES)).round().astype(int))
+        parts = [a.data for a in self.run.series(self.name, "elements")]
+        walls = [int(a.data[0]) for a in self.run.series(self.name, "wall_of")]
+        faces = [row for part in parts for row in part]
+        self.out |= {
+            "vertex": self.arrays["node"], "face": np.concatenate(faces), "face_start": np.cumsum([0, *map(len, faces)]),
+            "body_time": events[pick], "state_load": self.arrays["state_load"][pick], "state_held": self._held(events[pick]),
+            "state_moved": self.arrays["state_displacement"][pick],
+            "state_tone": self._cracked(parts, walls, self.arrays["state_width"][pick]),
+            "state_width": self.arrays["state_width"][pick].max(axis=1),
+        }  # fmt: skip
+        self.body = {"sort": "space", "unit": "", "label": "event", "walls": True}
+
+    def _cracked(self, parts: list[np.ndarray], walls: list[int], width: np.ndarray) -> np.ndarray:
+        """Tones (states, faces) of elements: of floors 1, of walls 0, or 2 to 5 by quarters of the widest crack."""
+        from extrados.plots.shell import LEAST_WIDTH
+
+        counts = [len(part) for part in parts]
+        wall = np.repeat(np.array(walls) >= 0, counts)
+        tone = np.zeros((len(width), len(wall)), dtype=np.uint8)
+        tone[:, ~wall] = 1
+        element, most = self.arrays["place_element"], max(float(width.max(initial=0.0)), 1e-12)
+        for k, row in enumerate(width):
+            widest = np.zeros(int(wall.sum()))
+            np.maximum.at(widest, element, row)
+            level = np.minimum(3, (4.0 * widest / most).astype(int)) + 2
+            tone[k, wall] = np.where(widest > LEAST_WIDTH * most, level, 0)
+        return tone
+
     def tilt(self) -> None:
+        if "solid_vertex" in self.arrays:
+            self._solids()
+            return
         self._stones()
         rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
         lines = self._lines("collapse", "least", "most")
@@ -191,8 +289,15 @@ class _Maker:
         self.send("time", "rotation", "ground", "kinetic", "potential", "ledger", keep=keep)
         self.send("impact_time")
         time = _axis("time", "time", "s")
+        turns = [_series("rotation", "rotation", factor=1e3)]
+        if "rotation_upper" in self.arrays:  # of two stacked blocks
+            self.send("rotation_upper", keep=keep)
+            turns = [
+                _series("rotation", "lower block", factor=1e3),
+                _series("rotation_upper", "upper block", factor=1e3, dashed=True),
+            ]
         self.charts += [
-            _chart("Rotation", time, _axis("", "rotation", "mrad"), [_series("rotation", "rotation", factor=1e3)],
+            _chart("Rotation", time, _axis("", "rotation", "mrad"), turns,
                    marks="impact_time", cursor=True),
             _chart("Ground", time, _axis("", "acceleration", "g"), [_series("ground", "ground", factor=1 / GRAVITY)], cursor=True),
             _chart("Energy", time, _axis("", "energy", "J"),
@@ -279,6 +384,8 @@ class _Maker:
             )
 
     def sla(self) -> None:
+        from extrados.plots.sla import CORNERS
+
         self._curve()
         if "state_event" not in self.arrays:
             return
@@ -290,6 +397,7 @@ class _Maker:
         self.out["element_start"] = np.cumsum([0, *(n for p in polygons for n in [p.shape[1]] * len(p))])
         self.out["body_time"] = events[pick]
         self.out["state_load"] = self.arrays["state_load"][pick]
+        self.out["state_held"] = self._held(events[pick])
         self.out["state_moved"] = self.arrays["state_displacement"][pick]
         for field in ("width_n", "width_s", "angle"):
             if f"state_{field}" in self.arrays:
@@ -297,12 +405,25 @@ class _Maker:
         self.send("point_xy", "point_element", "point_reach", "point_band")
         self.body = {"sort": "mesh", "unit": "", "label": "event"}
 
+    def _held(self, events: np.ndarray) -> np.ndarray:
+        """Which states, by their events, are in equilibrium and no farther than the envelope: beyond it a mechanism moves."""
+        held = np.ones(len(events), dtype=bool)
+        if "event_equilibrium" in self.arrays:
+            held = self.arrays["event_equilibrium"][events - 1] > 0
+        if "envelope_displacement" in self.arrays:
+            reach = 1.05 * np.abs(self.arrays["envelope_displacement"]).max(initial=0.0)
+            held &= np.abs(self.arrays["event_displacement"][events - 1]) <= reach
+        return held.astype(np.uint8)
+
     def _curve(self) -> None:
         series, axis = [], _axis("event_displacement", "displacement", "mm", 1e3)
         if "event_displacement" not in self.arrays:
             return
         fine = self.arrays["event_equilibrium"] > 0 if "event_equilibrium" in self.arrays else slice(None)
-        for kind, label, more in (("event", "every event", {"faint": True}), ("envelope", "envelope", {})):
+        for kind, label, more in (
+            ("event", "every event", {"faint": True, "aside": "envelope_load" in self.arrays}),
+            ("envelope", "envelope", {}),
+        ):
             if f"{kind}_load" in self.arrays:
                 part = fine if kind == "event" else slice(None)
                 x, y = self.arrays[f"{kind}_displacement"][part], self.arrays[f"{kind}_load"][part]
@@ -451,6 +572,78 @@ class _Maker:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)
             self._moving(share, rest + share[:, None, None] * (self.arrays["mechanism_pose"] - rest), "", "mechanism")
+
+    def assessment(self) -> None:
+        """The motion, and its primary impulses beside the pulses that bring the structure down."""
+        self.out |= {"time": self.arrays["time"], "ground": self.arrays["ground"] / GRAVITY}
+        self.charts.append(
+            _chart("Ground", _axis("time", "time", "s"), _axis("", "acceleration", "g"), [_series("ground", "ground")])
+        )
+        self.send(
+            "period",
+            "failing_amplitude",
+            "failing_amplitude_own",
+            "computed_period",
+            "computed_amplitude",
+            "impulse_period",
+        )
+        self.out["impulse_amplitude"] = np.abs(self.arrays["impulse_amplitude"]) / GRAVITY
+        known = [
+            _series("failing_amplitude", "fails (Eq. 5.8)"), _series("failing_amplitude_own", "fails, its own fit", dashed=True),
+            _series("computed_amplitude", "fails, computed", x="computed_period"),
+            _series("impulse_amplitude", "impulses of the motion", x="impulse_period", sort="points"),
+        ]  # fmt: skip
+        rows = [r for r in known if np.isfinite(np.asarray(self.out.get(r["array"], np.nan), dtype=float)).any()]
+        self.charts.append(
+            _chart(
+                "Pulses that bring it down",
+                _axis("period", "period", "s"),
+                _axis("", "amplitude", "g"),
+                rows,
+                least=0.0,
+            )
+        )
+
+    def failure_curves(self) -> None:
+        """The lowest failing amplitude of each structure, and the primary impulses of the motions."""
+        r: Any = self.run[self.name]
+        rows = []
+        for k, curve in enumerate(r.curves):
+            self.out[f"duration_{k}"], self.out[f"amplitude_{k}"] = (
+                self.arrays["duration"][k],
+                self.arrays["amplitude"][k],
+            )
+            rows.append(_series(f"amplitude_{k}", curve.label, x=f"duration_{k}", dashed=k % 2 == 1))
+        if r.impulses:
+            self.out["impulse_period"] = np.array([i.period_s for i in r.impulses])
+            self.out["impulse_amplitude"] = np.array([abs(i.amplitude_g) for i in r.impulses])
+            rows.append(_series("impulse_amplitude", "impulses of motions", x="impulse_period", sort="points"))
+        self.charts.append(
+            _chart(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), _axis("", "amplitude", "g"), rows, least=0.0)
+        )  # fmt: skip
+
+    def local_mechanism(self) -> None:
+        if "displacement" not in self.arrays:
+            return
+        self.send("displacement", "acceleration")
+        self.charts.append(
+            _chart("Capacity of the mechanism as it moves", _axis("displacement", "displacement", "m"),
+                   _axis("", "acceleration", "g"), [_series("acceleration", "capacity")], least=0.0)
+        )  # fmt: skip
+
+    def survey(self) -> None:
+        """The capacity of each section, the weakest first."""
+        names, gamma = self.arrays["section_name"].astype(str), self.arrays["gamma"]
+        order = np.argsort(np.where(np.isfinite(gamma), gamma, np.inf), kind="stable")
+        self.out |= {"rank": np.arange(1, len(order) + 1), "capacity": gamma[order]}
+        self.charts.append(
+            _chart("Capacity of the sections, the weakest first", _axis("rank", "rank", ""),
+                   _axis("", "collapse acceleration", "g"), [_series("capacity", "capacity", sort="points")], least=0.0)
+        )  # fmt: skip
+        rows = [[str(names[k]), float(gamma[k]) if np.isfinite(gamma[k]) else None] for k in order.tolist()]
+        self.tables.append(
+            {"title": "sections", "columns": ["section", "capacity [g]"], "rows": rows[:MOST_ROWS], "left_out": max(0, len(rows) - MOST_ROWS)}
+        )  # fmt: skip
 
     def others(self) -> None:
         """Any other kind: arrays of one axis over that axis, where it has numbers of its own."""

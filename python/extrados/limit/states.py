@@ -44,6 +44,19 @@ class State:
         return self.normal[:, None] * assembly.normal + self.shear[:, None] * assembly.tangent
 
 
+def blended(one: State, other: State, share: float) -> State:
+    """The state between two at the same load, `share` of the way from one to the other: forces and moments are a mean, so
+    it is in equilibrium too, and within every law whose limits are convex."""
+    parts = (1.0 - share) * one.normal, share * other.normal
+    normal = parts[0] + parts[1]
+    moment = parts[0] * one.position + parts[1] * other.position
+    even = (1.0 - share) * one.position + share * other.position
+    return State(
+        one.gamma, normal, (1.0 - share) * one.shear + share * other.shear,
+        np.divide(moment, normal, out=even, where=normal > 0.0), (1.0 - share) * one.mobilised + share * other.mobilised,
+    )  # fmt: skip
+
+
 @dataclass(frozen=True)
 class Mechanism:
     """Velocities of the blocks at collapse (nb, 3): x, y [m/s], spin [rad/s], scaled to unit live-load work.

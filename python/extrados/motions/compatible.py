@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.core import motion as core
-from extrados.core.rocking import Ground
+from extrados.core.ground import Ground
 from extrados.motions import processing
 from extrados.motions.code_spectra import Spectrum
 from extrados.motions.generated import envelope_parameters

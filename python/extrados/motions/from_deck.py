@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from extrados.core.rocking import Ground
+from extrados.core.ground import Ground
 from extrados.motions import code_spectra, pulses, records
 from extrados.motions import tables as models
 from extrados.motions.compatible import CompatibleSet, NotMatched

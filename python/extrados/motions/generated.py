@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from extrados.core import motion as core
-from extrados.core.rocking import Ground
+from extrados.core.ground import Ground
 from extrados.motions.line_spectra import SHIPPED, load_spectrum
 from extrados.motions.point_source import worden_pga, worden_pgv
 

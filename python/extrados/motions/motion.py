@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from extrados.core.rocking import Ground
+from extrados.core.ground import Ground
 
 #: An analytic motion is never sampled at more points than this.
 MOST_SAMPLES = 1_000_000

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from extrados.core.rocking import Ground
+from extrados.core.ground import Ground
 from extrados.motions.motion import Motion
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from extrados.core.rocking import Ground
+from extrados.core.ground import Ground
 from extrados.motions import processing
 from extrados.motions.directions import rotated
 from extrados.motions.formats.recognise import read_record as read_record

@@ -200,7 +200,24 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> None:
         (thrust,) = ax.plot([], [], color=style.THRUST, linewidth=1.6, zorder=4, label="line of thrust")
         ground.plot(history, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
         ground.set_ylabel("ground [g]")
-        rotation.plot(history, 1e3 * run.array(name, "rotation"), color=style.HINGE, linewidth=1.0)
+        upper = "rotation_upper" in run.arrays[name]  # of two stacked blocks
+        rotation.plot(
+            history,
+            1e3 * run.array(name, "rotation"),
+            color=style.HINGE,
+            linewidth=1.0,
+            label="lower block" if upper else None,
+        )
+        if upper:
+            rotation.plot(
+                history,
+                1e3 * run.array(name, "rotation_upper"),
+                "--",
+                color=style.GROUND,
+                linewidth=1.0,
+                label="upper block",
+            )
+            rotation.legend()
         rotation.set_ylabel("rotation [mrad], + to +x")
         rotation.set_xlabel("time [s]")
         rotation.set_xlim(0.0, float(time[-1]))
@@ -351,6 +368,16 @@ def draw_supports(run: Stored, name: str, folder: Path) -> None:
         )
 
 
+def _told_states(run: Stored, name: str) -> np.ndarray:
+    """The states of a film: those in equilibrium, as far as the envelope goes; beyond it a mechanism is on its way, whose
+    displacements would hide all before. All of them where that leaves fewer than two."""
+    events, envelope = run.array(name, "state_event"), np.abs(run.array(name, "envelope_displacement"))
+    held = run.array(name, "event_equilibrium")[events - 1] > 0
+    near = np.abs(run.array(name, "event_displacement")[events - 1]) <= 1.05 * envelope.max(initial=0.0)
+    kept = np.flatnonzero(held & near)
+    return kept if len(kept) > 1 else np.arange(len(events))
+
+
 def draw_sla(run: Stored, name: str, folder: Path) -> None:
     """The wall as it cracks from state to state, displacements enlarged, beside its load curve."""
     from extrados.plots import sla
@@ -359,13 +386,15 @@ def draw_sla(run: Stored, name: str, folder: Path) -> None:
     if kind == "none" or "state_event" not in run.arrays[name]:
         return
     get = run.array
-    xy, events, load = get(name, "node"), get(name, "state_event"), get(name, "state_load")
-    moved, angle, at = get(name, "state_displacement"), get(name, "state_angle"), get(name, "point_xy")
-    widths = [get(name, f"state_width_{d}") for d in "ns"]
+    kept = _told_states(run, name)
+    xy, at = get(name, "node"), get(name, "point_xy")
+    events, load, moved, angle = (
+        get(name, f"state_{what}")[kept] for what in ("event", "load", "displacement", "angle")
+    )
+    widths = [get(name, f"state_width_{d}")[kept] for d in "ns"]
     reach = get(name, "point_reach") if "point_reach" in run.arrays[name] else get(name, "point_band")
-    held = get(name, "event_equilibrium")[events - 1] > 0
     span = np.ptp(xy, axis=0)
-    factor = sla._scale(span, moved[np.flatnonzero(held)[-1] if held.any() else -1], SHOWN)
+    factor = sla._scale(span, moved[-1], SHOWN)
     most = max(float(np.nanmax(w)) for w in widths) or 1e-9
     with style.canvas(PIXELS[0] / DPI, PIXELS[1] / DPI) as fig:
         ax, (curve,) = _axes(fig, 1)
@@ -379,13 +408,15 @@ def draw_sla(run: Stored, name: str, folder: Path) -> None:
         ]
         for lines in cracks:
             ax.add_collection(lines)
-        shown = moved[held] if held.any() else moved
-        window(ax, np.concatenate([xy, *(xy + factor * u for u in shown)]))
+        window(ax, np.concatenate([xy, *(xy + factor * u for u in moved)]))
         fig.colorbar(cracks[0], ax=ax, shrink=0.6, label="crack width [mm]")
         d, p = get(name, "event_displacement"), get(name, "event_load")
         fine = get(name, "event_equilibrium") > 0
         curve.plot(1e3 * d[fine], p[fine] / 1e3, color=style.THRUST, linewidth=0.25, alpha=0.5)
         curve.plot(1e3 * get(name, "envelope_displacement"), get(name, "envelope_load") / 1e3, color=style.THRUST)
+        shown = 1e3 * np.concatenate([get(name, "envelope_displacement"), d[events - 1]])
+        room = 0.05 * max(float(np.ptp(shown)), 1e-9)
+        curve.set_xlim(shown.min() - room, shown.max() + room)
         (now,) = curve.plot([], [], "o", color=style.HINGE, markersize=8, markerfacecolor="white", markeredgewidth=2)
         curve.set_xlabel("control displacement [mm]")
         curve.set_ylabel("load [kN]")

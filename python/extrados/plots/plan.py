@@ -1,12 +1,14 @@
-"""The picture of a building before it is computed: its plan, and its walls with their mesh."""
+"""The picture of a building before it is computed: its plan, and its walls with their mesh; of a vault its mesh in space."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from matplotlib.collections import PolyCollection
+from matplotlib.colors import LinearSegmentedColormap, to_hex
+from matplotlib.patches import Patch
 
-from extrados.plots import style
+from extrados.plots import scene, style
 
 LINTEL = "#c9b48a"
 MOST_BESIDE = 3
@@ -66,3 +68,61 @@ def draw_plan(folder: Path, name: str, walls: list[Elevation], levels: np.ndarra
             ax.set_xlabel("along it [m]")
         style.write(fig, folder, name)
     return folder / f"{name}.png"
+
+
+def draw_shells(folder: Path, name: str, parts: list[tuple[str, np.ndarray, np.ndarray]], feet: np.ndarray) -> Path:
+    """Write folder/NAME.png and .svg: the mesh of a vault seen from a corner and from above, coloured by its thickness.
+
+    parts: name, corners (elements, corners, 3) [m] and thickness (elements) [m] of each; feet: nodes (n, 3) that are held [m].
+    """
+    thick = np.unique(np.concatenate([np.unique(np.round(t, 9)) for _, _, t in parts]))
+    shades = _shades(len(thick))
+    with style.canvas(9.4, 4.6) as fig:
+        for ax, view, title in zip(
+            fig.subplots(1, 2), (scene.View(-60.0, 28.0), scene.View(-90.0, 90.0)), ("from a corner", "from above"), strict=True
+        ):  # fmt: skip
+            axes = view.axes
+            shapes, depth, colors = [], [], []
+            for _, corner, thickness in parts:
+                place = corner @ axes.T
+                shapes += list(place[..., :2])
+                depth += place[..., 2].mean(axis=1).tolist()
+                colors += [shades[int(np.abs(thick - t).argmin())] for t in thickness]
+            order = np.argsort(depth, kind="stable")
+            ax.add_collection(
+                PolyCollection(
+                    [shapes[k] for k in order],
+                    facecolors=[colors[k] for k in order],
+                    edgecolors="#b3a98f",
+                    linewidths=0.3,
+                )
+            )
+            held = feet @ axes.T
+            ax.plot(
+                *held[:, :2].T,
+                "^",
+                color=style.HINGE,
+                markersize=4,
+                linestyle="none",
+                zorder=3.0 if view.elevation == 90.0 else 0.5,
+            )
+            ax.autoscale_view()
+            ax.margins(0.05)
+            ax.set_aspect("equal")
+            ax.grid(False)
+            ax.set_title(title)
+            ax.set_xlabel("x [m]" if view.elevation == 90.0 else "across the view [m]")
+            ax.set_ylabel("y [m]" if view.elevation == 90.0 else "up the view [m]")
+        fig.legend(
+            [Patch(facecolor=shade, edgecolor="#b3a98f") for shade in shades], [f"{1e3 * t:.4g} mm thick" for t in thick],
+            loc="outside lower center", ncols=min(6, len(thick)),
+            title=f"{sum(len(c) for _, c, _ in parts)} elements; triangles: nodes that are held",
+        )  # fmt: skip
+        style.write(fig, folder, name)
+    return folder / f"{name}.png"
+
+
+def _shades(count: int) -> list[str]:
+    """Colours of stone, from light to dark."""
+    scale = LinearSegmentedColormap.from_list("thickness", [style.STONE, LINTEL, "#7a6844"])
+    return [to_hex(scale(k / max(count - 1, 1))) for k in range(count)]

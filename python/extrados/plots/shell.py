@@ -1,4 +1,5 @@
-"""Figures of pushed buildings: capacity curves, cracks on the unfolded walls and in space, drifts and damage by storey."""
+"""Figures of pushed buildings and vaults: capacity curves, cracks on the unfolded walls, from above and in space, drifts and
+damage by storey."""
 
 from pathlib import Path
 
@@ -6,15 +7,19 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import Normalize
+from matplotlib.lines import Line2D
 
-from extrados.plots import style
+from extrados.plots import scene, style
 from extrados.plots.sla import CRACKS, LOST, SENSES
+from extrados.results.shell import PushCurve
 from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored
 
 FLOOR = "#dbe3ea"
-#: Where the building is looked at from [deg]: azimuth on the plan, height over the horizon
-AZIMUTH, ELEVATION = -60.0, 28.0
+#: Where the building is looked at from
+VIEW = scene.View(-60.0, 28.0)
+#: Cracks of a vault that are widest at its extrados, and at its intrados
+OUTSIDE, INSIDE = "#b3261e", "#1f4e9b"
 #: Gap between unfolded walls, in parts of the height
 GAP = 0.12
 #: Part of the greatest width from which a crack is drawn
@@ -23,12 +28,67 @@ LEAST_WIDTH = 0.02
 
 def draw_pushover(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """All figures of one analysis."""
-    figures = [_curves(run, name, folder)]
-    for prefix in PREFIXES:
-        if f"{prefix}state_event" in run.arrays[name]:
+    figures = [_stage_curves(run, name, folder) if run[name].stages else _curves(run, name, folder)]
+    for prefix in _prefixes(run, name):
+        if f"{prefix}state_event" not in run.arrays[name]:
+            continue
+        if len(run.array(name, "wall")):
             figures += [_unfolded(run, name, folder, prefix), _space(run, name, folder, prefix)]
             figures.append(_storeys(run, name, folder, prefix))
+        else:
+            figures += [_from_above(run, name, folder, prefix), _space(run, name, folder, prefix)]
     return figures
+
+
+def _prefixes(run: Stored, name: str) -> list[str]:
+    """How the names of the arrays of each curve begin: of the senses, or of the stages in their order."""
+    stages = run[name].stages
+    return [stage.prefix for stage in stages] if stages else list(PREFIXES)
+
+
+def _numbers(run: Stored, name: str, prefix: str) -> PushCurve:
+    """The numbers of a curve."""
+    r = run[name]
+    if r.stages:
+        return next(stage for stage in r.stages if stage.prefix == prefix)
+    return r.minus if prefix else r
+
+
+def _suffix(prefix: str) -> str:
+    """What the names of the figures of a curve end in."""
+    return SENSES[prefix] if prefix in SENSES else f"-{prefix.rstrip('_').replace('_', '-')}"
+
+
+def _stage_curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
+    """The base shear over the control displacement through all pushes, and the force that moves the ground in settlements."""
+    stages = run[name].stages
+    kinds = [of for of in ("push", "settlement") if any(stage.of == of for stage in stages)]
+    colors = [style.THRUST, style.SAFE, style.HINGE, LOST, "#7b93ab", "#8a6d3b"]
+    with style.figure(5.4 * len(kinds) + 1.0, 4.2, columns=len(kinds)) as (fig, axes):
+        for ax, of in zip(np.atleast_1d(axes), kinds, strict=True):
+            for k, stage in enumerate(stages):
+                if stage.of != of:
+                    continue
+                sign = -1.0 if stage.sense == "-" else 1.0
+                fine = run.array(name, f"{stage.prefix}event_equilibrium") > 0
+                d, p = (
+                    run.array(name, f"{stage.prefix}event_displacement"),
+                    run.array(name, f"{stage.prefix}event_load"),
+                )
+                ax.plot(
+                    1e3 * sign * d[fine], sign * p[fine] / 1e3, color=colors[k % len(colors)], linewidth=0.9,
+                    label=f"{k + 1}: {stage.name}",
+                )  # fmt: skip
+            ax.axhline(0.0, color="#999", linewidth=0.5)
+            ax.axvline(0.0, color="#999", linewidth=0.5)
+            push = of == "push"
+            ax.set_xlabel("control displacement [mm]" if push else "way of the ground that moves most [mm]")
+            ax.set_ylabel("base shear [kN]" if push else "force that moves the ground [kN]")
+            ax.legend()
+        return style.save(fig, folder, f"{name}-curve"), (
+            "All stages one after the other, each with the damage that those before left: base shear of the pushes, and the "
+            "force along the way of the ground that gives way, summed over what moves."
+        )
 
 
 def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
@@ -83,8 +143,10 @@ def _curves(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 def _state(run: Stored, name: str, prefix: str) -> int:
     """The state of the greatest base shear, else the last."""
-    numbers = run[name].minus if prefix else run[name]
+    numbers = _numbers(run, name, prefix)
     events = run.array(name, f"{prefix}state_event")
+    if getattr(numbers, "of", "push") == "settlement":
+        return len(events) - 1
     there = np.flatnonzero(events == numbers.greatest_load_event)
     return int(there[0]) if len(there) else len(events) - 1
 
@@ -97,7 +159,7 @@ def _shown(run: Stored, name: str, prefix: str) -> list[int]:
 
 
 def _walls(run: Stored, name: str) -> list[tuple[int, np.ndarray]]:
-    """Parts that are of a wall: which, and their elements."""
+    """All parts: the wall that each is of, -1 none, and its elements."""
     pairs = zip(run.series(name, "elements"), run.series(name, "wall_of"), strict=True)
     return [(int(wall.data[0]), elements.data) for elements, wall in pairs]
 
@@ -108,9 +170,7 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
     width, angle = run.array(name, f"{prefix}state_width"), run.array(name, f"{prefix}state_angle")
     load, event = run.array(name, f"{prefix}state_load"), run.array(name, f"{prefix}state_event")
     of, s, z = (run.array(name, f"place_{n}") for n in ("wall", "s", "z"))
-    names = [row.wall for row in (run[name].minus if prefix else run[name]).walls] or [
-        str(k + 1) for k in range(len(walls))
-    ]
+    names = [row.wall for row in _numbers(run, name, prefix).walls] or [str(k + 1) for k in range(len(walls))]
     shown = _shown(run, name, prefix)
     gap = GAP * level[-1]
     start = np.concatenate([[0.0], np.cumsum(walls[:, 4] + gap)])
@@ -156,7 +216,7 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             ax.set_title(f"event {event[k]}, base shear {load[k] / 1e3:.4g} kN")
         axes[-1].set_xlabel("along the walls, each from its start [m]")
         fig.colorbar(drawn, ax=list(axes), label="crack width [mm]", shrink=0.7, pad=0.01)
-        return style.save(fig, folder, f"{name}{SENSES[prefix]}-walls"), (
+        return style.save(fig, folder, f"{name}{_suffix(prefix)}-walls"), (
             "Cracks on the walls, laid side by side, at the greatest base shear and at the end: of each point the widest "
             "through the thickness, by colour and weight."
         )
@@ -169,27 +229,73 @@ def _frame(x: float, length: float, height: float):
 
 
 def _areas(node: np.ndarray, walls: list[tuple[int, np.ndarray]]) -> np.ndarray:
-    c = np.concatenate([node[connect[:, :3]] for wall, connect in walls if wall >= 0])
+    every = all(wall < 0 for wall, _ in walls)  # a vault
+    c = np.concatenate([node[connect[:, :3]] for wall, connect in walls if every or wall >= 0])
     return np.linalg.norm(np.cross(c[:, 1] - c[:, 0], c[:, 2] - c[:, 0]), axis=1)
 
 
-def view_axes() -> np.ndarray:
-    """Unit vectors (3, 3) to the right, up, and towards the eye."""
-    a, e = np.radians([AZIMUTH, ELEVATION])
-    eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-    right = np.array([-np.sin(a), np.cos(a), 0.0])
-    return np.array([right, np.cross(eye, right), eye])
+def _from_above(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
+    """Cracks of a vault at the greatest load and at the end on its plan: red at the extrados, blue at the intrados."""
+    node, at = run.array(name, "node"), run.array(name, "place_xyz")
+    width, angle = run.array(name, f"{prefix}state_width"), run.array(name, f"{prefix}state_angle")
+    side = run.array(name, f"{prefix}state_side")
+    x_axis, y_axis = run.array(name, "place_x_axis"), run.array(name, "place_y_axis")
+    shown = _shown(run, name, prefix)
+    most = max(float(width[shown].max()), 1e-12)
+    length = 0.7 * np.sqrt(np.median(_areas(node, _walls(run, name))))
+    extent = np.ptp(node[:, :2], axis=0)
+    tall = float(np.clip(5.0 * extent[1] / extent[0], 1.2, 5.0))
+    with style.canvas(5.4 * len(shown) + 0.4, tall + 1.7) as fig:
+        for ax, k in zip(fig.subplots(1, len(shown), squeeze=False).ravel(), shown, strict=True):
+            for _, connect in _walls(run, name):
+                ax.add_collection(
+                    PolyCollection(node[connect][..., :2], facecolors="white", edgecolors="#ddd8cc", linewidths=0.3)
+                )
+            seen = np.flatnonzero(width[k] > LEAST_WIDTH * most)
+            seen = seen[np.argsort(width[k][seen])]
+            way = np.cos(angle[k][seen, None]) * y_axis[seen] - np.sin(angle[k][seen, None]) * x_axis[seen]
+            ends = np.stack([at[seen] - 0.5 * length * way, at[seen] + 0.5 * length * way], axis=1)[..., :2]
+            ax.add_collection(
+                LineCollection(
+                    list(ends), colors=[OUTSIDE if s > 0.0 else INSIDE for s in side[k][seen]],
+                    linewidths=0.5 + 2.2 * width[k][seen] / most,
+                )
+            )  # fmt: skip
+            ax.autoscale_view()
+            ax.margins(0.04)
+            ax.set_aspect("equal")
+            ax.grid(False)
+            ax.set_xlabel("x [m]")
+            ax.set_ylabel("y [m]")
+            ax.set_title(_state_word(run, name, prefix, k))
+        marks = [Line2D([], [], color=color, linewidth=2.0) for color in (OUTSIDE, INSIDE)]
+        fig.legend(
+            marks, ["widest towards the extrados", "widest towards the intrados"], loc="outside lower center", ncols=2,
+            title=f"cracks, the widest {1e3 * most:.3g} mm",
+        )  # fmt: skip
+        return style.save(fig, folder, f"{name}{_suffix(prefix)}-plan"), (
+            "Cracks seen from above, at the greatest load and at the end: of each place the widest through the thickness, "
+            "red where it is widest towards the extrados and blue towards the intrados; the thicker the wider."
+        )
+
+
+def _state_word(run: Stored, name: str, prefix: str, k: int) -> str:
+    """Where a state is on its curve."""
+    if getattr(_numbers(run, name, prefix), "of", "push") == "settlement":
+        event = run.array(name, f"{prefix}state_event")[k]
+        return f"ground moved by {1e3 * run.array(name, f'{prefix}event_displacement')[event - 1]:.3g} mm"
+    return f"base shear {run.array(name, f'{prefix}state_load')[k] / 1e3:.4g} kN"
 
 
 def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     """The deformed building at the peak and at the end, crack widths in colour, from two corners."""
     node = run.array(name, "node")
     width, element = run.array(name, f"{prefix}state_width"), run.array(name, "place_element")
-    moved, load = run.array(name, f"{prefix}state_displacement"), run.array(name, f"{prefix}state_load")
+    moved = run.array(name, f"{prefix}state_displacement")
     shown = _shown(run, name, prefix)
     most = max(float(width[shown].max()), 1e-12)
     factor = _magnified(node, moved[shown])
-    axes_of = view_axes()
+    axes_of = VIEW.axes
     with style.canvas(5.2 * len(shown) + 0.8, 5.0) as fig:
         panels = fig.subplots(1, len(shown), squeeze=False).ravel()
         for ax, k in zip(panels, shown, strict=True):
@@ -197,9 +303,9 @@ def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
             values = np.zeros(int(element.max()) + 1)
             np.maximum.at(values, element, width[k])
             drawn = _paint(ax, run, name, place, 1e3 * values, 1e3 * most)
-            ax.set_title(f"base shear {load[k] / 1e3:.4g} kN")
+            ax.set_title(_state_word(run, name, prefix, k))
         fig.colorbar(drawn, ax=list(panels), label="crack width [mm]", shrink=0.7)
-        return style.save(fig, folder, f"{name}{SENSES[prefix]}-space"), (
+        return style.save(fig, folder, f"{name}{_suffix(prefix)}-space"), (
             f"The building at the greatest base shear and at the end, displacements {factor:g} times as large; of each "
             "element the widest crack. The fields are in the VTU files, for ParaView."
         )
@@ -208,13 +314,14 @@ def _space(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]
 def _paint(ax: Axes, run: Stored, name: str, place: np.ndarray, values: np.ndarray, most: float) -> PolyCollection:
     """Elements from the farthest to the nearest; place: (nodes, 3) to the right, up, towards the eye."""
     polygons, depth, value, walls = [], [], [], 0
-    for wall, connect in _walls(run, name):
+    bends = [bool(part.data[0]) for part in run.series(name, "bends")]
+    for bent, (_, connect) in zip(bends, _walls(run, name), strict=True):
         corner = place[connect]
         polygons += list(corner[..., :2])
         depth.append(corner[..., 2].mean(axis=1))
         count = len(connect)
-        value.append(values[walls : walls + count] if wall >= 0 else np.full(count, np.nan))
-        walls += count if wall >= 0 else 0
+        value.append(values[walls : walls + count] if bent else np.full(count, np.nan))
+        walls += count if bent else 0
     order = np.argsort(np.concatenate(depth), kind="stable")
     shade = np.concatenate(value)[order]
     norm = Normalize(0.0, most)
@@ -243,7 +350,7 @@ def _magnified(node: np.ndarray, moved: np.ndarray, part: float = 0.05) -> float
 
 def _storeys(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     """Drifts of the storeys, what walls carry, and damage by storey at the greatest base shear."""
-    numbers = run[name].minus if prefix else run[name]
+    numbers = _numbers(run, name, prefix)
     level = run.array(name, "level")
     with style.figure(9.0, 3.4, columns=3) as (fig, axes):
         middle = 0.5 * (level[1:] + level[:-1])
@@ -268,7 +375,7 @@ def _storeys(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, st
             axes[2].set_yticks(np.arange(1, len(damage) + 1))
         axes[2].set_xlabel("cracked places in the walls")
         axes[2].set_ylabel("storey")
-        return style.save(fig, folder, f"{name}{SENSES[prefix]}-storeys"), (
+        return style.save(fig, folder, f"{name}{_suffix(prefix)}-storeys"), (
             "At the greatest base shear: drift of each storey, the part that each wall carries in its own plane (black: "
             "before it cracks), and the places that have cracked by storey."
         )

@@ -21,6 +21,7 @@ MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 #: What the names of the figures of each sense of the load have in them
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
+MOST_NAMED = 12  # bars that a legend still names
 NOTHING = 1e-3  # of the greatest stress: less is drawn as none
 
 
@@ -67,6 +68,8 @@ def draw_sla(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
             figures += [_cracks(run, name, folder, prefix), _stresses(run, name, folder, prefix)]
     sections = zip(*(run.series(name, f"section_{what}") for what in ("y", "lo", "hi")), strict=True)
     figures += [_section(run, name, folder, i, *arrays) for i, arrays in enumerate(sections)]
+    if run[name].bars:
+        figures += [_bars(run, name, folder, prefix) for prefix in PREFIXES if _has_bars(run, name, prefix)]
     figures.append(_energy(run, name, folder))
     if run[name].stages:
         figures += [_all_stages(run, name, folder), *_cracks_by_stage(run, name, folder)]
@@ -354,6 +357,55 @@ def _section(
     return title, (
         f"Range of the load that each point admits, {about}: equilibrium where the greatest lower limit (dotted, green) "
         "stays below the least upper limit (dotted, red)."
+    )
+
+
+def _has_bars(run: Stored, name: str, prefix: str) -> bool:
+    return any(key.startswith((f"{prefix}bar_force_", f"{prefix}bar_along_")) for key in run.arrays[name])
+
+
+def _bars(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
+    """Forces of bars and ties: from event to event, and along those that are embedded."""
+    follow = run.series(name, f"{prefix}bar_force")
+    places, forces = (run.series(name, f"{prefix}bar_{what}") for what in ("place", "along"))
+    called = lambda array: array.about.removeprefix("force in ").removeprefix("force along ").split(",")[0]  # noqa: E731
+    count = bool(follow) + bool(forces)
+    with style.figure(7.0, 3.4 * count, rows=count) as (fig, axes):
+        if follow:
+            ax = axes[0]
+            fine = run.array(name, f"{prefix}event_equilibrium") > 0
+            # The displacements of stones run away as they become a mechanism
+            axis, scale, words = ("load", 1e-3, "load [kN]") if run[name].hinges is not None else (
+                "displacement", 1e3, "control displacement [mm]")  # fmt: skip
+            way = scale * run.array(name, f"{prefix}event_{axis}")[fine]
+            for k, array in enumerate(follow):
+                ax.plot(
+                    way, 1e-3 * array.data[fine], color=STAGES[k % len(STAGES)], label=called(array),
+                    linestyle=("-", "--", ":")[k // len(STAGES) % 3],
+                )  # fmt: skip
+            ax.axhline(0.0, color="#999", linewidth=0.5)
+            ax.set_xlabel(words)
+            ax.set_ylabel("force [kN], tension +")
+            if len(follow) <= MOST_NAMED:
+                style.legend_above(ax)
+        if forces:
+            ax, events = axes[-1], run.array(name, f"{prefix}state_event")
+            shown = _peak_state(run, name, prefix)
+            for k, (place, force) in enumerate(zip(places, forces, strict=True)):
+                for s, line in zip(shown, ("-", "--"), strict=False):
+                    ax.step(
+                        place.data, 1e-3 * force.data[s], line, where="mid", color=STAGES[k % len(STAGES)],
+                        label=f"{called(force)}, event {events[s]}",
+                    )  # fmt: skip
+            ax.axhline(0.0, color="#999", linewidth=0.5)
+            ax.set_xlabel("distance from the start of the bar [m]")
+            ax.set_ylabel("force [kN], tension +")
+            if len(forces) <= MOST_NAMED:
+                style.legend_above(ax)
+        title = style.save(fig, folder, f"{name}{SENSES[prefix]}-bars")
+    return title, (
+        "Forces of bars and ties: from event to event, in equilibrium, of those held at their ends; along embedded "
+        "ones at the greatest load and in the last state in equilibrium."
     )
 
 

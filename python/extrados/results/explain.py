@@ -107,6 +107,7 @@ def json_schema() -> dict[str, Any]:
         "required": ["extrados", "deck", "analyses"],
         "properties": {
             "extrados": {"type": "object", "additionalProperties": text, "required": ["version", "commit", "compiler"]},
+            "computed": {"type": "object", "additionalProperties": text, "required": ["at", "host"]},
             "deck": {"type": "object", "required": ["path", "sha256", "resolved"]},
             "analyses": {"type": "array", "items": analysis},
             "files": {"type": "object", "additionalProperties": text},

@@ -145,7 +145,9 @@ class ModeCurve(ResultModel):
 
     durations_s: list[float] = fact("durations or periods of the pulses", "s")
     amplitudes_g: list[float | None] = fact("lowest failing amplitude at each; null where none below the cap", "g")
-    amplitude_ratios: list[float | None] = maybe("of a block: failing amplitudes over the uplift acceleration")
+    amplitude_ratios: list[float | None] = maybe(
+        "of a block: failing amplitudes over the uplift acceleration, that on rigid ground"
+    )
 
 
 class AtAmplitudes(ResultModel):
@@ -164,12 +166,14 @@ class FailureDomain(KindResults):
     mode_II: ModeCurve = fact("lowest amplitudes that bring it down in the first half cycle, without an impact")
     pocket_begins_g: list[float | None] = fact("where the first safe pocket above the curve begins; null: none", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
     natural_time_s: float = fact("time by which the curves scale: sqrt(R/g) of an arch, 1/p of a block", "s")
     safe_pockets: int = fact("durations with safe amplitudes above a failing one")
     at_amplitudes: AtAmplitudes = maybe("shortest failing durations at the amplitudes that the deck asks for")
     frequency_ratio: list[float] = maybe("of a block: omega/p of the pulses")
-    pocket_begins_ratio: list[float | None] = maybe("of a block: pocket_begins over the uplift acceleration")
+    pocket_begins_ratio: list[float | None] = maybe(
+        "of a block: pocket_begins over the uplift acceleration, that on rigid ground"
+    )
     mode_names: str = maybe("of a block: how the modes are called elsewhere")
 
     def judged(self, demand: Demand) -> Verdict:
@@ -221,7 +225,7 @@ class FailureCurve(ResultModel):
     durations_s: list[float] = fact("durations or periods of the pulses", "s")
     amplitudes_g: list[float | None] = fact("lowest amplitude that brings it down; null: none below the cap", "g")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
     natural_time_s: float = fact("time by which its curve scales: sqrt(R/g) of an arch, 1/p of a block", "s")
     cycles: int = fact("cycles of a train of sines; 1 for all other pulses")
     static_verdicts: list[Literal["stands", "fails"]] = fact("of each motion: its peak against the uplift acceleration")
@@ -296,7 +300,7 @@ class Assessment(KindResults):
     coefficients: Coefficients = fact("the failure curve that is used")
     coefficients_source: str = fact("where it comes from")
     coefficients_of_this_arch: Coefficients = fact("the failure curve fitted to this structure")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
     impulses: list[AssessedImpulse] = fact("the strongest impulses of the motion")
     verdict: Literal["stands", "fails"] = fact("whether one of them brings it down by the criterion")
     run_outcome: RockingOutcome | None = fact("what the whole motion does by the equation of motion")

@@ -1,5 +1,7 @@
 """Results of the push of a building of shells."""
 
+from typing import Literal
+
 from extrados.results.fields import ResultModel, fact, maybe
 from extrados.results.sla import SlaCurve
 from extrados.results.verdict import Demand, KindResults, Verdict, acceleration, judge
@@ -22,9 +24,18 @@ class FirstCrack(ResultModel):
 
     wall: str = fact("the wall")
     storey: int = fact("the storey, from 1")
-    along_m: float = fact("along the wall from its start", "m")
-    height_m: float = fact("over the ground", "m")
+    along_m: float = maybe("along the wall from its start; absent of a vault", "m")
+    height_m: float = fact("over the ground, or the lowest springing", "m")
+    place_m: list[float] = fact("x, y, z of the place", "m")
     base_shear_N: float = fact("under this base shear", "N")
+
+
+class FootForce(ResultModel):
+    """What a foot of a vault presses on the ground with, at the greatest load or at the end of a settlement."""
+
+    foot: str = fact("its name")
+    thrust_N: float = fact("outward; of a dome the sum all around", "N")
+    vertical_N: float = fact("downward", "N")
 
 
 class Flanges(ResultModel):
@@ -45,7 +56,27 @@ class PushCurve(SlaCurve):
     walls: list[WallShare] = fact("what each wall carries there")
     flanges: Flanges = maybe("whether walls across the push work with them")
     first_crack: FirstCrack = maybe("where it cracks first; absent where it never does")
+    feet: list[FootForce] = maybe("of a vault or dome: what its feet press on the ground with")
     cracked_points_by_storey: list[int] = fact("places in the planes of the walls that have cracked there, by storey")
+
+
+class StageOfPush(PushCurve):
+    """One stage of several; loads are those in the direction of its own, with what stages before have left on. Of ground that
+    gives way they are the forces that move it."""
+
+    name: str = fact("its name, or its number")
+    of: Literal["push", "settlement"] = fact("what it is")
+    prefix: str = fact("how the names of its arrays begin; empty of the stage that stands for the analysis")
+    start_load_N: float = fact("load at its start", "N")
+    end_load_N: float | None = fact("load at its end", "N")
+
+
+class FrameCapacity(ResultModel):
+    """What the piers of the weakest storey bear by the formulas of a code."""
+
+    code: str = fact("the code; of its formulas the least counts for a pier")
+    base_shear_N: float = fact("base shear at which that storey has all of its piers' strengths", "N")
+    storey: int = fact("the weakest storey, from 1")
 
 
 class Variation(ResultModel):
@@ -75,6 +106,8 @@ class Pushover(PushCurve, KindResults):
     points: int = fact("integration points, those of bars too")
     factor_bytes: int = fact("memory of the factor, in bytes")
     minus: PushCurve = maybe("the curve of the second sense")
+    stages: list[StageOfPush] = maybe("of a run in stages, each; without a name, the numbers are those of the main one")
+    frame: list[FrameCapacity] = maybe("strengths of its piers by the formulas of codes, in the direction of the push")
     variants: list[Variation] = maybe("the first sense with other assumptions")
     band_N: list[float] = maybe("least and greatest base shear of all variants and the deck's own", "N")
 

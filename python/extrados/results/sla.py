@@ -30,6 +30,24 @@ class Makeup(ResultModel):
     cracking: str = fact("of the options of cracking")
 
 
+class BarForce(ResultModel):
+    """What a bar of the wall, or one of [[ties]], bears; tension is positive."""
+
+    name: str = fact("its name; bars of the wall are called by their number")
+    force_at_greatest_load_N: float | None = fact(
+        "force at the greatest load in equilibrium, of an embedded bar where it is greatest in size; null where that state "
+        "was not kept",
+        "N",
+    )
+    last_force_N: float | None = fact("force in the last state, likewise", "N")
+    greatest_force_N: float | None = maybe(
+        "force of greatest size of all states in equilibrium, of a bar that is held at its ends alone", "N"
+    )
+    state: Literal["slack", "carries", "yielded"] = fact(
+        "at the end: slack, carrying, or past a tooth of its strength somewhere"
+    )
+
+
 class SlaCurve(ResultModel):
     """The events of one sense of the load."""
 
@@ -73,6 +91,7 @@ class SlaCurve(ResultModel):
         "the peak as a horizontal acceleration, where the load is an acceleration of the masses", "g"
     )
     greatest_acceleration_g: float | None = maybe("the greatest load as a horizontal acceleration, likewise", "g")
+    bars: list[BarForce] = maybe("forces of bars and ties")
     bilinear: Bilinear = maybe("idealisation of the envelope, where it has a rising branch and passed its peak")
 
 

@@ -79,7 +79,7 @@ class Ensemble(Annual):
     deviation_peak_rotation_ratio: float | None = fact("standard deviation of that ratio")
     median_peak_rotation_ratio: float | None = fact("median of that ratio")
     confidence: float = fact("level of all intervals")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
@@ -148,7 +148,7 @@ class OverLevels(Annual):
     peak_rotation_ratio_84: list[float | None] = fact("ratio that 84 % of them stay within; null: collapse")
     median_pga_g: list[float | None] = fact("median peak acceleration of the scaled motions, at each level", "g")
     confidence: float = fact("level of all intervals")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
     uplift_acceleration_g: float = fact("constant horizontal acceleration at which rocking starts", "g")
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
@@ -227,7 +227,7 @@ class OverDurations(KindResults):
     failed: int = fact("runs without a result")
     collapsed: list[int] = fact("motions that bring it down, at each")
     uplifted: list[int] = fact("motions that make it rock, at each")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
     critical_rotation_rad: float = fact("rotation from which gravity takes it down", "rad")
     initial_rotation_ratio: float = fact("rotation at the start over the critical one")
     median_pga_g: list[float | None] = fact("median peak acceleration at each duration", "g")
@@ -263,7 +263,7 @@ class Resonance(KindResults):
     peak_rotation_rad: list[float] = fact("rotation at the start and at each change of sign", "rad")
     energy_supplied_J: float = fact("work of the ground", "J")
     energy_lost_at_impacts_J: float = fact("energy lost at impacts", "J")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
     cap_ratio_for_collapse_within: dict[str, float] = maybe(
         "of a block: least cap over uplift that brings it down within so many half cycles"
     )
@@ -318,7 +318,7 @@ class HarmonicMap(KindResults):
     frequency_ratios: list[float] = fact("omega/p of the frequencies")
     lowest_overturning_amplitude_g: list[float | None] = fact("at each frequency; null where none overturns", "g")
     safe_pocket_cells: int = fact("cells of the map above a failing amplitude that are safe")
-    restitution: float = fact("rate after over before an impact")
+    restitution: float | None = fact("rate after over before an impact; null on a base that gives way")
 
     def judged(self, demand: Demand) -> Verdict:
         """The lowest amplitude of all that brings it down [g]; the map asks for no demand."""

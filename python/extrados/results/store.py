@@ -10,7 +10,7 @@ import logging
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
@@ -33,6 +33,8 @@ CSV_ROWS = 10_000  # turned into text at a time
 #: Numbers of one axis beyond which a folder is read piece by piece
 LARGE = 1_000_000
 REPORT = "report.html"
+#: Axes along which x, y and z stand
+AXES = ("axis", "axis3")
 #: What an array says of itself, in the order of Array's fields
 MARKS = ("unit", "about", "series")
 
@@ -276,11 +278,14 @@ def _write_h5(path: Path, names: list[str], results: list[Result]) -> None:
                     store.make_scale(title)
             for dim, size in _sizes(result.arrays).items():
                 if dim not in group:
-                    _dataset(group, dim, _numbers(size)).make_scale(dim)
+                    _dataset(group, dim, _along(dim, size)).make_scale(dim)
             for title, array in result.arrays.items():
                 for axis, dim in enumerate(array.dims):
                     if dim != title:
                         group[title].dims[axis].attach_scale(group[dim])
+                told = [n for dim in array.dims for n in beside(dim, result.arrays) if n != title]
+                if told and title not in beside(array.dims[0], result.arrays):
+                    group[title].attrs["coordinates"] = " ".join(told)  # as xarray and CF read them
     if isinstance(image, io.BytesIO):
         path.write_bytes(image.getbuffer())
 
@@ -301,6 +306,17 @@ def _dataset(group: Any, title: str, data: np.ndarray | Streamed) -> Any:
         shown = [printable(str(text), keep="\n") for text in data.ravel()]
         data = np.array(shown, dtype=object).reshape(data.shape).astype(h5py.string_dtype())
     return group.create_dataset(title, data=data)
+
+
+def _along(dim: str, size: int) -> np.ndarray | Streamed:
+    """Where an axis has no array of its own: x, y and z along "axis", else numbers from 0."""
+    return np.array(list("xyz"[:size]), dtype=object) if dim in AXES and size <= 3 else _numbers(size)
+
+
+def beside(dim: str, arrays: Mapping[str, Array]) -> list[str]:
+    """The arrays that say what stands along an axis: joint_name, joint_x, joint_y beside "joint"."""
+    named = (f"{dim}_{word}" for word in ("name", "x", "y", "z"))
+    return [name for name in named if name in arrays and arrays[name].dims == (dim,)]
 
 
 def _numbers(size: int) -> np.ndarray | Streamed:
@@ -385,15 +401,16 @@ class Stored:
 
     def dataset(self, analysis: str) -> Any:
         """The arrays of an analysis as an xarray.Dataset (xarray must be installed), with the coordinates that its
-        group in results.h5 has: an array where one is called as the axis, else numbers from 0."""
+        group in results.h5 has: an array where one is called as the axis, x, y, z along "axis", else numbers from 0; beside
+        "joint" and "block" their names and places."""
         import xarray
 
         arrays = self.arrays[analysis]
         return xarray.Dataset(
             {n: (a.dims, np.asarray(a.data), {"units": a.unit, "about": a.about}) for n, a in arrays.items()},
-            coords={dim: np.arange(size) for dim, size in _sizes(arrays).items() if dim not in arrays},
+            coords={dim: np.asarray(_along(dim, size)) for dim, size in _sizes(arrays).items() if dim not in arrays},
             attrs={"kind": analysis, "extrados": self.summary["extrados"]["version"]},
-        )
+        ).set_coords([name for dim in _sizes(arrays) for name in beside(dim, arrays)])
 
     @property
     def _place(self) -> str:

@@ -132,8 +132,9 @@ def write_check(checked: Checked, folder: Path) -> tuple[Path, Path]:
 
 
 def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
-    """Plan and elevations of a building with its mesh into a folder: plan.png (and .svg), under the rule of write_check."""
-    from extrados.plots.plan import Elevation, draw_plan
+    """Plan and elevations of a building with its mesh, or the mesh of a vault in space, into a folder: plan.png (and .svg),
+    under the rule of write_check."""
+    from extrados.plots.plan import Elevation, draw_plan, draw_shells
     from extrados.results import written
 
     folder = Path(os.path.abspath(folder))
@@ -146,7 +147,12 @@ def write_plan(mesh: "ShellMesh", folder: Path) -> Path:
         walls.append(Elevation(wall.name, wall.origin, end, float(part.thickness.max()), corner, part.linear))
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}.checking-", dir=folder.parent) as place:
         scratch = Path(place)
-        draw_plan(scratch, "plan", walls, mesh.levels)
+        if walls:
+            draw_plan(scratch, "plan", walls, mesh.levels)
+        else:
+            parts = [(part.name, mesh.xyz[part.connect], part.thickness) for part in mesh.parts]
+            feet = np.concatenate([mesh.xyz[foot.nodes] for foot in mesh.feet])
+            draw_shells(scratch, "plan", parts, feet)
         with written.alone(folder.parent):
             names = written.put(scratch, folder, lambda name: name.startswith("plan"))
     return folder / names["plan.png"]

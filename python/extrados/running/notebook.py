@@ -1,12 +1,7 @@
 """A run as notebooks show it: one line per analysis, and the main figure of the first that has one."""
 
-import base64
 import html
-import tempfile
-from pathlib import Path
 from typing import TYPE_CHECKING
-
-from extrados import kinds
 
 if TYPE_CHECKING:
     from extrados.running.run import Run
@@ -35,15 +30,7 @@ def _told(row: dict) -> str:
 
 def _figure(run: "Run") -> str:
     """The first figure of the first analysis that is drawn, as PNG within the page."""
-    for row in run.analyses:
-        if row["status"] != "ok" or row["kind"] not in kinds.ANALYSES or not run.arrays.get(row["name"]):
-            continue
-        with tempfile.TemporaryDirectory(prefix="extrados-") as scratch:
-            (Path(scratch) / "figures").mkdir()
-            drawn = kinds.load(kinds.ANALYSES[row["kind"]].figures)(run, row["name"], Path(scratch))
-            if not drawn:
-                continue
-            name, caption = drawn[0]
-            data = base64.b64encode((Path(scratch) / "figures" / f"{name}.png").read_bytes()).decode()
-        return f'<figure style="margin:6px 0"><img style="max-width:720px;width:100%" alt="{html.escape(caption)}" src="data:image/png;base64,{data}"><figcaption>{html.escape(caption)}</figcaption></figure>'
-    return ""
+    from extrados.plots.drawn import draw
+
+    pages = (draw(run, row["name"]).html(1) for row in run.analyses if row["status"] == "ok")
+    return next((page for page in pages if page), "")

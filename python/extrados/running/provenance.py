@@ -1,6 +1,8 @@
 """Which copy of the program computed a result."""
 
 import contextlib
+import platform
+from datetime import datetime
 from pathlib import Path
 
 from extrados._build_info import BUILD_TYPE, C_COMPILER, COMPILER, VERSION
@@ -14,6 +16,11 @@ def provenance() -> dict[str, str]:
         "compiler": f"{COMPILER}, {C_COMPILER}",
         "build_type": BUILD_TYPE,
     }
+
+
+def computed() -> dict[str, str]:
+    """When and on which machine: the end of the computation as ISO 8601 with the zone, the name of the host."""
+    return {"at": datetime.now().astimezone().isoformat(timespec="seconds"), "host": platform.node()}
 
 
 def _commit() -> str:

@@ -6,7 +6,7 @@ import signal
 import threading
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
@@ -15,7 +15,10 @@ from extrados.results import checkpoint, store
 from extrados.results.model import Result, Streamed
 from extrados.results.store import Stored
 from extrados.running.described import described
-from extrados.running.provenance import provenance
+from extrados.running.provenance import computed, provenance
+
+if TYPE_CHECKING:
+    from extrados.plots.drawn import Drawn
 
 
 class Run(Stored):
@@ -31,8 +34,13 @@ class Run(Stored):
         """The run of a deck that has been computed, the parts of its analyses after them; it has no folder yet."""
         parts = [part for result in results for part in result.parts]
         results = [*results, *parts]
+        when = computed()
         run = cls(
-            None, lambda: _head(deck, parts), store.rows(results), store.arrays_of(results), store.typed_of(results)
+            None,
+            lambda: _head(deck, parts) | {"computed": when},
+            store.rows(results),
+            store.arrays_of(results),
+            store.typed_of(results),
         )
         run.results = tuple(results)
         return run
@@ -48,6 +56,13 @@ class Run(Stored):
         from extrados.running.notebook import page_of
 
         return page_of(self)
+
+    def plot(self, analysis: str) -> "Drawn":
+        """The figures of an analysis by its name, as objects of matplotlib: a notebook shows them, `.save(folder)` writes
+        them, `["tilt-mechanism"]` is one of them. KeyError where there is no such analysis."""
+        from extrados.plots.drawn import draw
+
+        return draw(self, analysis)
 
     def write(self, folder: str | Path, figures: bool = True) -> Path:
         """Write the results into `folder`, in place of an earlier run there, and draw figures and report.

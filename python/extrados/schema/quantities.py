@@ -177,12 +177,19 @@ FlowRate = quantity("m^3/s")
 @lru_cache(maxsize=1024)
 def unit_of(model: type[BaseModel], name: str) -> str:
     """Unit of a key of a table; "" where it has none, or is a table itself."""
+    mark = mark_of(model, name)
+    return "" if mark is None else mark.si
+
+
+@lru_cache(maxsize=1024)
+def mark_of(model: type[BaseModel], name: str) -> Unit | None:
+    """What a key of a table says of its unit; None where it has none, or is a table itself."""
     field = model.model_fields.get(name)
     if field is None:
-        return ""
+        return None
     marks, places = list(field.metadata), [field.annotation]
     while places:
         place = places.pop()
         marks += getattr(place, "__metadata__", ())
         places += [p for p in get_args(place) if not isinstance(p, str)]
-    return next((mark.si for mark in marks if isinstance(mark, Unit)), "")
+    return next((mark for mark in marks if isinstance(mark, Unit)), None)

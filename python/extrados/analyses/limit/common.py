@@ -68,6 +68,7 @@ def limit_of(building: Building, options: LimitAnalysisTable, *, forces_only: bo
     """The programmes of a building's stones under its joint laws; forces_only: where no motion is asked for, so that how
     sliding dilates does not matter."""
     assembly = building.blocks()
+    building.refuse_weightless()
     try:
         return LimitAnalysis(
             assembly,
@@ -145,6 +146,17 @@ def geometry_arrays(assembly: Assembly) -> dict[str, Array]:
             "",
             "blocks on both sides, -1 the ground",
         ),
+        **named_places("joint", assembly.joint_names, 0.5 * (assembly.p + assembly.q), "middles of the joints"),
+        **named_places("block", assembly.block_names, assembly.centroid, "centroids of the blocks"),
+    }
+
+
+def named_places(dim: str, names: Sequence[str], places: np.ndarray, about: str) -> dict[str, Array]:
+    """What the places (n, 2 or 3) [m] along an axis are called and where they lie: its coordinates, by results.store.beside."""
+    found = {f"{dim}_name": Array(np.array(names, dtype=object), (dim,), "", f"names of the {dim}s")}
+    return found | {
+        f"{dim}_{axis}": Array(values, (dim,), "m", f"{axis} of the {about}")
+        for axis, values in zip("xyz", places.T, strict=False)
     }
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.common import named_places
 from extrados.analyses.limit.tables import Tilt
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND
@@ -92,6 +93,7 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
         "solid_face_start": Array(np.cumsum([0, *map(len, faces)]), ("face_edge",), "", "first vertex of each face, and the end"),
         "solid_face_block": Array(owner, ("face",), "", "stone of each face"),
         "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the stones"),
+        **named_places("block", assembly.block_names, assembly.centroid, "centroids of the stones"),
     }  # fmt: skip
 
 

@@ -13,7 +13,7 @@ from extrados.motions.supports import Shift, with_shifts
 def rocker_of(context: Context, options: RockingTable) -> Rocker:
     """The building as one rocking mechanism; its warnings go to the context."""
     refuse_movements(context)
-    rocker = context.building.rocker(options.form == "linear")
+    rocker = context.building.rocker(options.form == "linear", options.soft_base)
     context.warnings += rocker.warnings
     return rocker
 

@@ -133,7 +133,7 @@ def _variants(context: Context, options: FailureCurves) -> list[Variant]:
     names = list(dict.fromkeys(name for change in options.variants for name in change))
     for number, structure in enumerate(structures_of(context, options)):
         try:
-            rocker = building.apart().having(structure=structure).rocker(linear)
+            rocker = building.apart().having(structure=structure).rocker(linear, options.soft_base)
         except BadGeometry as error:
             key = ("analysis", "variants", number) if options.variants else error.at
             raise Refused(f"variant {number + 1}: {error}" if options.variants else str(error), key) from None
@@ -235,7 +235,7 @@ def _misfit(variants: list[Variant], curves: list[tuple[np.ndarray, np.ndarray]]
     if len(variants) < 2 or len({v.cycles for v in variants}) > 1:
         return None
     scaled = [
-        (d / v.natural, a / v.rocker.uplift) for v, (d, a) in zip(variants, curves, strict=True)
+        (d / v.natural, a / v.rocker.unit_acceleration) for v, (d, a) in zip(variants, curves, strict=True)
     ]  # fmt: skip
     worst = 0.0
     for (d0, a0), (d1, a1) in itertools.combinations(scaled, 2):

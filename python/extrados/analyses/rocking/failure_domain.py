@@ -173,10 +173,11 @@ class ShortestDurations:
     durations: np.ndarray
     settle: float
     accuracy: float
+    start_rotation: float = 0.0
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         def codes(index: np.ndarray, length: np.ndarray) -> np.ndarray:
-            mapper = Mapper(self.body, self.pulse, length.tolist(), self.settle, threads)
+            mapper = Mapper(self.body, self.pulse, length.tolist(), self.settle, threads, self.start_rotation)
             return mapper.codes(np.arange(len(length)), self.amplitudes[first + index])
 
         tried = len(self.durations)
@@ -195,12 +196,13 @@ def shortest_durations(
     accuracy: float,
     threads: int,
     context: Context | None = None,
+    start_rotation: float = 0.0,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Shortest failing duration [s] at each amplitude [m/s^2] in Mode I (or II) and in Mode II; NaN: none.
 
     With a context through the batch layer: Unfinished where some are missing.
     """
-    job = ShortestDurations(body, pulse, amplitudes, durations, settle, accuracy)
+    job = ShortestDurations(body, pulse, amplitudes, durations, settle, accuracy, start_rotation)
     found = computed(context, "shortest-durations", job, len(amplitudes), "shortest failing pulses", threads, slow=True)
     return found["mode_I"], found["mode_II"]
 
@@ -270,7 +272,7 @@ def run(context: Context, options: FailureDomain) -> Result:
         curves = failure_curves(mapper, durations, amplitudes, options.accuracy * GRAVITY)
     result = Result("failure-domain")
     names = {"mode_I": curves.mode_i, "mode_II": curves.mode_ii}
-    gamma, slender = model.uplift, model.what != "arch"
+    gamma, slender = model.unit_acceleration, model.what != "arch"
     r = out.FailureDomain(
         pulse=options.pulse,
         **{
@@ -282,7 +284,7 @@ def run(context: Context, options: FailureDomain) -> Result:
             for name, curve in names.items()
         },
         pocket_begins_g=curves.pocket / GRAVITY,
-        uplift_acceleration_g=gamma,
+        uplift_acceleration_g=model.uplift,
         restitution=model.restitution,
         natural_time_s=unit if model.what == "arch" else model.time_unit,
         safe_pockets=int((((curves.codes < MODE_I) & (curves.amplitudes > curves.mode_i[:, None])).any(axis=1)).sum()),
@@ -326,7 +328,9 @@ def _at_amplitudes(
         return {}
     at = np.array(options.at_amplitudes)
     tried = np.linspace(durations.min(), durations.max(), 200)
-    found = shortest_durations(model.body, options.pulse, at, tried, settle, options.accuracy, context.threads, context)
+    found = shortest_durations(
+        model.body, options.pulse, at, tried, settle, options.accuracy, context.threads, context, model.start_rotation
+    )
     rows = out.AtAmplitudes(amplitudes_g=at / GRAVITY, mode_I_durations_s=found[0], mode_II_durations_s=found[1])
     return {"at_amplitudes": rows}
 
@@ -335,7 +339,7 @@ def _over_uplift(durations: np.ndarray, pocket: np.ndarray, model: Rocker) -> di
     """omega/p and a/(g tan alpha), the axes of overturning spectra of blocks; `pocket` [g]."""
     return {
         "frequency_ratio": 2.0 * np.pi / durations * model.time_unit,
-        "pocket_begins_ratio": pocket / model.uplift,
+        "pocket_begins_ratio": pocket / model.unit_acceleration,
         "mode_names": "mode_I: lowest failing amplitude of either mode; below mode_II the failure comes after an impact "
         "(mode 1, with impact, of Zhang and Makris 2001); mode_II: lowest without impact (their mode 2)",
     }
@@ -350,6 +354,8 @@ def _answer(model: Rocker, options: FailureDomain, durations: np.ndarray, curves
     governing = np.nanmin(curves.mode_i) / GRAVITY
     shortest = durations[np.isfinite(curves.mode_i)].min()
     start = "hinge" if model.what == "arch" else "rock"
+    if model.restitution is None:
+        start = "lift an edge (held on)"
     below = np.isfinite(curves.mode_i) & ~(curves.mode_i >= curves.mode_ii)
     modes = (
         "Collapse after an impact (Mode I) governs where its curve lies below that of Mode II"

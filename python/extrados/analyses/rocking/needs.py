@@ -9,7 +9,7 @@ from extrados.analyses.needs import Need
 from extrados.analyses.rocking import tables
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
-from extrados.building.rockers.words import refuse_soft_base, refuse_words
+from extrados.building.rockers.words import refuse_words
 from extrados.building.structure import Structure
 
 
@@ -19,18 +19,17 @@ def needs(context: Context, options: tables.RockingTable) -> Iterator[Need]:
     if structure is None or not options.view:
         return
     stones = building.pier_blocks if structure.rocks_as == "piers" else building.blocks
-    yield stones
+    yield lambda: building.refuse_weightless(stones())
     if structure.rocks_as == "stack" and isinstance(options, tables.Rocking):
         yield functools.partial(_refuse_stack, building, options)
-        return
-    if building.supports.stiffness is not None and isinstance(options, tables.Rocking):
-        yield functools.partial(refuse_soft_base, building)
-        return
-    yield functools.partial(refuse_words, building, options.form == "linear")
-    if building.restraints:
-        from extrados.building.rockers.restraints import restraints_of
+    elif building.supports.stiffness is not None and options.soft_base:
+        yield lambda: _refuse_soft_base(building, options)
+    else:
+        yield functools.partial(refuse_words, building, options.form == "linear")
+        if building.restraints:
+            from extrados.building.rockers.restraints import restraints_of
 
-        yield from restraints_of(building, stones)
+            yield from restraints_of(building, stones)
     if building.initial.movements:
         from extrados.analyses.rocking.common import refuse_movements, shifts_of
 
@@ -55,10 +54,15 @@ def structures_of(context: Context, options: tables.FailureCurves) -> list[Struc
     return found
 
 
+def _refuse_soft_base(building: Building, options: tables.RockingTable) -> None:
+    """Refused where a base that gives way does not carry the building, or nothing but `dem` follows it there."""
+    from extrados.building.rockers.soft_base import soft_base_model
+
+    _ = soft_base_model(building, options.form == "linear").rest
+
+
 def _refuse_stack(building: Building, options: tables.Rocking) -> None:
     """Refused where two stacked blocks are asked for what `rocking` does not know of them."""
-    if options.animation != "none":
-        raise Refused("rocking draws no film of a stack: dem does", ("analysis", "animation"))
     for key in building.special_keys.values():
         raise Refused("two stacked blocks are not held by ties, dampers, hinges or a wall here: leave them out", key)
     if building.supports.stiffness is not None:

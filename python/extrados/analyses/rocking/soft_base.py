@@ -8,9 +8,9 @@ from extrados.analyses.rocking.doubts import NUDGE
 from extrados.analyses.rocking.history import LARGEST, ROOM, count, drawn_times
 from extrados.analyses.rocking.shapes import film, pictures
 from extrados.analyses.rocking.tables import Rocking
-from extrados.building.rockers.soft_base import SoftBaseModel, soft_base_model
+from extrados.building.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
 from extrados.core.rocking import FAILED, OUTCOMES, ensemble
-from extrados.core.soft_base import SoftBaseResponse, soft_base_history
+from extrados.core.soft_base import SoftBaseResponse, soft_base_history, soft_base_start
 from extrados.results import rocking as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
@@ -30,18 +30,14 @@ def run(context: Context, options: Rocking) -> Result:
         context.warnings.append(
             "the column is taken as one rigid body; joints that open are left to the analysis `dem`"
         )
-    if building.supports.damping_ratio is None:
-        context.warnings.append(
-            "the base has no damping: it gives all energy back, and bounces go on; give [supports] damping_ratio"
-        )
+    if not model.core.damping:
+        context.warnings.append(UNDAMPED)
     p = float(model.rigid.frequency.min())
     end_time = options.end_time or context.motion.end + SETTLE / p
     if end_time / options.output_step * 20 > LARGEST:
         raise Refused(f"a history of {end_time:g} s in steps of {options.output_step:g} s is too long to store")
-    critical = model.critical(1), model.critical(-1)
     ratio = building.initial.rotation_ratio
-    turned = model.rest + abs(ratio) * (critical[0 if ratio >= 0.0 else 1] - model.rest)
-    start = (turned, model.sinking(turned), 0.0, 0.0)
+    start = soft_base_start(model.core, model.turned(ratio))
     room = ROOM
 
     def rock(scale: float = 1.0) -> SoftBaseResponse:
@@ -91,7 +87,6 @@ def _result(
         sine = r.rotation if model.core.linear else np.sin(r.rotation)
         lifted = (r.sinking + far * sine < 0.0).any(axis=0)
     impacts = [t for kind, t, _ in r.events if kind == "impact"]
-    uplifts = [t for kind, t, _ in r.events if kind == "uplift"]
     end = critical[0] if r.peak[0] >= 0.0 else critical[1]
     uplift = min(model.uplift(1), model.uplift(-1))
     result = Result("rocking", status="interrupted" if r.interrupted else "ok")
@@ -102,8 +97,8 @@ def _result(
     vertical = model.periods
     result.results = out.Rocking(
         rotation_of="the block", outcome=r.outcome, settled=settled,
-        collapse_half_cycle=len(uplifts) if fell else None, collapse_time_s=r.stop_time if fell else None,
-        half_cycles=len(uplifts), impacts=sum(r.landings), impact_times_s=impacts, peak_rotation_rad=r.peak[0],
+        collapse_half_cycle=r.half_cycles if fell else None, collapse_time_s=r.stop_time if fell else None,
+        half_cycles=r.half_cycles, impacts=sum(r.landings), impact_times_s=impacts, peak_rotation_rad=r.peak[0],
         peak_rotation_ratio=float(abs(r.peak[0] / end)), peak_ground_acceleration_g=context.motion.peak / GRAVITY,
         energy_supplied_J=r.work, energy_lost_at_impacts_J=0.0,
         energy_residual_ratio=float(np.abs(energy - energy[:1] - r.ledger).max(initial=0.0)) / scale, steps=r.steps,
@@ -196,6 +191,7 @@ def _answer(
         "recovery": f"rocks and stays up: {greatest}",
         "no-hinging": f"keeps its whole base on the ground: {greatest}",
     }[r.outcome]
+    lifts = sum(kind == "uplift" for kind, _, _ in r.events)
     if not found.settled:
         said = f"still moves when the run ends at {r.stop_time:.2f} s: the outcome is open. So far {greatest}"
     assert found.soft_base is not None
@@ -208,7 +204,7 @@ def _answer(
         }[rigid[0]]
     word = context.building.structure.word if context.building.structure is not None else "block"
     return (
-        f"On its base that gives way the {word} {said}; {count(found.half_cycles, 'time')} an edge lifts (peak ground "
+        f"On its base that gives way the {word} {said}; {count(lifts, 'time')} an edge lifts (peak ground "
         f"acceleration {context.motion.peak / GRAVITY:.3f} g; held on, {found.uplift_acceleration_g:.3f} g lift an edge and "
         f"{found.soft_base.capacity_g:.3f} g overturn it).{rigidly}"
     )

@@ -13,25 +13,38 @@ from extrados.schema.table import key
 
 #: What a rocking structure may be held by
 HOLDS = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
+#: What says of [supports] stiffness how the base gives way
+SOFT_BASE = ("[supports] foundation", "[supports] damping_ratio")
 
 
 class RockingTable(BuildingAnalysis):
-    """What all analyses by the single-degree-of-freedom mechanism ask."""
+    """What all analyses by the single-degree-of-freedom mechanism ask; soft_base: whether they follow a block on a base that
+    gives way, too."""
 
     view: ClassVar = "rocker"
     uses: ClassVar = ("material.density", "joints.restitution", "joints.friction", "initial.rotation_ratio")
     method: ClassVar = {"joints.friction": NO_SLIDING}
     bears: ClassVar = HOLDS
+    soft_base: ClassVar = False
     form: Literal["nonlinear", "linear"] = key(
         "nonlinear", "full equations, or the linear form of slender blocks", source="Housner 1963"
     )
+
+    def rests_on(self, building: Building) -> dict[str, str | None]:
+        """On a base that gives way the impact follows from it."""
+        found = super().rests_on(building)
+        if self.soft_base and building.supports.stiffness is not None:
+            del found["joints.restitution"]
+            found |= {f"supports.{key}": None for key in ("stiffness", "foundation", "damping_ratio")}
+        return found
 
 
 class Rocking(RockingTable, Animated):
     """Rocking of the single-degree-of-freedom mechanism, impacts and all, until collapse, rest or end time."""
 
     kind: Literal["rocking"]
-    bears: ClassVar = (*HOLDS, "[supports] foundation", "[supports] damping_ratio")
+    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    soft_base: ClassVar = True
     needs_motion: ClassVar = True
     end_time: Time | None = key(None, "when to stop; default the end of the motion and some time after", gt=0)
     output_step: Time = key(0.005, "spacing of the history", gt=0)
@@ -40,19 +53,13 @@ class Rocking(RockingTable, Animated):
         [], "draw the structure and its thrust line at these times", max_length=24
     )
 
-    def rests_on(self, building: Building) -> dict[str, str | None]:
-        """On a base that gives way the impact follows from it."""
-        found = super().rests_on(building)
-        if building.supports.stiffness is not None:
-            del found["joints.restitution"]
-            found |= {f"supports.{key}": None for key in ("stiffness", "foundation", "damping_ratio")}
-        return found
-
 
 class FailureDomain(RockingTable):
     """Which pulses bring an arch or a block down: Mode I (after an impact) and Mode II (without impact)."""
 
     kind: Literal["failure-domain"]
+    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    soft_base: ClassVar = True
     pulse: Literal["step", "sine", "half-sine", "rectangular", "cosine", "ricker"] = key(
         "step", "step pulse of duration t_p, one sine of period T_p, or another shape of `pulse`", source="thesis 5.2.3"
     )
@@ -71,6 +78,8 @@ class FailureCurves(RockingTable):
     """Failure curves of several structures, or of trains of sines, in one picture with the primary impulses of the motions."""
 
     kind: Literal["failure-curves"]
+    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    soft_base: ClassVar = True
     variants: list[dict[str, float | str]] = key(
         [],
         "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure as it is",

@@ -1,11 +1,13 @@
 """A building of shells and the options of its deck made into a model of the core: freedoms, groups, nodal forces."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from extrados.analyses.context import Refused
-from extrados.analyses.shell.tables import Pushover
+from extrados.analyses.shell.tables import Pushover, Settlement
+from extrados.analyses.sla.events import Curve
+from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.model import POINTS_PER_THREAD, bands_of, crushing_of, hills_of, laws_of, softening_of
 from extrados.building.errors import BadGeometry
 from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellPart
@@ -36,10 +38,23 @@ class ShellModel:
     mechanism_ratio: float
     acceleration: float | None = None  # of the reference load, where it is one of masses alone [m/s^2]
     slides = False
-    driven = False  # supports do not move
-    already = 0.0
-    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # of the supports that go down [m]
+    bars = ()  # whose forces would be followed
+    already: float = 0.0  # reference load that stages before have left on [N]
+    grounds: dict["Ground", int] = field(default_factory=dict)  # ground that may give way: which of what may move it is
+    settled: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each has, with the weight [m]
+    stands: np.ndarray = field(default_factory=lambda: np.empty(0))  # how far each has at the start of a stage [m]
+    rate: np.ndarray = field(default_factory=lambda: np.empty(0))  # and goes on to with the multiplier, in a stage [m]
     warnings: list[str] = field(default_factory=list)
+
+    @property
+    def driven(self) -> bool:
+        """Whether the multiplier moves supports."""
+        return bool(self.rate.any())
+
+    @property
+    def watched(self) -> list[core.Monitor]:
+        """What is recorded at each event."""
+        return [self.control]
 
     def open(self, options: Pushover, threads: int) -> core.Model:
         """The model in the core; Refused names a free node or a bad element."""
@@ -57,6 +72,22 @@ class ShellModel:
             ) from None
         except core.BadElement as error:
             raise Refused(str(error)) from None
+
+    def borne(self, options: Pushover, curve: Curve, state: State, threads: int) -> np.ndarray:
+        """What each ground bears in a state [N], in the direction in which it may give way."""
+        moved = self.stands + state.load * self.rate if len(self.rate) else self.stands
+        constant, reference = self.constant, self.reference * (1 if curve.name else curve.sign)
+        with self.open(options, threads) as core_model:
+            core_model.set_damage(state.damage)
+            core_model.supports(moved, np.zeros(len(moved)))
+            load = constant + state.load * reference
+            core_model.loads(load, np.zeros_like(load), carried=True)
+            inner = core_model.reactions()[:, 0]
+        # What acts on the support itself the ground bears too
+        equation = self.freedoms.equation - (int(self.freedoms.equation.max()) + 1 - len(moved))
+        own = np.zeros(len(moved))
+        np.add.at(own, equation[equation >= 0], (self.freedoms.factor * load)[equation >= 0])
+        return own - inner
 
     def places(self) -> list[tuple[ShellPart, slice, int]]:
         """Parts that bend, the points of each, and the layers: its points are (elements, places, layers)."""
@@ -86,11 +117,11 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     ties, groups, axes = [], [], []
     if options.drives:
         ties.append(_tie(mesh, options, along, held))
-    down, settled = _settlements(mesh, options, held)
-    freedoms = core.Freedoms.make(len(mesh.xyz), sorted(held), [*down, *ties], of_node=6)
-    if down:  # those of the supports that move come last
+    moved, grounds = _grounds(mesh, options, held)
+    freedoms = core.Freedoms.make(len(mesh.xyz), sorted(held), [*moved, *ties], of_node=6)
+    if moved:  # those of the supports that move come last
         count, number = int(freedoms.equation.max()) + 1, freedoms.equation
-        freedoms = core.Freedoms(np.where(number < 0, -1, (number - len(down)) % count), freedoms.factor, len(down))
+        freedoms = core.Freedoms(np.where(number < 0, -1, (number - len(moved)) % count), freedoms.factor, len(moved))
     for part in mesh.parts:
         own = core.shell_axes(mesh.xyz, part.connect)
         axes.append(own)
@@ -134,19 +165,32 @@ def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
         weight,
         axes,
         options.mechanism_ratio,
-        settled=settled,
+        grounds=grounds,
+        settled=how_far(mesh, grounds, options.settlements),
     )
+    model.stands = model.settled
     if options.drives:
         node, direction, share = max(ties[0], key=lambda term: abs(term[2]))
         reference[node, direction] = 1.0 / share  # a unit of force on the displacement they share
     else:
-        reference[:, :3] = GRAVITY * (mass * _pattern(model, options, mass))[:, None] * along
+        reference[:] = mass_push(model, options, options.direction)[0]
         if options.pattern == "mass":
             acceleration = GRAVITY
         model.unit = float(np.abs(reference[:, :3] @ along).sum())
     model.acceleration = acceleration
     model.warnings += mesh.warnings
     return model
+
+
+def mass_push(model: ShellModel, options: Pushover, direction: float) -> tuple[np.ndarray, np.ndarray]:
+    """Nodal forces (nodes, 6) [N] of a push by the pattern in a direction on the plan [deg], and its unit vector."""
+    angle = np.radians(direction)
+    along = np.array([np.cos(angle), np.sin(angle), 0.0])
+    along[np.abs(along) < 1e-12] = 0.0
+    mass, force = model.mesh.mass(), np.zeros((len(model.mesh.xyz), 6))
+    model = replace(model, along=along)
+    force[:, :3] = GRAVITY * (mass * _pattern(model, options, mass))[:, None] * along
+    return force, along
 
 
 def _level_of(mesh: ShellMesh, storey: int, what: str) -> float:
@@ -164,7 +208,8 @@ def nodes_on(mesh: ShellMesh, wall: int, level: float) -> np.ndarray:
 def _place(mesh: ShellMesh, drive, what: str) -> np.ndarray:
     names = [wall.name for wall in mesh.walls]
     if drive.wall not in names:
-        raise BadGeometry(f"{what}: there is no wall '{drive.wall}'; there are {', '.join(names)}")
+        there = f"there are {', '.join(names)}" if names else "it has none"
+        raise BadGeometry(f"{what}: there is no wall '{drive.wall}'; {there}")
     nodes = nodes_on(mesh, names.index(drive.wall), _level_of(mesh, drive.storey, what))
     if not len(nodes):
         raise BadGeometry(f"{what}: wall '{drive.wall}' does not reach the top of storey {drive.storey}")
@@ -187,27 +232,76 @@ def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> li
     return [(n, axis, share) for n, share in sorted(tie.items())]
 
 
-def _settlements(
+@dataclass(frozen=True)
+class Ground:
+    """Ground under a foot, or a part of it, that gives way in one direction."""
+
+    foot: int  # of the mesh
+    way: str  # "down" or "out"
+    x: tuple[float, float] | None = None  # along the foot [m]
+
+
+def _feet_of(mesh: ShellMesh, settlement: Settlement, what: str) -> list[int]:
+    names = [foot.name for foot in mesh.feet]
+    if settlement.foot == "all":
+        return list(range(len(names)))
+    if settlement.place not in names:
+        word = "wall" if settlement.foot is None else "foot"
+        raise BadGeometry(f"{what}: there is no {word} '{settlement.place}'; there are {', '.join(names)}")
+    return [names.index(settlement.place)]
+
+
+def _grounds(
     mesh: ShellMesh, options: Pushover, held: set
-) -> tuple[list[list[tuple[int, int, float]]], np.ndarray]:
-    """Freedoms of the supports that go down, by settlement, and how far [m]; they are held no longer."""
-    ties, far = [], []
-    names = [wall.name for wall in mesh.walls]
-    for k, part in enumerate(options.settlements, 1):
-        if part.wall not in names:
-            raise BadGeometry(f"settlements {k}: there is no wall '{part.wall}'; there are {', '.join(names)}")
-        w = names.index(part.wall)
-        nodes = nodes_on(mesh, w, 0.0)
-        along = mesh.walls[w].unfolded(mesh.xyz[nodes])[:, 0]
-        low, high = part.x or (-np.inf, np.inf)
-        inside = nodes[(along >= low - 1e-6) & (along <= high + 1e-6)]
-        free = [(int(n), 2, 1.0) for n in inside if (int(n), 2) in held]
+) -> tuple[list[list[tuple[int, int, float]]], dict[Ground, int]]:
+    """Freedoms of the supports that may move, by ground; they are held no longer. Of a vault all may: what they bear is asked
+    for."""
+    asked: dict[Ground, str] = (
+        {} if mesh.walls else {Ground(f, way): "" for f in range(len(mesh.feet)) for way in ("out", "down")}
+    )
+    every = [(f"settlements {k}", part) for k, part in enumerate(options.settlements, 1)]
+    for number, stage in enumerate(options.stages, 1):
+        every += [(f"stages {number}, settlements {k}", part) for k, part in enumerate(stage.settlements, 1)]
+    for what, part in every:
+        x = None if part.x is None else (part.x[0], part.x[1])
+        for foot in _feet_of(mesh, part, what):
+            for way in ("down", "out"):
+                if getattr(part, way):
+                    asked.setdefault(Ground(foot, way, x), what)
+    ties, grounds = [], {}
+    for ground, what in asked.items():
+        foot = mesh.feet[ground.foot]
+        low, high = ground.x or (-np.inf, np.inf)
+        inside = np.flatnonzero((foot.along >= low - 1e-6) & (foot.along <= high + 1e-6))
+        free = [
+            (int(foot.nodes[i]), d, share)
+            for i in inside
+            for d, share in (((2, -1.0),) if ground.way == "down" else enumerate(foot.out[i, :2].tolist()))
+            if abs(share) > 1e-9 and (int(foot.nodes[i]), d) in held
+        ]
+        if not free and not what:
+            continue  # it is not held that way
         if not free:
-            raise BadGeometry(f"settlements {k}: no support of wall '{part.wall}' lies there that holds it upright")
-        held -= {(n, 2) for n, *_ in free}
+            word = "wall" if mesh.walls else "foot"
+            raise BadGeometry(
+                f"{what}: no support of {word} '{foot.name}' lies there that holds it {'upright' if ground.way == 'down' else 'across'}"
+            )
+        held -= {(n, d) for n, d, _ in free}
+        grounds[ground] = len(ties)
         ties.append(free)
-        far.append(-part.down)
-    return ties, np.array(far)
+    return ties, grounds
+
+
+def how_far(mesh: ShellMesh, grounds: dict[Ground, int], settlements: list[Settlement]) -> np.ndarray:
+    """How far each ground goes by some settlements [m]."""
+    far = np.zeros(len(grounds))
+    for part in settlements:
+        x = None if part.x is None else (part.x[0], part.x[1])
+        for foot in _feet_of(mesh, part, "settlements"):
+            for way in ("down", "out"):
+                if getattr(part, way):
+                    far[grounds[Ground(foot, way, x)]] += getattr(part, way)
+    return far
 
 
 def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> core.Monitor:
@@ -217,8 +311,9 @@ def _control(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -
     elif options.drives:
         nodes = np.unique(np.concatenate([_place(mesh, d, "drives") for d in options.drives if d.ratio == 1.0]))
     else:
-        nodes = np.unique(np.concatenate([nodes_on(mesh, w, mesh.levels[-1]) for w in range(len(mesh.walls))]))
-    if not len(nodes):
+        tops = [nodes_on(mesh, w, mesh.levels[-1]) for w in range(len(mesh.walls))]
+        nodes = np.unique(np.concatenate(tops)) if tops else np.empty(0, dtype=int)
+    if not len(nodes) and mesh.walls:
         raise BadGeometry("control: no wall reaches the highest level; name a wall and a storey")
     axis = np.flatnonzero(along)
     if options.control is None and all((int(n), int(d)) in held for n in nodes for d in axis):

@@ -1,4 +1,4 @@
-"""pushover: a building of walls and floors under growing horizontal forces (thesis 4.4)."""
+"""pushover: a building of walls and floors, or a vault, under growing horizontal forces (thesis 4.4)."""
 
 import time
 from collections.abc import Callable
@@ -8,17 +8,20 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import Chain
-from extrados.analyses.context import Context
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
-from extrados.analyses.shell.sections import Section, cracks, drifts, point_places, sections
+from extrados.analyses.shell.sections import Section, cracks, drifts, place_axes, point_places, sections
+from extrados.analyses.shell.stages import run_stages
 from extrados.analyses.shell.tables import Pushover, Variant
 from extrados.analyses.sla.events import Curve, run_curves
 from extrados.analyses.sla.kept import State
 from extrados.analyses.sla.measures import numbers_of
 from extrados.analyses.sla.stored import events_of_curve
 from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
 from extrados.core.calls import interruptible
-from extrados.core.sla import EVENT
+from extrados.core.sla import EVENT, Shells
 from extrados.results import shell as out
 from extrados.results.model import Array, Result, TableData
 from extrados.results.sla import PREFIXES
@@ -38,18 +41,21 @@ def _run(context: Context, options: Pushover) -> Result:
     result = Result("pushover")
     model = build(context.building.shell(options.mesh), options)
     context.warnings += model.warnings
+    if not any(g.tension is not None for g in model.groups if isinstance(g, Shells)):
+        context.warnings.append("nothing of it can crack: [material] has no tensile_strength, or no fracture_energy")
     elastic = _elastic(model, options)
-    curves = _curves(context, model, options)
     numbers: dict[str, Any] = {}
-    for curve, prefix in zip(curves, PREFIXES, strict=False):
-        own = _numbers(model, options, curve, elastic)
-        if prefix:
-            numbers["minus"] = own
-        else:
-            numbers |= own
-        result.warnings += [*curve.warnings, *_remarks(model, curve)]
-        events_of_curve(result, model.unit, curve, prefix)
-        _state_arrays(result, model, curve, prefix)
+    if options.stages:
+        curves, numbers = _stages(context, result, model, options, elastic)
+    else:
+        curves = _curves(context, model, options)
+        for curve, prefix in zip(curves, PREFIXES, strict=False):
+            own = _numbers(context, model, options, curve, elastic)
+            if prefix:
+                numbers["minus"] = own
+            else:
+                numbers |= own
+            _describe(result, model, curve, prefix)
     _mesh_arrays(result, model)
     first = curves[0]
     numbers |= {
@@ -63,6 +69,8 @@ def _run(context: Context, options: Pushover) -> Result:
     interrupted = any(c.events.interrupted for c in curves)
     if options.variants and not interrupted:
         numbers |= _variants(context, options, result, numbers)
+    if options.frame is not None:
+        numbers["frame"] = _frame(context, result, model, options, elastic)
     result.results = out.Pushover(**numbers)
     result.answer = _answer(context.building, options, numbers)
     if interrupted:
@@ -71,7 +79,58 @@ def _run(context: Context, options: Pushover) -> Result:
     return result
 
 
+def _describe(result: Result, model: ShellModel, curve: Curve, prefix: str) -> None:
+    """Warnings, arrays, tables and files of a curve."""
+    result.warnings += [*curve.warnings, *_remarks(model, curve)]
+    events_of_curve(result, model.unit, curve, prefix)
+    _state_arrays(result, model, curve, prefix)
+
+
+def _stages(
+    context: Context, result: Result, model: ShellModel, options: Pushover, elastic: dict[str, Any]
+) -> tuple[list[Curve], dict[str, Any]]:
+    """The curves of all stages, the main one first; the numbers of that one, those of each in `stages`."""
+    staged = run_stages(
+        model, options, context.threads, _progress(context, model, options), _chains(context, model, options)
+    )
+    main = min(options.main, len(staged) - 1)
+    if main != options.main:
+        result.warnings.append(f"the numbers are those of stage {options.stage_names[main]}, the last that began")
+    if {stage.sense for stage in options.stages if not stage.settlements} == {"+", "-"} and not options.crack_closure:
+        result.warnings.append(
+            "cracks stay open where the push turns: what one sense has opened carries no pressure in the other; let "
+            "crack_closure = true shut them"
+        )
+    rows, numbers = [], {}
+    for k, (own, curve) in enumerate(staged):
+        prefix = "" if k == main else f"stage_{k + 1}_"
+        found = _numbers(
+            context, own, options.model_copy(update={"probes": [] if prefix else options.probes}), curve, elastic
+        )
+        _describe(result, own, curve, prefix)
+        force = curve.force(own.unit)
+        rows.append(
+            found
+            | {
+                "name": options.stage_names[k], "prefix": prefix, "of": "settlement" if own.driven else "push",
+                "start_load_N": curve.already, "end_load_N": float(force[-1]) if len(force) else None,
+            }
+        )  # fmt: skip
+        if not prefix:
+            numbers = dict(found)
+    numbers["stages"] = rows
+    curves = [curve for _, curve in staged]
+    return [curves[main], *(c for k, c in enumerate(curves) if k != main)], numbers
+
+
 def _curves(context: Context, model: ShellModel, options: Pushover) -> list[Curve]:
+    return run_curves(
+        model, options, context.threads, _progress(context, model, options), None, _chains(context, model, options)
+    )
+
+
+def _chains(context: Context, model: ShellModel, options: Pushover) -> Callable[[Any], Chain]:
+    """Where the states of a curve are kept on its way."""
     made = [
         np.concatenate([p.connect.ravel() for p in model.mesh.parts]), model.mesh.xyz, model.constant, model.reference,
     ]  # fmt: skip
@@ -81,15 +140,22 @@ def _curves(context: Context, model: ShellModel, options: Pushover) -> list[Curv
     def chain(of: Any) -> Chain:
         return Chain(context, "pushover", [options, of, model.freedoms, *made, materials, *thickness])
 
-    return run_curves(model, options, context.threads, _progress(context, model, options), None, chain)
+    return chain
 
 
 def _progress(context: Context, model: ShellModel, options: Pushover) -> Callable[[float, float, str], None]:
     """Progress by base shear over the weight, and how long the events that are allowed would take."""
-    begin = time.perf_counter()
+    begun: list[tuple[float, float]] = []  # when the first batch ended, and its events: what came before is no event
 
     def tell(done: float, total: float, text: str) -> None:
-        left = (time.perf_counter() - begin) * max(total - done, 0.0) / max(done, 1.0)
+        now = time.perf_counter()
+        if not begun or done <= begun[0][1]:
+            begun[:] = [(now, done)]
+            context.progress(
+                done, total, f"{text}; {model.weight / 1e3:.4g} kN weight, {model.mesh.elements()} elements"
+            )
+            return
+        left = (now - begun[0][0]) / (done - begun[0][1]) * max(total - done, 0.0)
         hours = f"{left / 3600:.1f} h" if left > 5400 else f"{left / 60:.0f} min" if left > 90 else f"{left:.0f} s"
         context.progress(done, total, f"{text}; {model.weight / 1e3:.4g} kN weight; at most {hours} more")
 
@@ -103,7 +169,7 @@ def _elastic(model: ShellModel, options: Pushover) -> dict[str, Any]:
         under, more = core_model.report(0.0), core_model.report(1.0)
         bytes_of = 8 * core_model.factor_values
     constant, both = sections(model, under), sections(model, more)
-    return {"constant": constant, "pushed": both, "bytes": bytes_of}
+    return {"constant": constant, "pushed": both, "bytes": bytes_of, "unit": model.unit, "under": under}
 
 
 def _by_wall(model: ShellModel, found: list[Section]) -> tuple[np.ndarray, np.ndarray]:
@@ -116,14 +182,16 @@ def _by_wall(model: ShellModel, found: list[Section]) -> tuple[np.ndarray, np.nd
     return shear, normal
 
 
-def _numbers(model: ShellModel, options: Pushover, curve: Curve, elastic: dict[str, Any]) -> dict[str, Any]:
+def _numbers(
+    context: Context, model: ShellModel, options: Pushover, curve: Curve, elastic: dict[str, Any]
+) -> dict[str, Any]:
     """Results of one curve."""
     numbers = numbers_of(model, options, curve)
-    state = next((s for s in curve.states if s.event == curve.peak), None)
+    state = shown_state(model, curve)
     force = curve.force(model.unit)
     greatest = numbers["greatest_load_N"]
     numbers |= {
-        "base_shear_coefficient": None if greatest is None else greatest / model.weight, "roof_drift": None,
+        "base_shear_coefficient": None if greatest is None or model.driven else greatest / model.weight, "roof_drift": None,
         "storey_drifts": [], "walls": [], "cracked_points_by_storey": [],
     }  # fmt: skip
     crack = _first_crack(model, curve)
@@ -132,13 +200,21 @@ def _numbers(model: ShellModel, options: Pushover, curve: Curve, elastic: dict[s
     if state is None:
         return numbers
     base = float(force[state.event])
-    height = float(model.mesh.xyz[model.control.node, 2].mean())
-    numbers["roof_drift"] = numbers["greatest_load_displacement_m"] / height
+    seen = cracks(model, state.report)["part"] > 0.0
+    storey = point_places(model)["storey"]
+    numbers["cracked_points_by_storey"] = np.bincount(storey[seen], minlength=len(model.mesh.levels))[1:].tolist()
+    if not model.mesh.walls:
+        numbers["feet"] = _feet(context, model, options, curve, state)
+        return numbers
+    if not model.driven:
+        height = float(model.mesh.xyz[model.control.node, 2].mean())
+        numbers["roof_drift"] = numbers["greatest_load_displacement_m"] / height
     every, walls = drifts(model, state.displacement, curve.sign)
     numbers["storey_drifts"] = every.tolist()
     shear, normal = _by_wall(model, sections(model, state.report))
     shear0, normal0 = _by_wall(model, elastic["constant"])
     shear1, _ = _by_wall(model, elastic["pushed"])
+    base = 0.0 if model.driven else base
     # Forces of a section are those of what is above on what is below
     facing = np.array([float(wall.along @ model.along[:2]) for wall in model.mesh.walls])
     carried = curve.sign * shear * facing
@@ -146,7 +222,7 @@ def _numbers(model: ShellModel, options: Pushover, curve: Curve, elastic: dict[s
         {
             "wall": wall.name, "shear_N": float(carried[w]), "share": float(carried[w] / base) if base else 0.0,
             "normal_N": float(normal[w]), "normal_change_N": float(normal[w] - normal0[w]),
-            "elastic_share": float((shear1[w] - shear0[w]) * facing[w] / model.unit), "drifts": walls[w].tolist(),
+            "elastic_share": float((shear1[w] - shear0[w]) * facing[w] / elastic["unit"]), "drifts": walls[w].tolist(),
         }
         for w, wall in enumerate(model.mesh.walls)
     ]  # fmt: skip
@@ -158,10 +234,24 @@ def _numbers(model: ShellModel, options: Pushover, curve: Curve, elastic: dict[s
             "share": float(1.0 - carried[~across].sum() / base), "uplift_N": up, "pressure_N": down,
             "working": max(up, down) > WORKING * model.weight,
         }  # fmt: skip
-    seen = cracks(model, state.report)["part"] > 0.0
-    storey = point_places(model)["storey"]
-    numbers["cracked_points_by_storey"] = np.bincount(storey[seen], minlength=len(model.mesh.levels))[1:].tolist()
     return numbers
+
+
+def shown_state(model: ShellModel, curve: Curve) -> State | None:
+    """The state that stands for a curve: of the greatest load, where supports move the last."""
+    if model.driven:
+        return curve.states[-1] if curve.states else None
+    return next((s for s in curve.states if s.event == curve.peak), None)
+
+
+def _feet(context: Context, model: ShellModel, options: Pushover, curve: Curve, state: State) -> list[dict[str, Any]]:
+    """What each foot of a vault bears in a state: thrust outward and weight."""
+    borne = model.borne(options, curve, state, context.threads)
+    by = {(ground.foot, ground.way): borne[k] for ground, k in model.grounds.items() if ground.x is None}
+    return [
+        {"foot": foot.name, "thrust_N": float(by.get((f, "out"), 0.0)), "vertical_N": float(by.get((f, "down"), 0.0))}
+        for f, foot in enumerate(model.mesh.feet)
+    ]
 
 
 def _first_crack(model: ShellModel, curve: Curve) -> dict[str, Any] | None:
@@ -185,24 +275,49 @@ def _place_of(model: ShellModel, point: int) -> dict[str, Any] | None:
     for part, points, layers in model.places():
         if points.start <= point < points.stop:
             k = place + (point - points.start) // layers
+            at = place_axes(model)["xyz"][k]
+            where = {"wall": part.name, "storey": int(places["storey"][k]), "place_m": at.tolist()}
             if part.wall < 0:
-                return None
-            return {
-                "wall": part.name, "storey": int(places["storey"][k]), "along_m": float(places["s"][k]),
-                "height_m": float(places["z"][k]),
-            }  # fmt: skip
+                return where | {"height_m": float(at[2] - model.mesh.levels[0])}
+            return where | {"along_m": float(places["s"][k]), "height_m": float(places["z"][k])}
         place += (points.stop - points.start) // layers
     return None
 
 
 def _remarks(model: ShellModel, curve: Curve) -> list[str]:
-    events, sense = curve.events, f" (push to {curve.sense})"
+    events, sense = curve.events, f" (stage {curve.name})" if curve.name else f" (push to {curve.sense})"
+    if model.driven or (curve.name and events.reason == "target load"):
+        return []  # a stage that ends where it is told to
     if curve.peak >= 0 and not events.interrupted and not curve.passed(model.unit):
         return [
             f"the base shear{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; "
             f"its greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
         ]
     return []
+
+
+def _frame(
+    context: Context, result: Result, model: ShellModel, options: Pushover, elastic: dict[str, Any]
+) -> list[dict[str, Any]]:
+    """What the formulas of codes say of the piers; all of them as a table."""
+    plan, rules = context.building.structure, options.frame
+    assert rules is not None
+    if not isinstance(plan, Plan):
+        raise Refused("frame: piers are of a building of walls on a plan", ("analysis", "frame"))
+    if options.drives:
+        raise Refused("frame: how the push goes to the storeys is not known of drives", ("analysis", "frame"))
+    strength = rules.compressive_strength or context.building.material.compressive_strength
+    if strength is None:
+        raise Refused(
+            "frame: the formulas of piers need compressive_strength (f_m), there or in [material]",
+            ("analysis", "frame"),
+        )
+    found, rows = capacities(model, plan, rules, strength, elastic["under"])
+    result.tables["frame"] = TableData(
+        {name: [row[name] for row in rows] for name in rows[0]},
+        {"from": "m", "to": "m", "height": "m", "load": "N", "FEMA 356": "N", "NTC 2018": "N"},
+    )
+    return found
 
 
 def _variants(context: Context, options: Pushover, result: Result, numbers: dict[str, Any]) -> dict[str, Any]:
@@ -252,6 +367,16 @@ def _varied(building: Building, variant: Variant) -> Building:
         return of.model_copy(update=scaled)
 
     plan = building.structure
+    changed = replace(
+        building, material=material(building.material),
+        materials={name: material(of) for name, of in building.materials.items()}, _views={},
+    )  # fmt: skip
+    if not isinstance(plan, Plan):
+        if variant.floors != 1.0 or variant.prestress != 1.0:
+            raise Refused(
+                f"variant '{variant.name}': a structure of kind '{plan.kind}' has no floors and no forces on walls"
+            )
+        return changed.having(structure=plan.model_copy(update={"thickness": variant.thickness * plan.thickness}))
     walls = [
         wall.model_copy(
             update={
@@ -265,11 +390,7 @@ def _varied(building: Building, variant: Variant) -> Building:
     prestress = [
         p.model_copy(update={"force": p.force * variant.prestress}) for p in plan.prestress if variant.prestress > 0.0
     ]
-    return replace(
-        building, material=material(building.material),
-        materials={name: material(of) for name, of in building.materials.items()},
-        structure=plan.model_copy(update={"walls": walls, "floors": floors, "prestress": prestress}), _views={},
-    )  # fmt: skip
+    return changed.having(structure=plan.model_copy(update={"walls": walls, "floors": floors, "prestress": prestress}))
 
 
 def _mesh_arrays(result: Result, model: ShellModel) -> None:
@@ -282,11 +403,20 @@ def _mesh_arrays(result: Result, model: ShellModel) -> None:
             part.connect, (f"elements_of_{k}", f"corner_{corner}"), "", f"nodes of {part.name}, from 0", "elements"
         )
         result.arrays[f"wall_of_{k}"] = Array(
-            np.array([part.wall]), ("one",), "", f"the wall that {part.name} is of, from 0; -1 a floor", "wall_of"
+            np.array([part.wall]), ("one",), "", f"the wall that {part.name} is of, from 0; -1 none", "wall_of"
         )
-    walls = np.array([[*w.origin, *w.along, w.length] for w in mesh.walls])
+        result.arrays[f"bends_{k}"] = Array(
+            np.array([int(part.bends)]), ("one",), "", f"whether {part.name} bends; a floor does not", "bends"
+        )
+    walls = np.array([[*w.origin, *w.along, w.length] for w in mesh.walls]).reshape(-1, 5)
     result.arrays["wall"] = Array(walls, ("walls", "wall_row"), "m", "origin and direction on the plan, and length")
     result.arrays["level"] = Array(mesh.levels, ("levels",), "m", "heights of the ground and the storeys")
+    if not mesh.walls:
+        for name, values in place_axes(model).items():
+            unit = "m" if name == "xyz" else ""
+            result.arrays[f"place_{name}"] = Array(
+                values, ("places", "axis"), unit, f"of the places in the shells: {name}"
+            )
     for name, values in point_places(model).items():
         unit = "m" if name in "sz" else ""
         result.arrays[f"place_{name}"] = Array(values, ("places",), unit, f"of the places in the walls: {name}")
@@ -307,6 +437,7 @@ def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) 
     for name, unit, about in (
         ("width", "m", "greatest width of a crack through the thickness"), ("angle", "rad", "of its normal to the wall"),
         ("part", "", "part of the thickness that has cracked"),
+        ("side", "", "where through the thickness it is widest, from -1 to 1 on the side of the normal"),
     ):  # fmt: skip
         result.arrays[f"{prefix}state_{name}"] = Array(
             np.stack([s[name] for s in seen]), (*dims, "places"), unit, about
@@ -317,6 +448,8 @@ def _state_arrays(result: Result, model: ShellModel, curve: Curve, prefix: str) 
 
 def _pier_table(result: Result, model: ShellModel, curve: Curve, states: list[State], prefix: str) -> None:
     state = next((s for s in states if s.event == curve.peak), states[-1])
+    if not model.mesh.walls:
+        return
     rows = sections(model, state.report)
     result.tables[f"piers_{prefix}".rstrip("_")] = TableData(
         {
@@ -351,44 +484,84 @@ def _fields(
 
 
 def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> str:
+    word = "building" if building.structure is None else building.structure.word
     parts = []
+    if "stages" in numbers:
+        ends = [_stage_told(stage) for stage in numbers["stages"]]
+        parts.append(f"Stages, each with the damage of those before: {'; '.join(ends)}.")
     for curve in [numbers, *([numbers["minus"]] if "minus" in numbers else [])]:
-        load = curve["greatest_load_N"]
-        sense = f"Pushed to {curve['sense']} ({options.direction:g} degrees on the plan)"
-        if load is None:
-            parts.append(f"{sense}: no state in equilibrium was found.")
-            continue
-        word = "bears" if curve["peak_load_N"] is not None else "has reached, without a peak,"
-        text = (
-            f"{sense} the building {word} a base shear of {load / 1e3:.4g} kN, "
-            f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
-        )
-        if curve["roof_drift"] is not None:
-            text += f", at a drift of {100 * curve['roof_drift']:.2g} %"
-        if "first_crack" in curve:
-            crack = curve["first_crack"]
-            text += (
-                f"; it cracks first in wall {crack['wall']}, storey {crack['storey']}, {crack['along_m']:.3g} m along and "
-                f"{crack['height_m']:.3g} m up, under {crack['base_shear_N'] / 1e3:.3g} kN"
-            )
-        if any(r["share"] > 0.02 for r in curve["walls"]):
-            most = sorted(curve["walls"], key=lambda row: -row["share"])[:4]
-            text += "; " + ", ".join(
-                f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02
-            )
-        if "flanges" in curve:
-            flanges = curve["flanges"]
-            text += (
-                f"; walls across the push {'work as flanges' if flanges['working'] else 'hardly work with them'} "
-                f"({flanges['uplift_N'] / 1e3:.3g} kN up, {flanges['pressure_N'] / 1e3:.3g} kN down)"
-            )
-        parts.append(text + ".")
+        parts.append(_curve_told(options, numbers, curve, word))
     if numbers.get("band_N"):
         low, high = numbers["band_N"]
         parts.append(
             f"Under the other assumptions of {len(numbers['variants'])} variants it is {low / 1e3:.4g} to {high / 1e3:.4g} kN."
         )
+    if "frame" in numbers:
+        words = [
+            f"{row['base_shear_N'] / 1e3:.4g} kN by {row['code']} (storey {row['storey']})" for row in numbers["frame"]
+        ]
+        parts.append(f"Its piers bear by the formulas of codes {' and '.join(words)}.")
     assumed = getattr(building.structure, "assumed", [])
     if assumed:
         parts.append("Assumed, since its sources do not say: " + "; ".join(assumed) + ".")
-    return " ".join(parts)
+    return " ".join(part for part in parts if part)
+
+
+def _stage_told(stage: dict[str, Any]) -> str:
+    end = stage["end_load_N"]
+    if end is None:
+        return f"{stage['name']} without an event"
+    if stage["of"] == "settlement":
+        return f"{stage['name']}, the ground gives way, {stage['damaged_points']} points crack"
+    return f"{stage['name']}, a push to {stage['sense']}, ends at {end / 1e3:.4g} kN by: {stage['stop']}"
+
+
+def _curve_told(options: Pushover, numbers: dict[str, Any], curve: dict[str, Any], word: str) -> str:
+    """What a push of a building or a vault says; of ground that gives way what its feet bear."""
+    main = next((stage for stage in numbers.get("stages", []) if not stage["prefix"]), None)
+    feet = "; ".join(
+        f"its foot {row['foot']} presses outward with {row['thrust_N'] / 1e3:.4g} kN and down with {row['vertical_N'] / 1e3:.4g} kN"
+        for row in curve.get("feet", [])
+    )
+    if main is not None and main["of"] == "settlement":
+        return f"After stage {main['name']} {feet}." if feet else ""
+    load = curve["greatest_load_N"]
+    sense = (
+        f"Pushed to {curve['sense']} ({options.direction:g} degrees on the plan)"
+        if main is None
+        else f"In stage {main['name']}"
+    )
+    if load is None:
+        return f"{sense}: no state in equilibrium was found."
+    bears = "bears" if curve["peak_load_N"] is not None else "has reached, without a peak,"
+    text = (
+        f"{sense} the {word} {bears} a base shear of {load / 1e3:.4g} kN, "
+        f"{curve['base_shear_coefficient']:.3g} of its weight of {numbers['weight_N'] / 1e3:.4g} kN"
+    )
+    if curve["roof_drift"] is not None:
+        text += f", at a drift of {100 * curve['roof_drift']:.2g} %"
+    if "first_crack" in curve:
+        crack = curve["first_crack"]
+        if "along_m" in crack:
+            text += (
+                f"; it cracks first in wall {crack['wall']}, storey {crack['storey']}, {crack['along_m']:.3g} m along and "
+                f"{crack['height_m']:.3g} m up, under {crack['base_shear_N'] / 1e3:.3g} kN"
+            )
+        else:
+            x, y, z = crack["place_m"]
+            text += (
+                f"; it cracks first in the {crack['wall']} at x {x:.3g}, y {y:.3g}, z {z:.3g} m, under "
+                f"{crack['base_shear_N'] / 1e3:.3g} kN"
+            )
+    if any(r["share"] > 0.02 for r in curve["walls"]):
+        most = sorted(curve["walls"], key=lambda row: -row["share"])[:4]
+        text += "; " + ", ".join(
+            f"wall {r['wall']} carries {100 * r['share']:.0f} %" for r in most if r["share"] > 0.02
+        )
+    if "flanges" in curve:
+        flanges = curve["flanges"]
+        text += (
+            f"; walls across the push {'work as flanges' if flanges['working'] else 'hardly work with them'} "
+            f"({flanges['uplift_N'] / 1e3:.3g} kN up, {flanges['pressure_N'] / 1e3:.3g} kN down)"
+        )
+    return f"{text}{'; ' if feet else ''}{feet}."

@@ -1,5 +1,6 @@
 """What is read off a state of a pushed building: forces in sections of its walls, drifts, cracks."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +22,7 @@ class Section:
 
 
 def plane_stresses(report: dict[str, np.ndarray]) -> np.ndarray:
-    """(3, points) stresses x, y, xy in the axes of the elements [Pa]."""
+    """Stresses x, y, xy (3, ...) in the axes of the elements [Pa]."""
     c, s = report["cos"], report["sin"]
     n, t, g = report["stress_n"], report["stress_s"], report["stress_ns"]
     return np.stack(
@@ -35,33 +36,53 @@ def sections(model: ShellModel, report: dict[str, np.ndarray]) -> list[Section]:
     Exact for the forces at the nodes by virtual work: all above the row moves along the wall, or up, and strains the row
     alone, evenly. The moment is that of the normal stresses about the middle of the pier.
     """
-    mesh, found = model.mesh, []
-    stress = plane_stresses(report)
+    return [
+        section
+        for wall in range(len(model.mesh.walls))
+        for storey, level in enumerate(model.mesh.levels[:-1], 1)
+        for section in _sections(model, report, wall, storey, lambda low, _, level=level: np.abs(low - level) < 1e-6)
+    ]
+
+
+def sections_at(
+    model: ShellModel, report: dict[str, np.ndarray], wall: int, storey: int, height: float
+) -> list[Section]:
+    """Forces in the piers of a wall that a height cuts, from the row of elements there."""
+    return _sections(model, report, wall, storey, lambda low, high: (low <= height) & (high > height))
+
+
+def _sections(
+    model: ShellModel,
+    report: dict[str, np.ndarray],
+    wall: int,
+    storey: int,
+    of_row: Callable[[np.ndarray, np.ndarray], np.ndarray],
+) -> list[Section]:
+    """Of the row of elements of a wall that their lower and upper ends say."""
+    found = []
     for part, points, layers in model.places():
-        if part.wall < 0:
+        if part.wall != wall:
             continue
-        corner = mesh.walls[part.wall].unfolded(mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
+        corner = model.mesh.walls[wall].unfolded(model.mesh.xyz[part.connect.ravel()]).reshape(*part.connect.shape, 2)
         low, high = corner[..., 1].min(axis=1), corner[..., 1].max(axis=1)
         left, right = corner[..., 0].min(axis=1), corner[..., 0].max(axis=1)
-        volume = report["volume"][points].reshape(len(left), -1)
-        own = stress[:, points].reshape(3, len(left), -1)
-        at = _along(corner, layers)
-        for storey, level in enumerate(mesh.levels[:-1], 1):
-            row = np.flatnonzero(np.abs(low - level) < 1e-6)
-            row = row[np.argsort(left[row], kind="stable")]
-            gaps = np.flatnonzero(left[row][1:] > right[row][:-1] + 1e-6) + 1
-            for pier in np.split(row, gaps):
-                if not len(pier):
-                    continue
-                height = (high - low)[pier, None]
-                up = own[1, pier] * volume[pier] / height
-                middle = 0.5 * (left[pier[0]] + right[pier[-1]])
-                found.append(
-                    Section(
-                        part.wall, storey, float(left[pier[0]]), float(right[pier[-1]]), float(up.sum()),
-                        float((own[2, pier] * volume[pier] / height).sum()), float((up * (middle - at[pier])).sum()),
-                    )
-                )  # fmt: skip
+        row = np.flatnonzero(of_row(low, high))
+        row = row[np.argsort(left[row], kind="stable")]
+        if not len(row):
+            continue
+        own = {name: values[points].reshape(len(left), -1)[row] for name, values in report.items()}
+        stress, volume = plane_stresses(own), own["volume"]
+        tall, at = (high - low)[row, None], _along(corner[row], layers)
+        gaps = np.flatnonzero(left[row][1:] > right[row][:-1] + 1e-6) + 1
+        for pier in np.split(np.arange(len(row)), gaps):
+            start, end = float(left[row[pier[0]]]), float(right[row[pier[-1]]])
+            up = stress[1, pier] * volume[pier] / tall[pier]
+            found.append(
+                Section(
+                    wall, storey, start, end, float(up.sum()), float((stress[2, pier] * volume[pier] / tall[pier]).sum()),
+                    float((up * (0.5 * (start + end) - at[pier])).sum()),
+                )
+            )  # fmt: skip
     return found
 
 
@@ -99,9 +120,23 @@ def point_places(model: ShellModel) -> dict[str, np.ndarray]:
     return {name: np.concatenate(column) for name, column in columns.items()}
 
 
+def place_axes(model: ShellModel) -> dict[str, np.ndarray]:
+    """Of each place in the shells: where it is [m], and the x and y axes of its element, all (places, 3)."""
+    columns: dict[str, list[np.ndarray]] = {"xyz": [], "x_axis": [], "y_axis": []}
+    for number, (part, _, _) in enumerate(model.places()):
+        corner = model.mesh.xyz[part.connect]
+        columns["xyz"].append(np.stack([_along(corner[..., d, None], 1).ravel() for d in range(3)], axis=1))
+        per = 4 if part.kind == "Q4" else 3
+        own = model.axes[[k for k, p in enumerate(model.mesh.parts) if p.bends][number]]
+        columns["x_axis"].append(np.repeat(own[:, 0], per, axis=0))
+        columns["y_axis"].append(np.repeat(own[:, 1], per, axis=0))
+    return {name: np.concatenate(column) for name, column in columns.items()}
+
+
 def cracks(model: ShellModel, report: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Of each place in the plane of the walls: greatest width of a crack through the thickness [m], the angle of its
-    normal to the element's x axis [rad], and the part of the thickness that has cracked."""
+    normal to the element's x axis [rad], where through the thickness that is, from -1 to 1 on the side of the normal, and the
+    part of the thickness that has cracked."""
     young = []
     for part, _, layers in model.places():
         each = np.array([m.young for m in model.mesh.materials])[part.material]
@@ -117,7 +152,7 @@ def cracks(model: ShellModel, report: dict[str, np.ndarray]) -> dict[str, np.nda
     angle = np.arctan2(r["sin"], r["cos"])
     width, turned = np.maximum(*widths), np.where(widths[1] > widths[0], angle + 0.5 * np.pi, angle)
     cracked = (r["tooth_n"] > 1) | (r["tooth_s"] > 1)
-    out: dict[str, list[np.ndarray]] = {"width": [], "angle": [], "part": []}
+    out: dict[str, list[np.ndarray]] = {"width": [], "angle": [], "side": [], "part": []}
     first = 0
     for part, _, layers in model.places():
         n = len(part.connect) * (4 if part.kind == "Q4" else 3) * layers
@@ -127,6 +162,7 @@ def cracks(model: ShellModel, report: dict[str, np.ndarray]) -> dict[str, np.nda
         at = w.argmax(axis=1)
         out["width"].append(w.max(axis=1))
         out["angle"].append(turned[rows].reshape(-1, layers)[np.arange(len(w)), at])
+        out["side"].append(2.0 * at / max(layers - 1, 1) - 1.0)
         volume = r["volume"][rows].reshape(-1, layers)
         out["part"].append((cracked[rows].reshape(-1, layers) * volume).sum(axis=1) / volume.sum(axis=1))
     return {name: np.concatenate(column) for name, column in out.items()}
@@ -141,6 +177,8 @@ def drifts(model: ShellModel, displacement: np.ndarray, sign: int) -> tuple[np.n
     """Drift of each storey along the push, of the whole and (walls, storeys) of each wall: the difference of the mean
     displacements of its top and foot over its height; NaN where a wall has none."""
     mesh, along = model.mesh, model.along
+    if not mesh.walls:
+        return np.empty(0), np.empty((0, 0))
     moved = sign * (displacement[:, :3] @ along)
     levels = mesh.levels
     walls = np.full((len(mesh.walls), len(levels)), np.nan)

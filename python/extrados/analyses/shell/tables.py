@@ -8,7 +8,7 @@ from extrados.analyses.sla.tables import CrackOptions
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.shells import ShellOptions
 from extrados.building.places import Range
-from extrados.schema.quantities import Angle, Length
+from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
 
 
@@ -21,11 +21,65 @@ class Drive(Table):
 
 
 class Settlement(Table):
-    """Ground that goes down under a wall, with the weight and before the push; the damage stays."""
+    """Ground that gives way under a wall or a springing: it goes down, or outward; the damage stays."""
 
-    wall: str = key(about="name of the wall", min_length=1, max_length=40)
+    wall: str | None = key(None, "name of the wall that stands on it", min_length=1, max_length=40)
+    foot: str | None = key(
+        None,
+        "of a vault, what stands on it: left or right, springing of a dome, north-east and so on of a groin vault, a support of "
+        "a mesh file, or all",
+        min_length=1,
+        max_length=200,
+    )
     x: Range | None = key(None, "[from, to] along the wall; default all of it")
-    down: Length = key(about="how far; negative is a heave")
+    down: Length = key(0.0, "how far it goes down; negative is a heave")
+    out: Length = key(
+        0.0, "how far it goes outward: across a wall, away from the middle of the plan; of a dome all around"
+    )
+
+    @model_validator(mode="after")
+    def _somewhere(self) -> "Settlement":
+        if (self.wall is None) == (self.foot is None):
+            raise ValueError("expected either wall, of a building, or foot, of a vault")
+        if self.down == 0.0 and self.out == 0.0:
+            raise ValueError("nothing moves: expected down or out")
+        return self
+
+    @property
+    def place(self) -> str:
+        """The foot it is under."""
+        return self.wall or str(self.foot)
+
+
+class PushStage(Table):
+    """One stage of several: ground that gives way, or a push. It starts where the one before it ended, with its loads, its
+    displacements and its damage."""
+
+    name: str | None = key(None, "of the stage; default its number", min_length=1, max_length=40)
+    settlements: list[Settlement] = key(
+        [], "ground that gives way from where it is; else the stage is a push", max_length=100
+    )
+    direction: Angle | None = key(None, "of the push on the plan; default the analysis'", ge=-360, le=360)
+    sense: Literal["+", "-"] = key("+", "of the push")
+    base_shear: Force | None = key(
+        None,
+        "the stage ends at this base shear in its direction and sense, what stages before have left on counted: 0 takes a "
+        "push to the other side off",
+    )
+    target_displacement: Length | None = key(
+        None, "the stage ends where the control displacement has this value, counted from the building without loads"
+    )
+    stop_fraction: float = key(0.0, "stop where the load falls below this part of the stage's peak", ge=0, lt=1)
+    events: int | None = key(None, "most events of the stage; default the analysis'", ge=1, le=100_000_000)
+
+    @model_validator(mode="after")
+    def _one_cause(self) -> "PushStage":
+        own = {"direction", "sense", "base_shear", "target_displacement", "stop_fraction"} & self.model_fields_set
+        if self.settlements and own:
+            raise ValueError(
+                f"{', '.join(sorted(own))}: of a push; ground that gives way ends where it is told to: take two stages"
+            )
+        return self
 
 
 class Variant(Table):
@@ -41,12 +95,27 @@ class Variant(Table):
     prestress: float = key(1.0, "on the forces on top of walls", ge=0, le=100)
 
 
+class FrameRules(Table):
+    """Strengths of piers by formulas of codes, beside the push: the equivalent frame's storeys."""
+
+    cohesion: Stress = key(0.0, "shear strength of bed joints without pressure", ge=0)
+    friction: float = key(0.4, "coefficient of friction of bed joints", ge=0, le=1.5)
+    diagonal_strength: Stress = key(
+        about="tau_0 of diagonal cracking, without pressure", gt=0, source="NTC 2018, Circ. 7/2019 C8.5.I"
+    )
+    compressive_strength: Stress | None = key(None, "f_m; default that of [material]", gt=0)
+    fixity: Literal["double", "single"] = key(
+        "double", "ends of the piers that do not turn: both, between stiff spandrels, or the lower one alone"
+    )
+
+
 class Pushover(CrackOptions, BuildingAnalysis):
-    """The push of a building of walls and floors by growing horizontal forces, cracks event by event."""
+    """The push of a building of walls and floors, or of a vault or dome as a shell, by growing horizontal forces; cracks event
+    by event."""
 
     kind: Literal["pushover"]
     view: ClassVar = "shell"
-    structures: ClassVar = ("building",)
+    structures: ClassVar = ("building", "arch", "vault", "dome", "cross-vault", "mesh")
     uses: ClassVar = (
         "material.density", "material.young", "material.poisson", "material.tensile_strength", "material.fracture_energy",
         "material.compressive_strength", "material.tensile_strength_parallel", "material.shear_strength",
@@ -76,6 +145,16 @@ class Pushover(CrackOptions, BuildingAnalysis):
     settlements: list[Settlement] = key(
         [], "ground that goes down as the weight comes on, [[analysis.settlements]]", max_length=100
     )
+    stages: list[PushStage] = key(
+        [],
+        "stages one after the other, [[analysis.stages]], in place of one push: pushes to either sense, ground that gives way; "
+        "each inherits the damage; the weight, with `settlements`, comes first",
+        min_length=1,
+        max_length=50,
+    )
+    main_stage: str | None = key(
+        None, "name of the stage whose numbers stand for the analysis; default the last push, or the last"
+    )
     mesh: ShellOptions = key(ShellOptions(), "elements, [analysis.mesh]")
     constant_damage: bool = key(True, "bring the weight on with damage before the push", source="thesis 4.3.1")
     events: int = key(20_000, "most events", ge=1, le=100_000_000)
@@ -92,6 +171,7 @@ class Pushover(CrackOptions, BuildingAnalysis):
         [], "events whose state is kept (the peak and the last are anyway)", max_length=200
     )
     probes: list[Length] = key([], "report the envelope's load at these displacements", max_length=100)
+    frame: FrameRules | None = key(None, "strengths of its piers by formulas of codes, [analysis.frame]")
     variants: list[Variant] = key(
         [], "the first sense again with other assumptions: a band of curves, [[analysis.variants]]", max_length=50
     )
@@ -103,6 +183,10 @@ class Pushover(CrackOptions, BuildingAnalysis):
     def _consistent(self) -> "Pushover":
         if len(set(self.directions)) < len(self.directions):
             raise ValueError(f"directions: each sense may stand once, not {self.directions}")
+        if self.stages:
+            self._consistent_stages()
+        elif self.main_stage is not None:
+            raise ValueError("main_stage names one of `stages`, and there are none")
         if self.settlements and not self.constant_damage:
             raise ValueError("settlements come with the weight: they need constant_damage = true")
         if self.drives and self.pattern != "mass":
@@ -112,3 +196,30 @@ class Pushover(CrackOptions, BuildingAnalysis):
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         return self
+
+    @property
+    def stage_names(self) -> list[str]:
+        """The names of the stages, their numbers where they have none."""
+        return [stage.name or str(k) for k, stage in enumerate(self.stages, 1)]
+
+    @property
+    def main(self) -> int:
+        """The stage that stands for the analysis, from 0."""
+        if self.main_stage is not None:
+            return self.stage_names.index(self.main_stage)
+        pushes = [k for k, stage in enumerate(self.stages) if not stage.settlements]
+        return pushes[-1] if pushes else len(self.stages) - 1
+
+    def _consistent_stages(self) -> None:
+        names = self.stage_names
+        if len(set(names)) < len(names):
+            raise ValueError(f"stages: a name stands twice among {', '.join(names)}")
+        if self.main_stage is not None and self.main_stage not in names:
+            raise ValueError(f"main_stage: there is no stage '{self.main_stage}'; there are {', '.join(names)}")
+        alone = {
+            "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
+            "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
+            "constant_damage = false": not self.constant_damage,
+        }  # fmt: skip
+        if clash := [name for name, given in alone.items() if given]:
+            raise ValueError(f"{', '.join(clash)} cannot stand beside stages: say it in a stage, or run without stages")

@@ -1,4 +1,6 @@
-"""Bars and ties of a wall made into groups of the core."""
+"""Bars and ties of a wall made into groups of the core, and the forces in them."""
+
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,12 +12,55 @@ from extrados.building.properties import Material
 from extrados.building.templates.walls import Bar
 from extrados.building.ties import Tie
 from extrados.core import sla as core
+from extrados.core.sla import EVENT
 
+#: Rows of the damage of a bar: its tooth in tension and in pressure, from 1, and whether it is taut
+TENSION, PRESSURE, TAUT = 3, 5, 7
 #: Stiffness of a rigid tie over that of a square of wall, E t
 RIGID = 100.0
 #: Strain at which a tie of [[ties]] breaks, which says none: far beyond what a building bears. At least so many times
 #: that at which it yields
 LONG, LONGER = 0.2, 1e3
+
+
+@dataclass(frozen=True)
+class NamedBar:
+    """A bar or tie of the deck: its group in the core, the number of its first piece among those of all bars, places of
+    its pieces from its start (pieces) [m]."""
+
+    name: str
+    group: core.Bars
+    first: int
+    place: np.ndarray
+
+    @property
+    def held_at_ends(self) -> bool:
+        """True where it is one piece, whose force is followed from event to event."""
+        return len(self.group.connect) == 1
+
+    def strain(self, xy: np.ndarray) -> core.Monitor:
+        """The strain of its only piece as something to watch; nodes at xy (nodes, 2) [m]."""
+        gradient, _ = self.group.strains(xy)
+        node = np.asarray(self.group.connect)[0]
+        return core.Monitor(np.repeat(node, 2), np.tile([0, 1], len(node)), gradient[0].ravel())
+
+    def modulus(self, start: np.ndarray, code: np.ndarray, floor: float) -> np.ndarray:
+        """Its modulus (events) [Pa] before each event: `start` its damage at first (11), code (events) what happened to
+        it in each, 0 to another; `floor` is left over its first modulus after the last tooth, or where it is slack."""
+        young = float(np.asarray(self.group.young))
+        taut = np.full(len(code), start[TAUT] > 0.0)
+        for k in np.flatnonzero(np.isin(code, [EVENT["open"], EVENT["close"]])).tolist():
+            taut[k + 1 :] = code[k] == EVENT["close"]
+        found = np.full(len(code), young)
+        for law, row, kind in (
+            (self.group.tension, TENSION, "tension"),
+            (self.group.compression, PRESSURE, "compression"),
+        ):
+            if isinstance(law, core.Softening):
+                passed = int(start[row]) - 1 + np.cumsum(code == EVENT[kind]) - (code == EVENT[kind])
+                each = np.append(core.teeth(law, young, float(np.max(self.group.band)))[0], floor * young)
+                found = np.minimum(found, each[np.minimum(passed, len(each) - 1)])
+        return np.where(taut, found, floor * young)
 
 
 def yielding(strength: float, young: float, ultimate: float, options: Sla) -> core.Softening:
@@ -25,8 +70,9 @@ def yielding(strength: float, young: float, ultimate: float, options: Sla) -> co
 
 def bar_group(
     mesh: Mesh, bar: Bar, tension: core.Softening | None, crushing: core.Softening | None, options: Sla
-) -> core.Bars:
-    """One of the bars of a wall, between nodes or embedded; tension and crushing are those of its material."""
+) -> tuple[core.Bars, np.ndarray]:
+    """One of the bars of a wall, between nodes or embedded, and the places of its pieces from its start [m]; tension and
+    crushing are those of its material."""
     material: Material = mesh.named[bar.material]
     what = f"a bar from {bar.start} to {bar.end}"
     if material.tensile_strength_parallel is not None:
@@ -51,9 +97,10 @@ def bar_group(
             )
         band = 1.0
         tension = crushing = yielding(bar.yield_strength, material.young, bar.ultimate_strain, options)
-    return core.Bars(
+    group = core.Bars(
         connect, bar.area, material.young, band, tension, crushing, *((None, None) if rod is None else _shape(rod))
     )
+    return group, 0.5 * length if rod is None else rod.place
 
 
 def tie_group(mesh: Mesh, tie: Tie, rod: Rod, options: Sla) -> core.Bars:

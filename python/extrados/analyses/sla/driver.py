@@ -7,6 +7,7 @@ import numpy as np
 
 from extrados.analyses.batches import Chain
 from extrados.analyses.context import Context
+from extrados.analyses.sla.bar_forces import bar_arrays
 from extrados.analyses.sla.events import Curve, run_curves
 from extrados.analyses.sla.measured import arrays, compare, read_measured
 from extrados.analyses.sla.measures import joint_openings, numbers_of, tooth_counts
@@ -83,6 +84,7 @@ def _stages(result: Result, model: SlaModel, options: Sla, curves: list[Curve], 
         prefix = "" if curve is main else f"stage_{k}_"
         if prefix:
             curve_arrays(result, own, curve, prefix)
+            bar_arrays(result, own, curve, prefix)
             field_files(result, own, [curve], [prefix])
             result.warnings += curve.warnings
         last = len(curve.events) - 1
@@ -137,6 +139,7 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
     result.arrays = mesh_arrays(model)
     for curve, prefix in zip(curves, PREFIXES, strict=False):
         curve_arrays(result, model, curve, prefix)
+        bar_arrays(result, model, curve, prefix)
     sections(result, model, options, first)
     field_files(result, model, curves, PREFIXES)
     if model.mesh.has_joints:

@@ -293,7 +293,7 @@ def run_reference_loads(
             room = min(room, ahead[0] + 1 - done)
         clock = time.perf_counter()
         try:
-            part = core_model.run(room, [model.control], stop, variant=variant)
+            part = core_model.run(room, model.watched, stop, variant=variant)
         except CoreError as error:
             if error.status != status_code("beyond_strength"):
                 raise
@@ -323,7 +323,7 @@ def run_reference_loads(
             break
         batch = int(np.clip(len(part) * BATCH_SECONDS / max(spent, 1e-3), 10, GRID))
     events, states = core.Events.join(way.parts), way.states
-    events.monitors *= sign  # positive in the sense of the load
+    events.monitors[:, 0] *= sign  # positive in the sense of the load
     collapsed = events.reason == "mechanism" and events.compliance[-1] > model.mechanism_ratio * events.compliance[0]
     if events.reason == "mechanism" and len(events) and model.driven:
         events.equilibrium[-1] = False  # the constant loads carry it away

@@ -4,6 +4,7 @@ from typing import Any
 
 import numpy as np
 
+from extrados.analyses.sla.bar_forces import bar_rows
 from extrados.analyses.sla.curve import bilinear
 from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.model import SlaModel
@@ -65,6 +66,8 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
     if options.probes:
         reached = [float(np.interp(x, d, p)) if x <= d[-1] else None for x in options.probes]
         numbers["probe_loads_N"] = reached
+    if model.bars:
+        numbers["bars"] = bar_rows(model, curve)
     if len(events):
         numbers["initial_stiffness_N_m"] = float(unit**2 / events.compliance[0])
     idea = bilinear(d - d[0], p) if peak >= 0 and p[0] == 0.0 else None  # from the state under the constant loads

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from extrados.analyses.context import Refused
-from extrados.analyses.sla.bars import bar_group, tie_group
+from extrados.analyses.sla.bars import NamedBar, bar_group, tie_group
 from extrados.analyses.sla.tables import CrackOptions, Load, Sla
 from extrados.building.errors import BadGeometry, Key
 from extrados.building.mesh.mesh import ElementGroup, Mesh, corner_count, element_areas
@@ -50,11 +50,17 @@ class SlaModel:
     settled: np.ndarray = field(
         default_factory=lambda: np.empty(0)
     )  # supports that go down with A, as of a building [m]
+    bars: list[NamedBar] = field(default_factory=list)
 
     @property
     def driven(self) -> bool:
         """True where supports move with the multiplier, which then is a displacement [m]."""
         return bool(self.moved[:, 1].any())
+
+    @property
+    def watched(self) -> list[core.Monitor]:
+        """What is recorded at each event: the control displacement, and the strains of the bars that are one piece."""
+        return [self.control, *(bar.strain(self.mesh.xy) for bar in self.bars if bar.held_at_ends)]
 
     @property
     def planes(self) -> list[core.Plane | core.Joints]:
@@ -171,9 +177,12 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
         )
         bands.append(band)
         points.append(point_positions(mesh.xy, group))
-    for bar in mesh.bars:
-        groups.append(_bar(mesh, bar, options))
-    groups += [tie_group(mesh, tie, rod, options) for tie, rod in mesh.rods]
+    named: list[NamedBar] = []
+    made = [(f"bar {k}", *_bar(mesh, bar, options)) for k, bar in enumerate(mesh.bars, 1)]
+    made += [(tie.name or "", tie_group(mesh, tie, rod, options), rod.place) for tie, rod in mesh.rods]
+    for name, group, place in made:
+        groups.append(group)
+        named.append(NamedBar(name, group, sum(len(bar.place) for bar in named), place))
     if springs:
         node, direction, stiffness = (np.array(column) for column in zip(*springs, strict=True))
         ground = np.full(len(node), -1)
@@ -218,7 +227,7 @@ def _build(mesh: Mesh, options: Sla, strength: np.ndarray | None) -> SlaModel:
             floor,
         ),
         constant, reference, unit, control, bands, np.concatenate(points),
-        ratio, acceleration_of(reference_loads),
+        ratio, acceleration_of(reference_loads), bars=named,
     )  # fmt: skip
 
 
@@ -415,7 +424,7 @@ def _joints(group: ElementGroup, factors: np.ndarray, options: Sla) -> core.Join
     )
 
 
-def _bar(mesh: Mesh, bar: Bar, options: Sla) -> core.Bars:
+def _bar(mesh: Mesh, bar: Bar, options: Sla) -> tuple[core.Bars, np.ndarray]:
     material = mesh.named[bar.material]
     return bar_group(mesh, bar, softening_of(material, options), crushing_of(material, options), options)
 

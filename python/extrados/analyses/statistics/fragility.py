@@ -19,7 +19,9 @@ from extrados.analyses.statistics.uncertain import Bodies, bodies_at, sampled
 from extrados.building.rockers.rocker import Rocker
 from extrados.core import rocking as core_rocking
 from extrados.core.errors import Cancelled, status_code
-from extrados.core.rocking import FAILED, Body, Ground
+from extrados.core.rocking import FAILED, Body, Ground, Response
+from extrados.core.soft_base import KIND as SOFT_BASE
+from extrados.core.soft_base import SoftBase, SoftBaseResponse, soft_base_history, soft_base_start
 from extrados.motions.from_deck import is_set
 from extrados.motions.motion import Motion
 from extrados.results import statistics as out
@@ -148,9 +150,9 @@ def _job(context: Context, options: Fragility, base: Rocker, duration: float | N
     levels = np.array(options.levels) if options.levels else None
     measure, unit = options.intensity, INTENSITIES[options.intensity][1]
     if measure == "pga-ratio":
-        measure, unit = "pga", base.uplift * GRAVITY
+        measure, unit = "pga", base.unit_acceleration * GRAVITY
     elif measure == "pgv-ratio":
-        measure, unit = "pgv", base.uplift * GRAVITY * base.time_unit
+        measure, unit = "pgv", base.unit_acceleration * GRAVITY * base.time_unit
     sa = (options.sa_period, options.sa_damping) if options.sa_period and (options.levels or options.cloud) else None
     settle = 40.0 * base.time_unit if options.settle is None else options.settle
     job = EnsembleJob(source, made.bodies, made.starts, measure, unit, levels, sa, settle, options.tolerance)
@@ -170,7 +172,7 @@ def _describe(
     if not swept.finished:
         result.answer = "No member is finished."
         return
-    initial = base.start_rotation / base.critical[0]
+    initial = base.initial_ratio
     per_motion = 1 if job.levels is None else len(job.levels)
     failed = sum(int((rows["outcome"] == FAILED).sum()) for _, rows in swept.pieces("outcome"))
     r: dict[str, Any] = {
@@ -265,10 +267,7 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
         if isinstance(ground, str) or isinstance(body, str):
             continue
         start, end = float(job.starts[k % len(job.starts)]), ground.end + AFTER * base.time_unit
-        h = core_rocking.history(
-            body, ground, end, end / POINTS, tolerance=job.tolerance, start_side=1 if start >= 0.0 else -1,
-            start_rotation=abs(start),
-        )  # fmt: skip
+        h = _response(body, ground, end, start, job.tolerance)
         at, ground_acceleration = Motion("", ground).series()  # whole, where the response ends with collapse
         thin = slice(None, None, max(1, len(at) // POINTS))
         critical = base.critical[0]
@@ -281,6 +280,19 @@ def _histories(job: EnsembleJob, base: Rocker, count: int, result: Result) -> No
             result.arrays[f"history_{what}_{k + 1}"] = Array(
                 data, (f"{axis}_{k + 1}",), unit, about, series=f"history_{what}"
             )
+
+
+def _response(body: Body, ground: Ground, end: float, start: float, tolerance: float) -> Response | SoftBaseResponse:
+    """A body under a motion until a time [s], from a rotation [rad]."""
+    if body.kind == SOFT_BASE:
+        base = SoftBase.of(body)
+        return soft_base_history(
+            base, ground, end, end / POINTS, tolerance=tolerance, start=soft_base_start(base, start)
+        )
+    return core_rocking.history(
+        body, ground, end, end / POINTS, tolerance=tolerance, start_side=1 if start >= 0.0 else -1,
+        start_rotation=abs(start),
+    )  # fmt: skip
 
 
 def _tell_failures(job: EnsembleJob, swept: Swept, per_motion: int, result: Result) -> None:
@@ -363,7 +375,7 @@ def _tables(job: EnsembleJob, swept: Swept, per_motion: int, options: Fragility,
 def _describe_durations(options: Fragility, base: Rocker, parts: list[tuple[float, Swept]], result: Result) -> None:
     """Mean and deviation of the peak rotation against the duration (Fig. 6-8)."""
     _stopped(parts[-1][1], result)
-    initial = base.start_rotation / base.critical[0]
+    initial = base.initial_ratio
     parts = [(d, s) for d, s in parts if len(s.members)]
     rows = [shares(s["outcome"], s["peak_ratio"], options.confidence, initial) for _, s in parts]
     durations = np.array([d for d, _ in parts])

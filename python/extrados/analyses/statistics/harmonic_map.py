@@ -24,7 +24,7 @@ def run(context: Context, options: HarmonicMap) -> Result:
         context.warnings.append(f"harmonic motion repeats itself: {too_fast(limit)}")
     p = 1.0 / model.time_unit
     frequency = np.array(options.frequencies) if options.frequencies else np.linspace(1.0, 12.0, 40) * p / (2.0 * np.pi)
-    cap = options.max_amplitude or 6.0 * model.uplift * GRAVITY
+    cap = options.max_amplitude or 6.0 * model.unit_acceleration * GRAVITY
     amplitude = np.linspace(0.0, cap, options.amplitudes + 1)[1:]
     grounds = [pulses.harmonic(1.0, f, options.cycles / f).ground for f in frequency]
     motion = np.repeat(np.arange(len(frequency)), len(amplitude))

@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.rocking.tables import RockingTable
+from extrados.analyses.rocking.tables import HOLDS, SOFT_BASE, RockingTable
 from extrados.schema.quantities import Acceleration, Angle, Frequency, OrText, Time, factor, parse
 from extrados.schema.table import Table, key
 
@@ -19,6 +19,8 @@ UNCERTAIN = {
     "arch": ("radius", "thickness", "corners", "density", "imperfection", "restitution"),
 }
 STONES = ("density", "imperfection", "restitution")
+#: Keys of [supports] that are uncertain where the base gives way, instead of restitution
+BASE = ("stiffness", "damping_ratio")
 Rate = Annotated[float, Field(gt=0, le=100)]
 
 
@@ -61,6 +63,8 @@ class Fragility(RockingTable):
     with a `hazard` curve the annual rate of collapse."""
 
     kind: Literal["fragility"]
+    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    soft_base: ClassVar = True
     needs_motion: ClassVar = True
     starter_motion: ClassVar = "generated"
     count: int | None = key(None, "number of motions; default 1000, or the whole suite", ge=1, le=10_000_000)
@@ -91,7 +95,7 @@ class Fragility(RockingTable):
     uncertain: dict[str, float] = key(
         {}, "coefficients of variation of width, height, thickness, restitution, of the thickness lost at worn `corners`, of "
         "the `density` from stone to stone; `imperfection`: how far corners and joints of stones stray, over the shortest "
-        "joint; sampled by a Sobol sequence"
+        "joint; `stiffness` and `damping_ratio` of a base that gives way; sampled by a Sobol sequence"
     )  # fmt: skip
     sensitivity: int | None = key(
         None, "samples, a power of 2, for Sobol indices of `uncertain` and of the motion: samples times (values + 2) runs",
@@ -143,7 +147,7 @@ class Fragility(RockingTable):
                 raise ValueError("sensitivity needs uncertain values, and neither levels nor durations")
             if self.sensitivity & (self.sensitivity - 1):
                 raise ValueError(f"sensitivity is {self.sensitivity}, expected a power of 2")
-        known = sorted({name for names in (*UNCERTAIN.values(), STONES) for name in names})
+        known = sorted({name for names in (*UNCERTAIN.values(), STONES, BASE) for name in names})
         for name, value in self.uncertain.items():
             if name not in known:
                 raise ValueError(f"uncertain.{name} is unknown; expected {', '.join(known)}")
@@ -207,6 +211,8 @@ class HarmonicMap(RockingTable):
     """Response to harmonic ground motion over frequency and amplitude: at rest, rocking (how far), overturned."""
 
     kind: Literal["harmonic-map"]
+    bears: ClassVar = (*HOLDS, *SOFT_BASE)
+    soft_base: ClassVar = True
     starter: ClassVar = {"amplitudes": "24"}
     frequencies: list[Frequency] | None = key(
         None, "in Hz; default 40 values from omega/p = 1 to 12", min_length=1, max_length=1000

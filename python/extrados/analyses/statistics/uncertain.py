@@ -8,9 +8,9 @@ from scipy.stats import norm, qmc
 
 from extrados.analyses.batches import computed, stacked
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.statistics.tables import STONES, UNCERTAIN, Fragility
+from extrados.analyses.statistics.tables import BASE, STONES, UNCERTAIN, Fragility
 from extrados.building.building import Building
-from extrados.building.errors import NoView
+from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.deviation import resurveyed
 from extrados.building.rockers.rocker import Rocker, make_rocker
@@ -24,7 +24,7 @@ BY_STONE = ("density", "imperfection")
 class Sample:
     """Member k is the rocker of a building at the point draws[k] of the unit cube, by the names of `uncertain` in order.
 
-    Sizes, restitution and the thickness lost at corners have lognormal factors of mean 1. `density` gives each stone
+    Sizes, restitution, the base that gives way and the thickness lost at corners have lognormal factors of mean 1. `density` gives each stone
     such a factor on its mass; `imperfection` moves each corner and each end of a joint evenly within a circle, whose
     radius is that share of the shortest joint: the draw seeds the generator of its stones. width: numbers by which the
     core knows each.
@@ -36,7 +36,7 @@ class Sample:
     width: int = 0
 
     def rocker(self, k: int) -> Rocker:
-        """NoView where that building does not rock, as one that cannot stand."""
+        """BadGeometry where that building does not rock, as one that cannot stand."""
         names = sorted(self.options.uncertain)
         spread = np.sqrt(np.log1p(np.array([self.options.uncertain[n] for n in names]) ** 2))
         draw = self.draws[k]
@@ -54,7 +54,7 @@ class Sample:
         try:
             rocker = self.rocker(k)
             kind, values, start = rocker.body.kind, rocker.body.parameters, rocker.start_rotation
-        except NoView as error:
+        except BadGeometry as error:
             reason = str(error)
         return {"kind": np.array(kind), "body": values, "start": np.array(start), "reason": np.array(reason)}
 
@@ -63,7 +63,7 @@ class Sample:
         for k in range(len(self.draws)):
             try:
                 return replace(self, width=len(self.rocker(k).body.parameters))
-            except NoView:
+            except BadGeometry:
                 continue
         return replace(self, width=len(base.body.parameters))
 
@@ -101,11 +101,15 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
     assert structure is not None
     what = structure.kind
     known = UNCERTAIN.get(what, ("restitution",) if structure.rocks_as == "piers" else STONES)
+    if building.supports.stiffness is not None:
+        known = tuple(name for name in known if name != "restitution") + tuple(
+            name for name in BASE if getattr(building.supports, name)
+        )
     for name in names:
         key = ("analysis", "uncertain", name)
-        if name == "density" and what == "block":
-            raise Refused("the rocking of one rigid block does not depend on it", key)
-        sized = name not in (*STONES, "corners")
+        if name == "density" and what == "block" and name not in known:
+            raise Refused("one rigid block has no stones whose densities differ", key)
+        sized = name not in (*STONES, *BASE, "corners")
         if name not in known or (sized and getattr(structure, name) is None):
             raise Refused(f"does not belong to this {structure.word}; it has {', '.join(known) or 'none'}", key)
     if what == "arch" and building.joints.restitution == "thesis" and set(names) & set(BY_STONE):
@@ -123,16 +127,21 @@ def refuse_unknown(building: Building, names: list[str]) -> None:
 def _model(building: Building, options: Fragility, factor: dict[str, float], seeds: dict[str, int]) -> Rocker:
     structure = building.structure
     update: dict[str, Any] = {
-        name: getattr(structure, name) * value for name, value in factor.items() if name not in (*STONES, "corners")
+        name: getattr(structure, name) * value
+        for name, value in factor.items()
+        if name not in (*STONES, *BASE, "corners")
     }
+    base = {name: getattr(building.supports, name) * factor[name] for name in BASE if name in factor}
     if "corners" in factor:
         left = 1.0 - (1.0 - structure.thickness_factor) * factor["corners"]
         if left <= 0.0:
             raise NoView("its corners are worn away")
         update["thickness_factor"] = left
-    changed = building.having(structure=structure.model_copy(update=update)).apart()
+    changed = building.having(
+        structure=structure.model_copy(update=update), supports=building.supports.model_copy(update=base)
+    ).apart()
     stones = _stones(changed.blocks(), options, seeds) if seeds else None
-    rocker = make_rocker(changed, options.form == "linear", stones)
+    rocker = make_rocker(changed, options.form == "linear", stones, options.soft_base)
     return rocker.rebounding(factor["restitution"]) if "restitution" in factor else rocker
 
 

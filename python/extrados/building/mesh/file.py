@@ -15,6 +15,8 @@ from extrados.building.templates.walls import MeshFile
 from extrados.schema.files import File
 
 if TYPE_CHECKING:
+    import meshio
+
     from extrados.building.building import Building
 
 #: Formats that keep a mesh in several files: meshio would open whatever path the first one names
@@ -24,8 +26,8 @@ KINDS = {"triangle": "T3", "triangle6": "T6", "quad": "Q4", "quad8": "Q8"}
 LARGEST = 500_000_000  # bytes
 
 
-def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mesh:
-    """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
+def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]:
+    """The name of the file and what meshio finds in it, places in its own unit; BadGeometry says what is wrong."""
     try:
         import meshio
     except ImportError:
@@ -39,24 +41,39 @@ def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mes
             mesh = meshio.read(copy)
     except (SystemExit, Exception) as error:
         raise BadGeometry(f"{path.name}: is not a mesh that meshio reads: {str(error) or 'unknown format'}") from None
+    points = np.asarray(mesh.points, dtype=float)
+    if not np.isfinite(points).all():
+        raise BadGeometry(f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place")
+    for cells in mesh.cells:
+        data = np.asarray(cells.data)
+        if data.size and (data.min() < 0 or data.max() >= len(points)):
+            raise BadGeometry(
+                f"{path.name}: a cell of kind '{cells.type}' names a node that is not there; there are {len(points)}"
+            )
+    return path.name, mesh
+
+
+def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mesh:
+    """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
+    if wall.groups:
+        raise BadGeometry("groups are of shells in space, which `pushover` looks at; a plane wall takes regions")
+    name, mesh = open_mesh(wall, building)
     found: dict[str, list[np.ndarray]] = {}
     for cells in mesh.cells:
         if cells.type in KINDS:
             found.setdefault(cells.type, []).append(np.asarray(cells.data))
         elif cells.type not in ("line", "line3", "vertex"):
-            raise BadGeometry(f"{path.name}: cells of kind '{cells.type}'; expected {', '.join(KINDS)}")
+            raise BadGeometry(f"{name}: cells of kind '{cells.type}'; expected {', '.join(KINDS)}")
     if len(found) != 1:
         kinds = ", ".join(found) or "none"
-        raise BadGeometry(f"{path.name}: holds plane cells of kind {kinds}; expected exactly one of {', '.join(KINDS)}")
+        raise BadGeometry(f"{name}: holds plane cells of kind {kinds}; expected exactly one of {', '.join(KINDS)}")
     points = np.asarray(mesh.points, dtype=float)
     if points.shape[1] > 2 and np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2]):
         raise BadGeometry(
-            f"{path.name}: the mesh is not plane: z runs from {points[:, 2].min():g} to {points[:, 2].max():g}"
+            f"{name}: the mesh is not plane: z runs from {points[:, 2].min():g} to {points[:, 2].max():g}"
         )
-    if not np.isfinite(points).all():
-        raise BadGeometry(f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place")
-    ((name, parts),) = found.items()
-    kind, connect = KINDS[name], np.concatenate(parts)
+    ((word, parts),) = found.items()
+    kind, connect = KINDS[word], np.concatenate(parts)
     xy = wall.scale * points[:, :2]
     area = element_areas(xy, kind, connect)
     if (area < 0).all():  # a mesh drawn clockwise throughout is only looked at from behind

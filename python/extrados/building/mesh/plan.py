@@ -8,7 +8,7 @@ import numpy as np
 
 from extrados.building.errors import BadGeometry
 from extrados.building.mesh.options import LARGEST_MESH
-from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane
+from extrados.building.mesh.shells import Foot, ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane
 from extrados.building.mesh.triangles import fill_ring
 from extrados.building.properties import Material
 from extrados.building.templates.plan import MEETS, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting
@@ -92,6 +92,7 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
     return ShellMesh(
         grown[used], parts, planes, plan.levels, materials, size, [(int(kept[n]), d) for n, d in held],
         [(int(kept[n]), d, k) for n, d, k in springs], bars, mass[used], push[used], warnings,
+        _feet(plan, grids, number, kept, used),
     )  # fmt: skip
 
 
@@ -378,6 +379,20 @@ def _rod(rod: Rod, k: int, xyz: np.ndarray, used: np.ndarray, building: "Buildin
     if rod.material not in building.materials:
         raise BadGeometry(f"rod {k}: there is no [materials.{rod.material}]")
     return ShellBar(f"rod {k}", (ends[0], ends[1]), rod.area, building.materials[rod.material], rod.prestress)
+
+
+def _feet(plan: Plan, grids: list[_Grid], number: np.ndarray, kept: np.ndarray, used: np.ndarray) -> list[Foot]:
+    """The soles of the walls on the ground; outward is across a wall, away from the middle of the plan."""
+    middle = np.mean([end for wall in plan.walls for end in (wall.start, wall.end)], axis=0)
+    feet = []
+    for wall, grid in zip(plan.walls, grids, strict=True):
+        nodes, s = _level_nodes(plan, 0, grid, number)
+        there = used[nodes]
+        across = np.array([-wall.direction[1], wall.direction[0], 0.0])
+        if across[:2] @ (0.5 * np.add(wall.start, wall.end) - middle) < 0.0:
+            across = -across
+        feet.append(Foot(wall.name, kept[nodes[there]], np.tile(across, (int(there.sum()), 1)), s[there]))
+    return feet
 
 
 def _supports(

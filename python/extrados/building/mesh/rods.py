@@ -21,11 +21,12 @@ LEAST = 1e-9  # of a bar: shorter pieces are rounding
 @dataclass(frozen=True)
 class Rod:
     """Pieces of one bar: connect (pieces, nodes) 0-based; gradient (pieces, nodes, 2), strain per displacement [1/m];
-    length (pieces) [m]."""
+    length (pieces) [m]; place (pieces) of their middles, from its start [m]."""
 
     connect: np.ndarray
     gradient: np.ndarray
     length: np.ndarray
+    place: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,9 @@ def anchored(corners: Corners, ends: np.ndarray, among: list[np.ndarray | None])
         node, share = corners.shares(end, elements)
         nodes.append(node)
         gradient.append(sign * share[:, None] * along / length**2)
-    return Rod(np.concatenate(nodes)[None], np.concatenate(gradient)[None], np.array([length]))
+    return Rod(
+        np.concatenate(nodes)[None], np.concatenate(gradient)[None], np.array([length]), np.array([0.5 * length])
+    )
 
 
 def bonded(corners: Corners, ends: np.ndarray, what: str) -> Rod:
@@ -132,7 +135,7 @@ def bonded(corners: Corners, ends: np.ndarray, what: str) -> Rod:
     places = np.array(sorted(cuts))
     places = places[np.concatenate([[True], np.diff(places) > LEAST])]
     among = np.flatnonzero(near)
-    nodes, gradient, lengths = [], [], []
+    nodes, gradient, lengths, middles = [], [], [], []
     unit = along / length
     for start, end in pairwise(places):
         middle = ends[0] + 0.5 * (start + end) * along
@@ -142,9 +145,10 @@ def bonded(corners: Corners, ends: np.ndarray, what: str) -> Rod:
         nodes.append(corners.connect[e])
         gradient.append((corners.slopes(e, natural) @ unit)[:, None] * unit)
         lengths.append((end - start) * length)
+        middles.append(0.5 * (start + end) * length)
     if not nodes:
         raise BadGeometry(f"{what} runs through no element")
-    return Rod(np.array(nodes), np.array(gradient), np.array(lengths))
+    return Rod(np.array(nodes), np.array(gradient), np.array(lengths), np.array(middles))
 
 
 def rods_of(building: "Building", mesh: Mesh) -> list[tuple[Tie, Rod]]:

@@ -1,4 +1,4 @@
-"""A building as flat shells in space: nodes, elements by part, masses, and what holds it."""
+"""A building or a vault as flat shells in space: nodes, elements by part, masses, and what holds it."""
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -98,9 +98,20 @@ class ShellBar:
 
 
 @dataclass(frozen=True)
+class Foot:
+    """Nodes on the ground that move as one where it gives way: those under a wall, or of a vault's springing."""
+
+    name: str
+    nodes: np.ndarray
+    out: np.ndarray  # (nodes, 3) horizontal unit vectors away from the building
+    along: np.ndarray  # (nodes) place along the foot [m]
+
+
+@dataclass(frozen=True)
 class ShellMesh:
     """xyz (nodes, 3) [m]; held: (node, direction) of supports, springs (node, direction, N/m); floor_mass (nodes) [kg];
-    push (nodes, 3): constant forces that are no weight [N]."""
+    push (nodes, 3): constant forces that are no weight [N]; feet: what may settle. A vault has no walls: its parts bend and
+    lie in no plane."""
 
     xyz: np.ndarray
     parts: list[ShellPart]
@@ -114,6 +125,7 @@ class ShellMesh:
     floor_mass: np.ndarray
     push: np.ndarray
     warnings: list[str] = field(default_factory=list)
+    feet: list[Foot] = field(default_factory=list)
     has_joints = False
 
     def __repr__(self) -> str:

@@ -12,10 +12,12 @@ from extrados.building.rockers.block import BlockModel, block_model
 from extrados.building.rockers.frame import FrameModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, block_linkages, block_reach, members_of, three_impacts
+from extrados.building.rockers.soft_base import UNDAMPED, SoftBaseModel, soft_base_model
 from extrados.building.rockers.words import refuse_words, rocks_as_block
 from extrados.building.templates.arch import ArchAssembly
 from extrados.building.templates.frame import FrameAssembly
 from extrados.core.rocking import Body, limits
+from extrados.core.soft_base import soft_base_body
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -29,20 +31,22 @@ class Rocker:
     what: its kind; word: what answers call it; model: what it was made from. uplift: horizontal acceleration at which it starts to rock [g]; critical: rotation
     of unstable equilibrium to +x and -x [rad]; time_unit [s]: 1/p of a slender block; length: R of the toe or of the
     arch [m]; start_rotation [rad], > 0 to +x. restraints: what holds it besides its weight, None where nothing does.
+    restitution: None on a base that gives way, from which what impacts lose follows; rest: rotation at which it stands [rad].
     """
 
     what: str
     word: str
-    model: BlockModel | ArchModel | MechanismModel
+    model: BlockModel | ArchModel | MechanismModel | SoftBaseModel
     body: Body
     uplift: float
     critical: tuple[float, float]
-    restitution: float
+    restitution: float | None
     time_unit: float
     length: float
     start_rotation: float = 0.0
     warnings: tuple[str, ...] = ()
     restraints: Restraints | None = None
+    rest: float = 0.0
 
     def __repr__(self) -> str:
         return f"<Rocker: {self.what}, rocks from {self.uplift:.4g} g>"
@@ -53,9 +57,20 @@ class Rocker:
 
     def rebounding(self, factor: float) -> "Rocker":
         """The same with c_v times a factor, as long as an impact creates no energy."""
+        assert not isinstance(self.model, SoftBaseModel) and self.restitution is not None
         return replace(
             self, body=self.held(self.model.rebounding(factor)), restitution=min(1.0, factor * self.restitution)
         )
+
+    @property
+    def initial_ratio(self) -> float:
+        """Rotation at the start over the critical one to +x; 0 where it starts as it stands."""
+        return 0.0 if self.start_rotation == self.rest else self.start_rotation / self.critical[0]
+
+    @property
+    def unit_acceleration(self) -> float:
+        """What accelerations are told over [g]: uplift, of a block on a base that gives way that on rigid ground."""
+        return float(self.model.rigid.uplift.min()) if isinstance(self.model, SoftBaseModel) else self.uplift
 
     @property
     def scale(self) -> float:
@@ -64,8 +79,12 @@ class Rocker:
         return self.length if isinstance(self.model, ArchModel) else GRAVITY * (2.5 * self.time_unit) ** 2
 
 
-def make_rocker(building: "Building", linear: bool = False, stones: Assembly | None = None) -> Rocker:
+def make_rocker(
+    building: "Building", linear: bool = False, stones: Assembly | None = None, soft_base: bool = False
+) -> Rocker:
     """The building as one rocking mechanism; NoView says why there is none.
+
+    soft_base: also a block on a base that gives way, which only ensembles and `core.soft_base` rock.
 
     stones: instead of the building's own, as they might be too; an arch of these need not be symmetric and rocks by
     two mechanisms.
@@ -73,8 +92,11 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
     structure, ratio = building.structure, building.initial.rotation_ratio
     if structure is None:
         raise NoView("the deck has no [structure]")
+    if soft_base and building.supports.stiffness is not None:
+        return _on_soft_base(building, linear, stones)
     refuse_words(building, linear)
     piers = building.pier_blocks() if structure.rocks_as == "piers" else None
+    building.refuse_weightless(piers if stones is None else stones)
     if rocks_as_block(building):
         block = block_model(building, linear, stones)
         alpha = block.alpha
@@ -105,6 +127,21 @@ def make_rocker(building: "Building", linear: bool = False, stones: Assembly | N
     return _restrained(made, building)
 
 
+def _on_soft_base(building: "Building", linear: bool, stones: Assembly | None) -> Rocker:
+    """A block, a column or a wall taken as one body, on a base that gives way."""
+    structure, ratio = building.structure, building.initial.rotation_ratio
+    assert structure is not None
+    model = soft_base_model(building, linear, stones)
+    rigid = model.rigid
+    critical = model.critical(1), -model.critical(-1)
+    start = model.turned(ratio)
+    warnings = [*rigid.warnings] if model.core.damping else [*rigid.warnings, UNDAMPED]
+    return Rocker(
+        structure.kind, structure.word, model, soft_base_body(model.core, critical), min(model.uplift(1), model.uplift(-1)),
+        critical, None, float(1.0 / rigid.frequency[0]), float(rigid.block.radius[0]), start, tuple(warnings), rest=model.rest,
+    )  # fmt: skip
+
+
 def _is_restrained(building: "Building") -> bool:
     return bool(building.restraints) or building.supports.abutting_wall is not None
 
@@ -114,7 +151,7 @@ def _restrained(free: Rocker, building: "Building") -> Rocker:
     if not _is_restrained(building):
         return free
     model = free.model
-    assert not isinstance(model, ArchModel) and building.structure is not None
+    assert not isinstance(model, ArchModel | SoftBaseModel) and building.structure is not None
     wall = building.supports.abutting_wall
     sides = (wall != "right", wall != "left")
     rebound = (0.0, 0.0)

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from extrados.building.errors import BadGeometry, NoView
+from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.block import BlockModel, block_model
 from extrados.building.rockers.words import refuse_soft_base
 from extrados.building.templates.block import BlockAssembly
-from extrados.core.soft_base import SoftBase, base_contact
+from extrados.core.soft_base import SoftBase, base_held
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 #: Rotations tried up to the one taken as collapse, in the search for equilibria
 LOOKS = 400
+UNDAMPED = "the base has no damping: it gives all energy back, and bounces go on; give [supports] damping_ratio"
 
 
 @dataclass(frozen=True)
@@ -47,20 +49,11 @@ class SoftBaseModel:
 
     def sinking(self, q: float) -> float:
         """How far it sinks [m] where it is held at a rotation [rad] and free to sink under its weight."""
-        from scipy.optimize import brentq
-
-        sine, _ = self.direction(q)
-        at_edges = sine * np.array([-self.core.toe_left, self.core.toe_right])
-        low, high = -at_edges.max(), -at_edges.min()  # nothing touches; the whole base touches
-        deepest = 2.0 * self.weight / (self.core.stiffness * (self.core.toe_left + self.core.toe_right))
-        return float(
-            brentq(lambda z: base_contact(self.core, q, z).force - self.weight, low, high + deepest, xtol=1e-300)
-        )
+        return float(base_held(self.core, q)[0][0])
 
     def restoring(self, q: float) -> float:
         """Moment that turns it back from a rotation to +x, of its weight and the base [N m]."""
-        sine, cosine = self.direction(q)
-        return cosine * base_contact(self.core, q, self.sinking(q)).moment - sine * self.core.height * self.weight
+        return float(base_held(self.core, q)[2][0])
 
     def lever(self, q: float) -> float:
         """Height at which a horizontal inertia force acts against `restoring` [m]."""
@@ -70,10 +63,7 @@ class SoftBaseModel:
 
     def potential(self, q: float) -> float:
         """Energy of weight and base at a rotation, free to sink, as histories count it [J]."""
-        _, cosine = self.direction(q)
-        z = self.sinking(q)
-        rise = -0.5 * self.core.height * q**2 if self.core.linear else self.core.height * (cosine - 1.0)
-        return self.weight * (rise - z) + base_contact(self.core, q, z).stored
+        return float(base_held(self.core, q)[1][0])
 
     @cached_property
     def rest(self) -> float:
@@ -85,7 +75,7 @@ class SoftBaseModel:
         else:
             right, left = self.limit
             tried = np.linspace(-left, right, 2 * LOOKS + 1)[1:-1]
-            sign = np.array([self.restoring(q) > 0.0 for q in tried])
+            sign = base_held(self.core, tried)[2] > 0.0
             stable = np.flatnonzero(~sign[:-1] & sign[1:])
             if not len(stable):
                 raise BadGeometry(self._too_soft)
@@ -94,6 +84,10 @@ class SoftBaseModel:
         if not self._stiffness_at_rest > 0.0:
             raise BadGeometry(self._too_soft)
         return found
+
+    def turned(self, ratio: float) -> float:
+        """The rotation at the start [rad]: that at which it stands, and a share of the way to the critical one of a side."""
+        return self.rest + abs(ratio) * (self.critical(1 if ratio >= 0.0 else -1) - self.rest)
 
     @property
     def _stiffness_at_rest(self) -> float:
@@ -171,7 +165,7 @@ class SoftBaseModel:
             tried = (
                 self.rest + (side * self.limit[0 if side > 0 else 1] - self.rest) * np.linspace(0.0, 1.0, LOOKS + 1)[1:]
             )
-            back = side * np.array([self.restoring(q) for q in tried])
+            back = side * base_held(self.core, tried)[2]
             ends = int(np.argmax(back <= 0.0)) if (back <= 0.0).any() else len(tried)
             if ends == 0:
                 raise BadGeometry(self._too_soft)
@@ -184,7 +178,8 @@ class SoftBaseModel:
 
             # it may be greatest at the kink where the edge lifts
             places = [p for p in (self.lifted(side),) if 0.0 < (p - self.rest) * side < (critical - self.rest) * side]
-            best = min(range(ends), key=lambda k: lost(tried[k]))
+            levers = np.array([self.lever(q) for q in tried[:ends]])
+            best = int((back[:ends] / levers).argmax())
             low, high = tried[best - 1] if best else self.rest, tried[min(best + 1, len(tried) - 1)]
             found = minimize_scalar(
                 lost, bounds=(min(low, high), max(low, high)), method="bounded", options={"xatol": 1e-13}
@@ -199,13 +194,13 @@ class SoftBaseModel:
         return np.stack([x, self.core.height * np.cos(rotation) - sinking, -rotation], axis=1)[:, None, :]
 
 
-def soft_base_model(building: "Building", linear: bool = False) -> SoftBaseModel:
+def soft_base_model(building: "Building", linear: bool = False, stones: Assembly | None = None) -> SoftBaseModel:
     """A block, a column or a wall without openings taken as one body, on the base of [supports]; NoView where the
-    building is none of these, or held by more."""
+    building is none of these, or held by more. stones: instead of the building's own."""
     supports, structure = building.supports, building.structure
     assert supports.stiffness is not None and structure is not None
     refuse_soft_base(building)
-    rigid = block_model(building, linear)
+    rigid = block_model(building, linear, stones)
     block = rigid.block
     if block.slope:
         raise NoView(

@@ -25,8 +25,9 @@ def refuse_words(building: "Building", linear: bool = False) -> None:
         )
     if building.supports.stiffness is not None:
         raise NoView(
-            "on a base that gives way a building moves in more than one coordinate, which `rocking` (under one block, column or "
-            "wall) and `dem` follow; leave it out, or give it to these analyses alone ([analysis.supports] below them)",
+            "on a base that gives way a building moves in more than one coordinate, which `rocking`, `fragility`, "
+            "`failure-domain`, `failure-curves` and `harmonic-map` (of one block, column or wall) and `dem` follow; leave it "
+            "out, or give it to these analyses alone ([analysis.supports] below them)",
             ("supports", "stiffness"),
         )
     block = rocks_as_block(building)
@@ -42,7 +43,7 @@ def refuse_words(building: "Building", linear: bool = False) -> None:
 
 
 def refuse_soft_base(building: "Building") -> None:
-    """NoView, with the key, where the words of a deck alone say that `rocking` does not follow it on a base that gives way."""
+    """NoView, with the key, where the words of a deck alone say that nothing but `dem` follows it on a base that gives way."""
     key = ("supports", "stiffness")
     if not rocks_as_block(building):
         raise NoView(

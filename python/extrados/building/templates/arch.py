@@ -17,6 +17,7 @@ from extrados.schema.table import key
 if TYPE_CHECKING:
     from extrados.building.building import Building
     from extrados.building.geometry.solids.assembly import SolidAssembly
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
 
 
 @dataclass(frozen=True, repr=False)
@@ -127,6 +128,15 @@ class Arch(Structure):
         from extrados.building.geometry.solids.sections import barrel
 
         return barrel(self._section(building.material.density), self.stones_across, np.radians(self.skew))
+
+    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
+        from extrados.building.mesh.vaults import mesh_barrel
+
+        if self.skew:
+            raise NoView("a skew arch is no shell yet; `tilt` looks at its solids")
+        return mesh_barrel(
+            building, options, self.radius, self.thickness * self.thickness_factor, self.embrace, self.depth
+        )
 
     def _section(self, density: float) -> ArchAssembly:
         return make_arch(

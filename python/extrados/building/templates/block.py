@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 import numpy as np
 from pydantic import model_validator
 
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, NoView
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.mass import together
 from extrados.building.structure import RocksAs, Structure
@@ -90,6 +90,11 @@ def make_block(
     top = height
     if width is not None and height is not None:
         mass = density * width * height * depth
+        if not mass > 0.0:
+            raise NoView(
+                "the block weighs nothing, and stones stand, rock and fall by their weight: give a density above zero",
+                ("material", "density"),
+            )
         inertia = mass * (width**2 + height**2) / 12.0
         centre_height, toe_right, toe_left = 0.5 * height, 0.5 * width, 0.5 * width
         inertia += head_mass * mass / (mass + head_mass) * (0.5 * height) ** 2

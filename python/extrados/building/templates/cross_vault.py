@@ -14,6 +14,7 @@ from extrados.schema.table import key
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
 
 LEAST_PIECE = 0.3  # of a stone's length: a shorter piece joins its neighbour
 QUARTER = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
@@ -130,3 +131,10 @@ class CrossVault(Spatial):
             self.radius, self.thickness * self.thickness_factor, self.embrace, self.voussoirs, edge, self.stone_length,
             self.springers, self.oblong, building.material.density,
         )  # fmt: skip
+
+    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
+        from extrados.building.mesh.vaults import mesh_cross_vault
+
+        edge = self.thickness if self.edge is None else self.edge
+        thickness = self.thickness * self.thickness_factor
+        return mesh_cross_vault(building, options, self.radius, thickness, self.embrace, edge, self.oblong)

@@ -13,6 +13,7 @@ from extrados.schema.table import key
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
 
 
 def make_dome(
@@ -94,3 +95,10 @@ class Dome(Spatial):
             self.radius, self.thickness * self.thickness_factor, self.embrace, self.rings, self.lunes, self.oculus,
             building.material.density, self.bond == "running",
         )  # fmt: skip
+
+    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
+        from extrados.building.mesh.vaults import mesh_dome
+
+        return mesh_dome(
+            building, options, self.radius, self.thickness * self.thickness_factor, self.embrace, self.oculus
+        )

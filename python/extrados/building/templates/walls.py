@@ -14,13 +14,14 @@ from extrados.building.places import Placed
 from extrados.building.structure import RocksAs, Structure
 from extrados.building.templates.brickwork import Laid, make_brickwork
 from extrados.building.templates.piers import make_piers
-from extrados.schema.quantities import Angle, Length, Stress
+from extrados.schema.quantities import Angle, Force, Length, Stress
 from extrados.schema.table import Table, key
 
 if TYPE_CHECKING:
     from extrados.building.building import Building
     from extrados.building.mesh.mesh import Mesh
     from extrados.building.mesh.options import MeshOptions
+    from extrados.building.mesh.shells import ShellMesh, ShellOptions
 
 
 class Region(Placed):
@@ -161,8 +162,29 @@ class Panel(Laid, MeshedWall):
         return make_panel(self, building, options, seed)
 
 
+Vector = Annotated[list[Stress], Field(min_length=3, max_length=3)]
+Force3 = Annotated[list[Force], Field(min_length=3, max_length=3)]
+
+
+class MeshGroup(Table):
+    """What a named group of a mesh file is in space: its elements, or the nodes that its lines, points or elements have."""
+
+    name: str = key(about="of the group in the file, or its number where it has none", min_length=1, max_length=200)
+    thickness: Length | None = key(None, "thickness of its elements", gt=0)
+    material: str | None = key(None, "of its elements: a name of [materials]")
+    linear: bool = key(False, "its elements do not crack")
+    membrane: bool = key(False, "its elements do not bend: a floor")
+    support: Literal["fixed", "pinned", "vertical"] | None = key(
+        None, "its nodes are held: fixed, without their rotations, or upright alone"
+    )
+    pressure: Vector | None = key(None, "[x, y, z] force per area on its elements, with the weight")
+    force: Force3 | None = key(None, "[x, y, z] force in all, spread evenly over its nodes, with the weight")
+
+
 class MeshFile(MeshedWall):
-    """A wall from a mesh file (gmsh, Abaqus and others; needs the extra `extrados[mesh]`)."""
+    """A wall, or shells in space, from a mesh file (gmsh, Abaqus, VTU and others; needs the extra `extrados[mesh]`)."""
+
+    word: ClassVar = "building"
 
     kind: Literal["mesh"]
     starter_analysis: ClassVar = "sla"
@@ -170,10 +192,23 @@ class MeshFile(MeshedWall):
     lacks: ClassVar = dict.fromkeys(
         ("blocks", "rocker"), "a mesh file holds elements, no stones: describe the wall as `panel` or `blocks`"
     )
-    file: str = key(about="mesh file of triangles or quadrilaterals in the x, y plane", min_length=1, max_length=1000)
+    file: str = key(
+        about="mesh file of triangles or quadrilaterals: in the x, y plane for `sla`, in space with z up for `pushover`",
+        min_length=1,
+        max_length=1000,
+    )
+    groups: list[MeshGroup] = key(
+        [], "of shells in space: what the groups of the file are, [[structure.groups]]; a later one overrides an earlier",
+        max_length=1000,
+    )  # fmt: skip
     scale: float = key(1.0, "metres per unit of the file", gt=0, le=1e6)
 
     def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
         from extrados.building.mesh.file import read_mesh
 
         return read_mesh(self, building, options)
+
+    def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
+        from extrados.building.mesh.shell_file import read_shell
+
+        return read_shell(self, building, options)

@@ -4,6 +4,7 @@ import { stage } from "./stage.js";
 import { structurePanel } from "./structure.js";
 import { motionPanel } from "./motion.js";
 import { resultsPanel } from "./results.js";
+import { solidPanel } from "./solid.js";
 import { outMenu } from "./out.js";
 import { sidebar } from "./sidebar.js";
 
@@ -14,9 +15,9 @@ const TABS = [["structure", "Structure"], ["motion", "Motion"], ["results", "Res
 export function mount(root, transport, film, { embedded = false } = {}) {
   const app = {
     root, transport, film, embedded, words: {}, scene: null, arrays: {}, handles: [], deck: null, text: "", name: "", source: {}, forms: [], drops: [],
-    detail: null, resting: true, tab: "structure", view: { gamma: 0, through: null, chain: null }, welcome: null, timings: [],
+    detail: null, resting: true, tab: "structure", view: { gamma: 0, through: null, thrust: null, chain: null }, welcome: null, timings: [],
     layers: { least: true, most: true, through: true, plus: true, minus: false, central: false, reactions: true, joints: true },
-    ask, change, show, edit, say, open, rest, on, undo: () => travel(-1), redo: () => travel(1), typed, setTab, remember, dialog,
+    ask, change, show, edit, say, open, rest, on, tellDetail: () => tell("detail"), undo: () => travel(-1), redo: () => travel(1), typed, setTab, remember, dialog,
   };
   const listeners = {};
   const waiting = new Map(); // number of a message -> what to do with its replies
@@ -60,11 +61,20 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     },
     type: (name, data) => typed(name, data),
     through: (place, ends, when) => show({ through: place }, when),
+    begin: (event) => pressed(event),
     tilt: (gamma, ends, when) => show({ gamma: Math.round(gamma * 2000) / 2000 }, when),
   });
   app.drawing = drawing;
+  app.solid = solidPanel(app, stageBox);
   drawing.layers = app.layers;
 
+  /** Choose the line that has a thrust, between the least and the greatest; text may have a unit. */
+  app.choose = (thrust, when) => { reveal(); show({ thrust, lines: app.view.lines }, when); };
+  function reveal() {
+    app.layers.through = true;
+    app.view.lines = Object.keys(app.layers).filter((key) => app.layers[key]);
+    layersBar.querySelector("[data-layer=through]").setAttribute("aria-pressed", "true");
+  }
   function nudgeThrough(steps) {
     const t = app.scene?.through;
     if (t) show({ through: { joint: t.joint, share: Math.min(1, Math.max(0, t.reached + 0.02 * steps)) } });
@@ -111,9 +121,11 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     flying.delete(entry.lane);
     if (there?.next) ask(there.next.message, there.next);
   }
-  function change(changes, lane) { ask({ do: "set", changes, lane }); }
+  function change(changes, lane, more = {}, when = performance.now()) { ask({ do: "set", changes, lane, ...more }, { when }); }
   function show(view, when) {
     Object.assign(app.view, view);
+    if (view.through) app.view.thrust = null;
+    if (view.thrust !== undefined && view.thrust !== null) app.view.through = null;
     ask({ do: "show", ...view, lane: `show:${Object.keys(view).join()}` }, { when: when ?? performance.now() });
   }
   function edit(text) { ask({ do: "open", text, here: "same" }); }
@@ -126,7 +138,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       flying.clear(); waiting.clear();
       const kept = wasOpen && app.text ? { text: app.text, name: app.name, ...app.source, drops: app.drops } : null;
       ask({ do: "hello", kept });
-      if (kept && (app.view.gamma || app.view.through)) ask({ do: "show", gamma: app.view.gamma, lines: app.view.lines, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
+      if (kept && (app.view.gamma || app.view.through || app.view.thrust !== null)) ask({ do: "show", gamma: app.view.gamma, lines: app.view.lines, thrust: app.view.thrust, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
       if (wasOpen) say("The server is back; this page has its state again.");
     } else {
       banner.hidden = false;
@@ -152,31 +164,39 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       drawing.show(app.scene, arrays, app.handles, words.opened === true);
       if (["drag", "set"].includes(words.to)) dirty = true;
       tell("scene", words.opened === true, entry?.when);
-      if (!["open", "hello"].includes(words.to)) say("");
+      if (words.to !== "hello") say("");
+      rest();
+    }
+    else if (words.to === "set" && words.deck) { // a motion alone has changed
+      app.deck = words.deck;
+      dirty = true;
+      if (words.rocking === undefined) tell("scene", false, entry?.when);
+      say("");
       rest();
     }
     if (words.detail) { app.detail = words.detail; Object.assign(app.arrays, arrays); drawing.redraw(); tell("detail"); }
     if (words.text !== undefined && words.to === "rest") settled(words);
-    for (const key of ["rocking", "domain", "impulse", "run", "computing", "saved"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
+    for (const key of ["rocking", "domain", "impulse", "push", "run", "computing", "saved"]) if (words[key] !== undefined) tell(key, words[key], arrays, words);
     entry?.reply?.(words, arrays);
     if (entry) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
       if (words.scene && entry.when && ["drag", "show", "set"].includes(entry.message.do)) painted(entry, words.ms);
-      if (words.rocking || words.domain?.stride > 1) painted(entry, words.ms);
+      if (words.rocking) painted(entry, words.ms, "rocking");
+      if (words.domain?.stride > 1) painted(entry, words.ms);
     }
   };
   /** From the event to the picture that the next frame has put on the screen. */
-  function painted(entry, server) {
+  function painted(entry, server, what = entry.message.do) {
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
-      channel.port1.onmessage = () => { app.timings.push({ do: entry.message.do, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); };
+      channel.port1.onmessage = () => { app.timings.push({ do: what, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); };
       channel.port2.postMessage(0);
     });
   }
   function opened(words) {
     app.text = words.text; app.name = words.name; app.forms = words.forms;
     if (words.opened) {
-      app.source = words.source; app.view = { gamma: 0, through: null, chain: null };
+      app.source = words.source; app.view = { gamma: 0, through: null, thrust: null, chain: null };
       wasOpen = true;
       if (!travelling) { past = [words.text]; future = []; }
       if (!words.source.dropped && words.source.here !== "dropped") app.drops = [];
@@ -309,7 +329,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     dialog("How to use this page", h("ul", { class: "help" },
       h("li", {}, "Drag a handle of the drawing: sizes of the building, the vertex of a free block, a load, the thrust line, the tilt of the ground."),
       h("li", {}, "Tab goes from handle to handle; arrow keys move one, with Shift ten times as far; Enter or a double click lets you type its value, with a unit if you like."),
-      h("li", {}, "Click into the stones beside the line: the thrust line that passes there is drawn. Shown are the least and the greatest thrust of an arch as well."),
+      h("li", {}, "Click into the stones, or drag there: the thrust line that passes there is drawn. Or drag the thrust itself, below the drawing, from the least to the greatest (keys Home and End)."),
       h("li", {}, "Ctrl+Z undoes, Ctrl+Shift+Z does again, Ctrl+S saves the deck, Space plays a motion."),
       h("li", {}, "Drop a deck (TOML), a drawing (DXF, JSON) or a record (CSV, AT2) on the page."),
       h("li", {}, "The page is served by this machine to this machine; nothing leaves it.")));
@@ -317,7 +337,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
 
   // Layers over the drawing
 
-  const LAYERS = [["least", "Least thrust"], ["most", "Greatest"], ["through", "Through a point"], ["plus", "Collapse +x"], ["minus", "Collapse −x"], ["central", "Central"], ["reactions", "Reactions"], ["joints", "Joints"]];
+  const LAYERS = [["least", "Least thrust"], ["most", "Greatest"], ["through", "Chosen line"], ["plus", "Collapse +x"], ["minus", "Collapse −x"], ["central", "Central"], ["reactions", "Reactions"], ["joints", "Joints"]];
   const playButton = h("button", { class: "layer", "aria-pressed": "false", title: "Let the mechanism move", onclick: () => mechanism() }, "▶ Mechanism");
   layersBar.append(...LAYERS.map(([name, label]) => h("button", { class: `layer ${name}`, "aria-pressed": String(Boolean(app.layers[name])), "data-layer": name, onclick: (e) => {
     app.layers[name] = !app.layers[name];
@@ -353,22 +373,22 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   }
   /** The mechanism at a share of its way, for films; null where there is none. */
   app.mechanismAt = (share) => {
+    if (app.scene?.seen) return app.solid.mechanismAt(share);
     const way = app.view.gamma < 0 || (app.layers.minus && !app.layers.plus) ? "minus" : "plus";
     if (!app.arrays[`${way}_velocity`]) return false;
     if (share !== undefined) drawing.pose(share === null ? null : between(way, share));
     return true;
   };
-  app.stopMechanism = () => { if (swing) mechanism(true); };
+  app.stopMechanism = () => { if (swing) mechanism(true); app.solid.stop(); };
   app.mechanismShown = () => swing !== null;
-  stageBox.addEventListener("pointerdown", (e) => {
-    if (e.button !== 0 || e.target.closest?.(".knob") || app.tab === "motion" || !app.scene?.chains?.length || drawing.moving()) return;
-    if (!e.target.closest?.(".stones, .joints, .thrust")) return;
+  /** A press beside the handles: the line of thrust follows from there on. */
+  function pressed(e) {
+    if (e.button !== 0 || app.tab === "motion" || !app.scene?.chains?.length || drawing.moving() || !e.target.closest?.(".stones, .joints, .thrust")) return false;
+    reveal();
     const edge = drawing.svg.getBoundingClientRect();
-    app.layers.through = true;
-    app.view.lines = Object.keys(app.layers).filter((key) => app.layers[key]);
-    layersBar.querySelector("[data-layer=through]").setAttribute("aria-pressed", "true");
     show({ lines: app.view.lines, through: drawing.modelOf(e.clientX - edge.left, e.clientY - edge.top) });
-  });
+    return true;
+  }
   const turned = () => drawing.setTheta(app.tab === "motion" ? 0 : Math.atan(app.scene?.gamma ?? 0));
   app.turned = turned;
 
@@ -377,8 +397,14 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   structurePanel(app, lower);
   motionPanel(app, lower, stageFrame);
   resultsPanel(app, wide);
+  const arranged = () => {
+    const results = app.tab === "results", plain = Boolean(app.scene?.empty);
+    wide.hidden = !results; stageFrame.hidden = results; layersBar.hidden = plain;
+    lower.hidden = results || (plain && app.tab === "structure");
+  };
+  on("scene", arranged);
   on("tab", (name) => {
-    wide.hidden = name !== "results"; stageFrame.hidden = lower.hidden = name === "results";
+    arranged();
     if (name !== "structure") app.stopMechanism();
     turned();
     drawing.fit();

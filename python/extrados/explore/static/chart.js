@@ -19,6 +19,7 @@ const tick = (value, step) => {
 function range(data, factor = 1, seen = [Infinity, -Infinity]) {
   for (let i = 0; i < data.length; i += 1) {
     const v = data[i] * factor;
+    if (!Number.isFinite(v)) continue;
     if (v < seen[0]) seen[0] = v;
     if (v > seen[1]) seen[1] = v;
   }

@@ -52,23 +52,37 @@ export function motionPanel(app, lower, frame) {
     if (there) { refresh(); requestAnimationFrame(draw); } else { pause(); app.drawing.pose(null); }
   });
   app.on("scene", (opened, when) => {
-    if (opened) { it.earlier = []; it.arrays = it.words = it.map = null; impulse.textContent = ""; }
+    if (opened) { it.earlier = []; it.arrays = it.words = it.map = it.ground = it.impulse = null; words.textContent = impulse.textContent = ""; pause(); draw(); }
     const motion = app.deck?.motion;
     kinds.value = motion ? ([...kinds.options].some((o) => o.value === motion.kind) ? motion.kind : "") : "";
     if (app.tab === "motion") refresh(when);
   });
   app.on("theme", () => draw());
-  app.on("complaint", (told, message) => { if (app.tab === "motion" && ["rocking", "domain"].includes(message?.do)) { words.textContent = (told.complaints ?? [told.bad]).join(" "); it.arrays = null; draw(); } });
+  app.on("complaint", (told, message) => {
+    const text = (told.complaints ?? [told.bad]).join(" ");
+    if (message?.do === "rocking") none(text, null);
+    else if (message?.do === "domain") { it.map = { why: text }; drawMap(); }
+    else if (message?.do === "impulse") impulse.textContent = `No primary impulse: ${text}`;
+  });
+  /** Say why there is no response; the motion, where there is one, is drawn all the same. */
+  function none(text, ground) {
+    it.arrays = it.words = null; it.ground = ground;
+    words.textContent = text;
+    slider.disabled = true;
+    clock.textContent = "";
+    app.drawing.pose(null);
+    draw();
+  }
 
   let slow = null;
   function refresh(when) {
-    if (!app.scene || app.scene.empty) { words.textContent = app.scene?.empty ?? ""; return; }
+    if (!app.scene) return;
     if (app.deck?.motion) app.ask({ do: "rocking", lane: "rocking" }, { when: when ?? performance.now() });
-    else { words.textContent = "There is no motion yet: choose one below, or drop a record on the page."; charts.pulse.draw(blank("Motion"), {}); }
+    else { none("There is no motion yet: choose one below, or drop a record on the page.", null); }
     clearTimeout(slow);
     slow = setTimeout(() => {
-      app.ask({ do: "domain", lane: "domain" });
-      if (app.deck?.motion?.kind === "record") app.ask({ do: "impulse", lane: "impulse" });
+      if (app.deck?.structure) app.ask({ do: "domain", lane: "domain" });
+      if (app.deck?.structure && app.deck?.motion?.kind === "record") app.ask({ do: "impulse", lane: "impulse" });
     }, 60);
   }
   const blank = (title) => ({ title, x: { label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [], span: [0, 1] });
@@ -79,7 +93,8 @@ export function motionPanel(app, lower, frame) {
     if (tables[kind]) app.change({ motion: tables[kind] });
   }
   app.on("rocking", (told, arrays) => {
-    it.words = told; it.arrays = arrays;
+    if (told.refused) { none(told.refused, arrays); return; }
+    it.words = told; it.arrays = it.ground = arrays;
     const verdict = { "no-hinging": "It does not rock. ", recovery: "It rocks and recovers. ", collapse: "It comes down. " }[told.outcome] ?? "";
     words.replaceChildren(h("b", { class: told.outcome === "collapse" ? "bad" : "good" }, verdict), told.answer, ...told.warnings.slice(0, 2).map((w) => h("span", { class: "warning" }, ` ${w}`)));
     it.end = told.active_s || 1;
@@ -87,35 +102,44 @@ export function motionPanel(app, lower, frame) {
     set(slider, { max: end });
     slider.disabled = !arrays.pose;
     it.time = Math.min(it.time, end);
-    draw();
+    draw(false);
     seek(it.time, false);
   });
   app.on("impulse", (told) => { impulse.textContent = told.refused ? `No primary impulse: ${told.refused}` : told.answer; it.impulse = told; draw(); });
   app.on("domain", (told, arrays) => { it.map = { told, arrays }; drawMap(); });
 
-  function draw() {
+  /** map: the map of pulses too, which a new response leaves as it is. */
+  function draw(map = true) {
     if (app.tab !== "motion") return;
-    const { arrays, words: told } = it;
+    const { arrays, words: told, ground } = it;
+    if (!ground?.motion) charts.pulse.draw(blank("Ground acceleration"), {});
+    else {
+      let [low, high] = [0, 0];
+      for (const v of ground.motion) { low = Math.min(low, v); high = Math.max(high, v); }
+      charts.pulse.draw({ title: "Ground acceleration", x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: Math.min(0, 1.1 * low), most: Math.max(0, 1.22 * high) }, ground);
+    }
     if (!arrays) { for (const key of ["history", "energy", "friction"]) charts[key].draw({ ...blank({ history: "Rotation", energy: "Energy", friction: "Friction along the joints" }[key]), y: { label: "", unit: "" } }, {}); }
     else {
-      charts.pulse.draw({ title: "Ground acceleration", x: { array: "motion_time", label: "time", unit: "s" }, y: { label: "acceleration", unit: "g" }, series: [{ array: "motion", label: "ground" }], least: 0, most: 1.22 * arrays.motion.reduce((m, v) => Math.max(m, v), 0) }, arrays);
       const critical = 1e3 * told.critical_rad[0], most = 1e3 * Math.abs(told.peak_rotation_rad);
       const flat = (v) => ({ x: Float32Array.of(0, arrays.time.at(-1) || 1), y: Float32Array.of(v, v) });
       const level = flat(critical), under = flat(-1e3 * told.critical_rad[1]);
       const showLimit = most > 0.25 * critical;
       charts.history.draw({ title: "Rotation", x: { array: "time", label: "time", unit: "s" }, y: { label: "rotation", unit: "mrad" }, symmetric: true, span: [0, it.end], marks: Float64Array.from(told.impact_times_s),
-        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: "now", factor: 1e3, unnamed: true, colour: 0 },
+        series: [...it.earlier.map((e) => ({ array: e.rotation, x: e.time, label: "earlier", factor: 1e3, faint: true, unnamed: true, colour: 5 })), { array: "rotation", label: arrays.rotation_upper ? "lower block" : "now", factor: 1e3, unnamed: !arrays.rotation_upper, colour: 0 },
+          ...(arrays.rotation_upper ? [{ array: "rotation_upper", label: "upper block", factor: 1e3, colour: 2, dashed: true }] : []),
           ...(showLimit ? [{ array: level.y, x: level.x, label: "critical", dashed: true, colour: 1, unnamed: true }, { array: under.y, x: under.x, label: "critical", dashed: true, colour: 1, unnamed: true }] : [])] }, arrays);
       const axis = { array: "time", label: "time", unit: "s" }, span = [0, it.end];
       const big = Math.max(...[...arrays.potential, ...arrays.kinetic].map(Math.abs), 1e-12), kilo = big > 2000 ? [1e-3, "kJ"] : [1, "J"];
       if (shownThird === "energy") charts.energy.draw({ title: "Energy", span, x: axis, y: { label: "energy", unit: kilo[1] }, series: [{ array: "kinetic", label: "kinetic", factor: kilo[0] }, { array: "potential", label: "potential", factor: kilo[0] }, { array: "ledger", label: "supplied less lost", dashed: true, factor: kilo[0] }] }, arrays);
     }
-    drawMap();
+    if (map || !it.map || it.map.why) drawMap(); else dot(charts.map);
     cursors();
   }
   function drawMap() {
     if (app.tab !== "motion" || shownThird !== "map") return;
-    if (!it.map) { charts.map.draw({ title: "Which pulses bring it down", x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
+    boxes.map.querySelector(".map-why")?.remove();
+    if (it.map?.why) boxes.map.append(h("p", { class: "map-why" }, `No map: ${it.map.why}.`));
+    if (!it.map || it.map.why) { boxes.map.querySelector(".map-legend")?.remove(); charts.map.draw({ title: "Which pulses bring it down", x: { label: "duration", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], span: [0, 1] }, {}); return; }
     const { told, arrays } = it.map;
     charts.map.draw({ title: `Which ${told.pulse} pulses bring it down`, x: { array: "duration", label: told.pulse === "step" ? "t_p" : "T_p", unit: "s" }, y: { label: "amplitude", unit: "g" }, series: [], heat: { codes: "codes", x: "duration", y: "amplitude", stride: told.stride }, least: 0 }, arrays);
     if (!boxes.map.querySelector(".map-legend")) boxes.map.append(h("div", { class: "map-legend" }, told.outcomes.map((o, k) => h("span", {}, h("i", { class: `m${k}` }), o))));
@@ -144,12 +168,12 @@ export function motionPanel(app, lower, frame) {
     pulseTo(p.duration_s * (1 + m * step[0]), p.amplitude_g * (1 + m * step[1]));
   }
   /** Give the pulse another duration and amplitude; only pulses have them. */
-  function pulseTo(duration, amplitude) {
+  function pulseTo(duration, amplitude, when) {
     const motion = app.deck?.motion;
     if (!motion?.pulse) return;
     const sign = motion.amplitude < 0 ? -1 : 1;
     const key = motion.kind === "step-pulse" ? "duration" : "period";
-    app.change({ "motion.amplitude": `${Number((sign * Math.max(amplitude, 1e-3)).toPrecision(3))} g`, [`motion.${key}`]: Number(Math.max(duration, 1e-3).toPrecision(3)) }, "pulse");
+    app.change({ "motion.amplitude": `${Number((sign * Math.max(amplitude, 1e-3)).toPrecision(3))} g`, [`motion.${key}`]: Number(Math.max(duration, 1e-3).toPrecision(3)) }, "pulse", { rocking: true }, when);
   }
   function place(x, y) { if (pulse() && !pulse().record) pulseTo(x, y); else if (!app.deck?.motion) begin("step-pulse"); }
   function pulseHandles(c) {
@@ -196,7 +220,7 @@ export function motionPanel(app, lower, frame) {
     const invert = c.invert;
     const move = (e) => {
       const [t, a] = invert(e.clientX - edge.left, e.clientY - edge.top), now = app.deck.motion.pulse;
-      if (name === "amplitude") pulseTo(now.duration_s, Math.max(app.deck.motion.amplitude < 0 ? -a : a, 1e-3)); else pulseTo(Math.max(t, 0.005), now.amplitude_g);
+      if (name === "amplitude") pulseTo(now.duration_s, Math.max(app.deck.motion.amplitude < 0 ? -a : a, 1e-3), e.timeStamp); else pulseTo(Math.max(t, 0.005), now.amplitude_g, e.timeStamp);
     };
     knob.addEventListener(kind, move);
     const up = () => { knob.removeEventListener(kind, move); };
@@ -221,7 +245,8 @@ export function motionPanel(app, lower, frame) {
     const share = w > p ? Math.min(1, (it.time - p) / (w - p)) : 0;
     const pose = new Float32Array(blocks * 3), at = 3 * blocks * k, next = share > 0 ? at + 3 * blocks : at;
     for (let i = 0; i < pose.length; i += 1) pose[i] = a.pose[at + i] + share * (a.pose[next + i] - a.pose[at + i]);
-    if (turned && app.arrays.centroid?.length === 2 * blocks) app.drawing.pose(pose, 0, a.line, a.line ? 2 * n * k : 0, n);
+    const piers = a.moving_outline ? { outline: a.moving_outline, outline_start: a.moving_start, centroid: a.moving_centroid } : null;
+    if (turned && (piers ?? app.arrays).centroid?.length === 2 * blocks) app.drawing.pose(pose, 0, a.line, a.line ? 2 * n * k : 0, n, piers);
     cursors();
   }
   function frameAt(time) {

@@ -17,6 +17,11 @@ export function alone(svg, background) {
   const [, , w, hgt] = copy.getAttribute("viewBox").split(" ").map(Number);
   const paper = document.createElementNS("http://www.w3.org/2000/svg", "rect");
   for (const [key, value] of Object.entries({ x: 0, y: 0, width: w, height: hgt, fill: background })) paper.setAttribute(key, value);
+  if (svg.backdrop) {
+    const image = document.createElementNS("http://www.w3.org/2000/svg", "image");
+    for (const [key, value] of Object.entries({ href: svg.backdrop.toDataURL(), x: 0, y: 0, width: w, height: hgt })) image.setAttribute(key, value);
+    copy.prepend(image);
+  }
   copy.prepend(paper);
   return { text: new XMLSerializer().serializeToString(copy), w, h: hgt };
 }
@@ -39,7 +44,7 @@ export function outMenu(app) {
   const paper = () => getComputedStyle(app.root).getPropertyValue("--paper").trim();
   const shown = (svg) => svg.getBoundingClientRect().width > 0;
   const charts = () => [...app.root.querySelectorAll("svg.chart, svg.polygon, svg.gauge")].filter(shown);
-  const seen = () => (app.tab !== "results" ? app.drawing.svg : shown(app.results.columns[0].svg) ? app.results.columns[0].svg : charts()[0]);
+  const seen = () => (app.tab !== "results" ? (app.scene?.seen?.sort === "space" ? app.space.svg : app.drawing.svg) : shown(app.results.columns[0].drawn()) ? app.results.columns[0].drawn() : charts()[0]);
   const stem = () => app.name.replace(/\.toml$/, "") || "extrados";
   const svg = () => download(new Blob([alone(seen(), paper()).text], { type: "image/svg+xml" }), `${stem()}.svg`);
   function all() {

@@ -1,6 +1,7 @@
 // Stored runs: charts and bodies of one analysis, stepped or played; two runs side by side.
 import { chart } from "./chart.js";
 import { h, number, s, set } from "./dom.js";
+import { carried, space } from "./space.js";
 import { piecesPath, stonesPath } from "./stage.js";
 
 export function resultsPanel(app, wide) {
@@ -67,9 +68,10 @@ export function resultsPanel(app, wide) {
     const scale = h("select", { "aria-label": "Scale of displacements", onchange: () => picture() }, [1, 10, 100, 1000].map((v) => h("option", { value: v }, `× ${v}`)));
     const player = h("div", { class: "player" }, play, slider, clock, scale);
     const area = h("div", { class: "charts" });
-    const numbers = h("table", { class: "numbers" });
-    it.box = h("section", { class: "column", "aria-label": `Run ${side}` }, h("div", { class: "row" }, runs, kinds), answer, figure, player, area, h("details", {}, h("summary", {}, "Numbers"), numbers));
-    it.svg = svg;
+    const numbers = h("table", { class: "numbers" }), tables = h("div", { class: "tables" }), more = h("details", {}, h("summary", {}, "Numbers"), numbers);
+    it.box = h("section", { class: "column", "aria-label": `Run ${side}` }, h("div", { class: "row" }, runs, kinds), answer, figure, player, area, tables, more);
+    const view = space(figure);
+    it.drawn = () => (it.words?.body?.sort === "space" ? view.svg : svg);
     figure.hidden = player.hidden = true;
     new ResizeObserver(() => redraw()).observe(figure);
 
@@ -94,6 +96,9 @@ export function resultsPanel(app, wide) {
       if (words.charts === undefined) return;
       it.arrays = arrays;
       numbers.replaceChildren(h("tbody", {}, (words.numbers ?? []).map(([k, v]) => h("tr", {}, h("th", { scope: "row" }, k), h("td", {}, typeof v === "number" ? number(v, 6) : String(v))))));
+      const cell = (v) => (Number.isInteger(v) && Math.abs(v) < 1e7 ? String(v).replace("-", "−") : typeof v === "number" ? number(v, 5) : v === null ? "" : String(v));
+      tables.replaceChildren(...(words.tables ?? []).map((t) => h("figure", {}, h("figcaption", {}, t.title), h("table", { class: "numbers rows" }, h("thead", {}, h("tr", {}, t.columns.map((c) => h("th", { scope: "col" }, c.replaceAll("_", " "))))), h("tbody", {}, t.rows.map((row) => h("tr", {}, row.map((v) => h("td", { class: typeof v === "number" ? "" : "text" }, cell(v))))))), t.left_out ? h("p", {}, `and ${t.left_out} more, in the folder of the run`) : null)));
+      more.open = !words.charts.length && !words.body;
       area.replaceChildren();
       it.charts = words.charts.map((spec) => {
         const box = h("div", { class: "fill chart-box" });
@@ -103,9 +108,21 @@ export function resultsPanel(app, wide) {
       it.time = 0; it.k = 0;
       const times = arrays.body_time;
       figure.hidden = !words.body; player.hidden = !words.body || !times || times.length < 2;
-      scale.hidden = words.body?.sort !== "mesh";
+      scale.hidden = words.body?.sort !== "mesh" && !words.body?.walls;
+      const solid = words.body?.sort === "space";
+      svg.toggleAttribute("hidden", solid);
+      view.show(solid ? { ...arrays, both: words.body.walls, push: words.body.push } : null);
+      view.label = `${words.title}.`;
       if (times) { set(slider, { min: times[0], max: times[times.length - 1] }); it.time = times[0]; }
-      if (words.body?.sort === "mesh") { scale.value = 100; it.time = times[times.length - 1]; }
+      if (scale.hidden === false) { // the state of the greatest load, moved so that it can be seen
+        let k = 0;
+        for (let i = 0; i < times.length; i += 1) if (arrays.state_held[i] && Math.abs(arrays.state_load[i]) > Math.abs(arrays.state_load[k])) k = i;
+        it.time = times[k];
+        const places = arrays.node ?? arrays.vertex, n = places.length, moved = arrays.state_moved;
+        let far = 0, low = Infinity, high = -Infinity;
+        for (let i = 0; i < n; i += 1) { low = Math.min(low, places[i]); high = Math.max(high, places[i]); far = Math.max(far, Math.abs(moved?.[n * k + i] ?? 0)); }
+        scale.value = [1000, 100, 10].find((v) => v * far <= 0.08 * (high - low)) ?? 1;
+      }
       redraw();
     }
     function redraw() {
@@ -122,7 +139,7 @@ export function resultsPanel(app, wide) {
         it.k = low;
         slider.value = it.time;
         const unit = it.words.body?.unit ?? "";
-        clock.textContent = it.words.body?.sort === "mesh" ? `event ${Math.round(times[low])}` : `${number(it.time, 4)} ${unit}`;
+        clock.textContent = it.words.body?.label === "event" ? `event ${Math.round(times[low])}` : `${number(it.time, 4)} ${unit}`;
         slider.setAttribute("aria-valuetext", `${it.words.body?.label} ${clock.textContent}`);
       } else it.time = value;
       picture();
@@ -141,6 +158,7 @@ export function resultsPanel(app, wide) {
     function picture() {
       const body = it.words?.body, a = it.arrays, w = figure.clientWidth, hgt = figure.clientHeight;
       if (!body || !w || figure.hidden) return;
+      if (body.sort === "space") { solids(a, body); return; }
       set(svg, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt, "aria-label": `${it.words.title}: ${body.label} ${clock.textContent}` });
       const xy = body.sort === "mesh" ? a.node : a.outline;
       let x0 = Infinity, x1 = -Infinity, y0 = Infinity, y1 = -Infinity;
@@ -153,6 +171,13 @@ export function resultsPanel(app, wide) {
       else stones(world, a, body);
       svg.replaceChildren(world);
       if (body.lines?.length) svg.append(s("g", {}, body.lines.map((l, i) => s("text", { class: `line-label ${l.name}`, x: 10, y: 16 + 15 * i, text: `— ${l.label}` }))));
+    }
+    function solids(a, body) {
+      if (!body.walls) { view.move(carried(a, a.pose, it.time)); return; }
+      const n = a.vertex.length, off = n * it.k, factor = Number(scale.value), place = new Float32Array(n), faces = a.face_start.length - 1;
+      for (let i = 0; i < n; i += 1) place[i] = a.vertex[i] + factor * a.state_moved[off + i];
+      view.move(place, a.state_tone.subarray(faces * it.k, faces * (it.k + 1)));
+      clock.textContent = `event ${Math.round(a.body_time[it.k])}, base shear ${number(a.state_load[it.k] / 1e3, 4)} kN, widest crack ${number(1e3 * a.state_width[it.k], 2)} mm`;
     }
     function stones(world, a, body) {
       if (a.support_outline) world.append(s("path", { class: "supports", d: stonesPath(a.support_outline, a.support_start) }));

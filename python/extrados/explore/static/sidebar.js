@@ -23,6 +23,7 @@ export function sidebar(app, box) {
   function answer() {
     const scene = app.scene;
     if (!scene) return;
+    if (scene.seen) { pages.answer.replaceChildren(...app.solid.page(scene.seen, scene.empty)); return; }
     if (scene.empty) { pages.answer.replaceChildren(h("p", { class: "verdict" }, scene.empty)); return; }
     const parts = [];
     const c = scene.capacity;
@@ -40,6 +41,7 @@ export function sidebar(app, box) {
       rows.push(row("Least thrust", h("span", { "data-number": "least" }, quantity(scene.least_N, "N")), "horizontal thrust of the chain at the present tilt"));
       rows.push(row("Greatest thrust", h("span", { "data-number": "most" }, quantity(scene.most_N, "N"))));
     }
+    if (scene.chosen) rows.push(row("Chosen line", quantity(scene.chosen.thrust_N, "N"), "the line between those of least and greatest thrust that has this one"));
     if (scene.through) rows.push(row("Through the point", quantity(scene.through.thrust_N, "N")));
     if (app.detail && "safety" in app.detail) rows.push(row("Geometric safety", app.detail.safety === null ? "unbounded" : number(app.detail.safety, 3), "one over the least part of the joints that holds a thrust line upright"));
     if (scene.required_friction !== undefined) rows.push(row("Friction needed", number(scene.required_friction, 3), "coefficient of friction needed at collapse to +x"));
@@ -56,7 +58,7 @@ export function sidebar(app, box) {
       parts.push(h("h3", {}, text), h("ul", { class: "plain" }, scene[`${name}_hinges`].map((x) => h("li", {}, x.where)), (scene[`${name}_sliding`] ?? []).slice(0, 6).map((x) => h("li", {}, `slides: ${x.name}`))));
     }
     if (scene.reactions?.length && app.layers.reactions) {
-      const of = { least: "at least thrust", through: "of the line through the point", plus: "at collapse" }[scene.reactions_of] ?? "";
+      const of = { least: "at least thrust", through: "of the chosen line", plus: "at collapse" }[scene.reactions_of] ?? "";
       parts.push(h("h3", {}, `Reactions ${of}`), h("table", { class: "numbers" }, h("thead", {}, h("tr", {}, h("th", {}, ""), h("th", {}, "across"), h("th", {}, "up"))), h("tbody", {}, scene.reactions.slice(0, 12).map((r) => h("tr", {}, h("th", { scope: "row" }, r.name), h("td", {}, quantity(r.x_N, "N", 3)), h("td", {}, quantity(r.y_N, "N", 3)))))));
     }
     if (scene.remark) parts.push(h("p", { class: "remark" }, scene.remark));

@@ -134,6 +134,7 @@ export function stage(box, hands) {
       set(stones, { d: stonesPath(arrays.outline, arrays.outline_start) });
       set(ghost, { d: "" });
     } else drawPose();
+    stones.classList.toggle("elements", Boolean(scene.seen));
     let d = "";
     if (layers.joints !== false && !shownPose) for (let j = 0; j < arrays.joint_p.length; j += 2) d += `M${f(arrays.joint_p[j])} ${f(arrays.joint_p[j + 1])}L${f(arrays.joint_q[j])} ${f(arrays.joint_q[j + 1])}`;
     set(joints, { d });
@@ -163,6 +164,10 @@ export function stage(box, hands) {
       nx /= length; ny /= length;
       const side = (arrays.centroid[2 * b] - px) * nx + (arrays.centroid[2 * b + 1] - py) * ny > 0 ? -1 : 1;
       d += `M${f(px)} ${f(py)}L${f(qx)} ${f(qy)}L${f(qx + side * nx * size)} ${f(qy + side * ny * size)}L${f(px + side * nx * size)} ${f(py + side * ny * size)}Z`;
+    }
+    for (let i = 0; arrays.held && i < arrays.held.length; i += 2) {
+      const [x, y] = [arrays.held[i], arrays.held[i + 1]];
+      d += `M${f(x)} ${f(y)}l${f(-0.3 * size)} ${f(-0.6 * size)}h${f(0.6 * size)}Z`;
     }
     set(supports, { d });
   }
@@ -225,7 +230,7 @@ export function stage(box, hands) {
         wanted.set("through", { name: "through", label: `Thrust line through ${t.name}`, at: t.at, along: "both", text: `at ${number(t.reached, 3)} of the joint, ${quantity(t.thrust_N, "N", 4)}`, now: t.reached, sort: "through" });
       }
       const [, , x1] = it.bounds, reach = x1 + 0.1 * (x1 - it.bounds[0]);
-      wanted.set("tilt", { name: "tilt", label: "Tilt of the ground", at: [reach, 0], along: "y", text: `${number(degrees(scene.gamma), 3)}°, ${number(scene.gamma, 3)} g`, now: scene.gamma, sort: "tilt" });
+      if (!scene.seen) wanted.set("tilt", { name: "tilt", label: "Tilt of the ground", at: [reach, 0], along: "y", text: `${number(degrees(scene.gamma), 3)}°, ${number(scene.gamma, 3)} g`, now: scene.gamma, sort: "tilt" });
     }
     for (const [name, element] of knob) if (!wanted.has(name)) { element.remove(); knob.delete(name); }
     for (const [name, w] of wanted) {
@@ -287,6 +292,17 @@ export function stage(box, hands) {
     element.addEventListener("pointerup", up, { once: true });
     element.addEventListener("pointercancel", up, { once: true });
   }
+  /** The line through a point is dragged from where the stones are pressed. */
+  svg.addEventListener("pointerdown", (event) => {
+    if (event.target.closest?.(".knob") || !hands.begin(event)) return;
+    svg.setPointerCapture(event.pointerId);
+    dragging = { name: "through", dx: 0, dy: 0, edge: svg.getBoundingClientRect(), theta: view.theta };
+    const move = (e) => moved(e, false);
+    const up = () => { svg.removeEventListener("pointermove", move); dragging = null; };
+    svg.addEventListener("pointermove", move);
+    svg.addEventListener("pointerup", up, { once: true });
+    svg.addEventListener("pointercancel", up, { once: true });
+  });
   function moved(event, ends) {
     if (!dragging) return;
     const px = event.clientX - dragging.edge.left - dragging.dx, py = event.clientY - dragging.edge.top - dragging.dy;
@@ -299,18 +315,18 @@ export function stage(box, hands) {
 
   // Stones that move
 
-  /** Show the stones in a pose; null brings them back. line: points of a thrust line of that pose. */
-  function pose(value, offset = 0, line = null, lineOffset = 0, points = 0) {
+  /** Show the stones in a pose; null brings them back. line: points of a thrust line of that pose; body: other stones. */
+  function pose(value, offset = 0, line = null, lineOffset = 0, points = 0, body = null) {
     const was = shownPose;
-    shownPose = value ? { value, offset, line, lineOffset, points } : null;
+    shownPose = value ? { value, offset, line, lineOffset, points, body: body ?? last } : null;
     if (!last?.outline) return;
     if (!value) { set(dynamic, { d: "" }); redraw(); return; }
     if (!was) redraw(); else drawPose();
   }
   function drawPose() {
-    const { value, offset, line, lineOffset, points } = shownPose;
-    set(ghost, { d: stonesPath(last.outline, last.outline_start) });
-    set(stones, { d: stonesPath(last.outline, last.outline_start, last.centroid, value, offset) });
+    const { value, offset, line, lineOffset, points, body } = shownPose;
+    set(ghost, { d: stonesPath(body.outline, body.outline_start) });
+    set(stones, { d: stonesPath(body.outline, body.outline_start, body.centroid, value, offset) });
     let d = "", pen = false;
     if (line) for (let i = 0; i < points; i += 1) {
       const x = line[lineOffset + 2 * i], y = line[lineOffset + 2 * i + 1];

@@ -36,9 +36,19 @@ export function structurePanel(app, lower) {
       s("path", { class: "scale", d: `M10 ${hgt - 12}V${hgt - 8}H${10 + step * k}V${hgt - 12}` }), s("text", { x: 16 + step * k, y: hgt - 7, text: quantity(step, "N", 1) }));
     set(svg, { "aria-label": `Force polygon of the ${app.scene.chain}: horizontal thrust ${quantity(rays[0], "N", 3)}.` });
   }
+  // The bars of tilt and thrust; the thrust that the chosen line has is a handle
+  const knob = s("g", { class: "knob pulse", role: "slider", tabindex: "0", "data-handle": "thrust", "aria-label": "Thrust of the chosen line", onkeydown: keys, onpointerdown: grab, ondblclick: type },
+    s("circle", { class: "hit", r: 14 }), s("path", { class: "arrows", d: "M-9 0L-4 -5V5ZM9 0L4 -5V5Z" }), s("circle", { class: "dot", r: 4.5 }));
+  let span = null; // what the bar of thrust shows
+  /** Words by a place of a bar, pulled in where they would be cut off. */
+  function label(x, y, text, w) {
+    const half = 3.3 * text.length;
+    return s("text", { x: Math.min(Math.max(x, half + 4), w - half - 4), y, "text-anchor": "middle", text });
+  }
   function gauge() {
     const scene = app.scene, box = bar.parentElement, w = box.clientWidth, hgt = box.clientHeight;
     set(bar, { viewBox: `0 0 ${w} ${hgt}`, width: w, height: hgt });
+    span = null;
     if (!scene.capacity || !w) { bar.replaceChildren(); return; }
     const { plus_g: plus, minus_g: minus } = scene.capacity, far = 1.15 * Math.max(plus, minus, Math.abs(scene.gamma), 1e-6);
     const X = (g) => 16 + ((g + far) / (2 * far)) * (w - 32);
@@ -46,17 +56,51 @@ export function structurePanel(app, lower) {
       s("line", { class: "track", x1: X(-far), x2: X(far), y1: y, y2: y }),
       s("line", { class: "safe", x1: X(-minus), x2: X(plus), y1: y, y2: y }),
       s("line", { class: "end", x1: X(plus), x2: X(plus), y1: y - 8, y2: y + 8 }), s("line", { class: "end", x1: X(-minus), x2: X(-minus), y1: y - 8, y2: y + 8 }),
-      s("text", { x: X(plus), y: y - 13, "text-anchor": "middle", text: `${number(plus, 3)} g` }), s("text", { x: X(-minus), y: y - 13, "text-anchor": "middle", text: `${number(-minus, 3)} g` }),
+      label(X(plus), y - 13, `${number(plus, 3)} g`, w), label(X(-minus), y - 13, `${number(-minus, 3)} g`, w),
       s("circle", { class: scene.within ? "now" : "now bad", cx: X(scene.gamma), cy: y, r: 6 }),
-      s("text", { x: X(scene.gamma), y: y + 22, "text-anchor": "middle", text: scene.gamma ? `now ${number(scene.gamma, 3)} g` : "upright" })];
-    if (scene.least_N !== undefined && hgt > 110) {
-      const low = Math.min(0, scene.least_N), high = 1.15 * Math.max(scene.most_N, scene.least_N, 1e-9), T = (v) => 16 + ((v - low) / (high - low)) * (w - 32), t = 92;
-      parts.push(s("line", { class: "track", x1: T(low), x2: T(high), y1: t, y2: t }), s("line", { class: "safe", x1: T(scene.least_N), x2: T(scene.most_N), y1: t, y2: t }),
-        s("line", { class: "end least", x1: T(scene.least_N), x2: T(scene.least_N), y1: t - 8, y2: t + 8 }), s("line", { class: "end most", x1: T(scene.most_N), x2: T(scene.most_N), y1: t - 8, y2: t + 8 }),
-        s("text", { x: T(scene.least_N), y: t - 13, "text-anchor": "middle", text: `least ${quantity(scene.least_N, "N", 3)}` }), s("text", { x: T(scene.most_N), y: t + 24, "text-anchor": "middle", text: `greatest ${quantity(scene.most_N, "N", 3)}` }));
-      if (scene.through) parts.push(s("circle", { class: "now through", cx: T(scene.through.thrust_N), cy: t, r: 5 }));
+      label(X(scene.gamma), y + 22, scene.gamma ? `now ${number(scene.gamma, 3)} g` : "upright", w)];
+    const { least_N: least, most_N: most } = scene;
+    if (least !== undefined && hgt > 110) {
+      const low = Math.min(0, least), high = Math.max(1.15 * Math.max(most, least, 1e-9), most + 0.1 * (most - least)), T = (v) => 16 + ((v - low) / (high - low)) * (w - 32), t = 92;
+      span = { least, most, low, high, w, now: scene.chosen?.thrust_N ?? scene.through?.thrust_N ?? null };
+      parts.push(s("line", { class: "track", x1: T(low), x2: T(high), y1: t, y2: t }), s("line", { class: "safe", x1: T(least), x2: T(most), y1: t, y2: t }),
+        s("line", { class: "end least", x1: T(least), x2: T(least), y1: t - 8, y2: t + 8 }), s("line", { class: "end most", x1: T(most), x2: T(most), y1: t - 8, y2: t + 8 }),
+        label(T(least), t - 13, `least ${quantity(least, "N", 3)}`, w), label(T(most), t + 24, `greatest ${quantity(most, "N", 3)}`, w));
+      const text = span.now === null ? "none is chosen" : quantity(span.now, "N", 4);
+      set(knob, { transform: `translate(${T(Math.min(Math.max(span.now ?? least, low), high))} ${t})`, "aria-valuenow": span.now ?? least, "aria-valuemin": least, "aria-valuemax": most, "aria-valuetext": `${text}; from ${quantity(least, "N", 4)} to ${quantity(most, "N", 4)}` });
+      if (most > least) parts.push(knob);
     }
-    bar.replaceChildren(...parts);
+    const kept = bar.contains(knob) && bar.getRootNode().activeElement === knob;
+    if (kept) { for (const child of [...bar.children]) if (child !== knob) child.remove(); knob.before(...parts.filter((part) => part !== knob)); } else bar.replaceChildren(...parts);
     set(bar, { "aria-label": `It bears from ${number(-minus, 3)} to ${number(plus, 3)} g; now ${number(scene.gamma, 3)} g.` });
+  }
+  function keys(e) {
+    if (!span) return;
+    const step = { ArrowLeft: -1, ArrowDown: -1, ArrowRight: 1, ArrowUp: 1 }[e.key], now = span.now ?? span.least;
+    if (e.key === "Enter") type();
+    else if (e.key === "Home") app.choose(span.least);
+    else if (e.key === "End") app.choose(span.most);
+    else if (step) app.choose(Math.min(Math.max(now + 0.01 * step * (e.shiftKey ? 10 : 1) * (span.most - span.least), span.least), span.most));
+    else return;
+    e.preventDefault();
+  }
+  function type() {
+    if (!span) return;
+    const field = h("input", { type: "text", value: quantity(span.now ?? span.least, "N", 5), "aria-label": "Thrust of the chosen line" });
+    const box = app.dialog("Thrust of the chosen line", h("form", { onsubmit: (e) => { e.preventDefault(); app.choose(field.value); box.close(); } },
+      h("p", {}, `Between ${quantity(span.least, "N", 4)} and ${quantity(span.most, "N", 4)}: a number in newtons, or with its unit, such as 20 kN.`), field, h("div", { class: "row" }, h("button", { type: "submit", class: "first" }, "Set"))));
+    field.select();
+  }
+  function grab(event) {
+    if (event.button !== 0 || !span) return;
+    event.preventDefault();
+    knob.focus({ preventScroll: true });
+    knob.setPointerCapture(event.pointerId);
+    const edge = bar.getBoundingClientRect();
+    const move = (e) => { if (span) app.choose(Math.min(Math.max(span.low + ((e.clientX - edge.left - 16) / (span.w - 32)) * (span.high - span.low), span.least), span.most), e.timeStamp); };
+    knob.addEventListener("pointermove", move);
+    const end = () => knob.removeEventListener("pointermove", move);
+    knob.addEventListener("pointerup", end, { once: true });
+    knob.addEventListener("pointercancel", end, { once: true });
   }
 }

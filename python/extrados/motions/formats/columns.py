@@ -71,7 +71,7 @@ def _split(text: Lines) -> tuple[list[str], list[tuple[int, list[str]]]]:
     rows: list[tuple[int, list[str]]] = []
     for at, line in enumerate(text.lines):
         bare, _, comment = line.partition("#")
-        tokens = [token for token in re.split(r"[\s,;]+", bare) if token]
+        tokens = bare.replace(",", " ").replace(";", " ").split()
         if not rows and (not tokens or not re.match(r"[+-]?(?:\.?\d|nan\b|inf)", tokens[0], re.I) or _wordy(tokens)):
             header.append(comment if not tokens else bare)
             if len(header) > MOST_HEADER:
@@ -91,13 +91,14 @@ def _wordy(tokens: list[str]) -> bool:
 
 def _refuse_decimal_commas(text: Lines, lines: list[int]) -> None:
     """'0,02 0,0063' is refused; '0,0' as the first row of comma-separated columns is not."""
-    for at in lines:
-        words = [w for w in re.split(r"[\s;]+", text[at].partition("#")[0]) if w]
+    bare = {at: line for at in lines if "," in (line := text[at].partition("#")[0])}
+    for at, line in bare.items():
+        words = line.replace(";", " ").split()
         if len(words) > 1 and any(re.fullmatch(r"[+-]?\d*,\d+(?:[eE][+-]?\d+)?", w) for w in words):
             raise text.error(at, f"'{text[at].strip()[:40]}' holds decimal commas; the decimal sign is a point")
-    sample = [text[at].partition("#")[0] for at in lines]
-    if all(re.fullmatch(r"\s*[+-]?\d+,\d+(?:[eE][+-]?\d+)?\s*", line) for line in sample):
-        raise text.error(lines[0], f"'{sample[0].strip()[:40]}' holds decimal commas; the decimal sign is a point")
+    alone = r"\s*[+-]?\d+,\d+(?:[eE][+-]?\d+)?\s*"
+    if len(bare) == len(lines) and all(re.fullmatch(alone, line) for line in bare.values()):
+        raise text.error(lines[0], f"'{bare[lines[0]].strip()[:40]}' holds decimal commas; the decimal sign is a point")
 
 
 def _is_title(line: str) -> bool:
@@ -109,7 +110,7 @@ def _is_title(line: str) -> bool:
 def _resolution(rows: list[tuple[int, list[str]]]) -> float:
     """To which the numbers of the first column are rounded: a unit of their last decimal; 0 where some have an exponent."""
     first = [row[0] for _, row in rows]
-    if any(re.search(r"[eEdD]", token) for token in first):
+    if re.search(r"[eEdD]", " ".join(first)):
         return 0.0
     return float(10.0 ** -max(len(token.partition(".")[2]) for token in first))
 
@@ -127,7 +128,15 @@ def _is_time(column: np.ndarray, rounded: float) -> bool:
     steps = np.diff(column)
     if len(column) < 3 or not (steps > 0.0).all():
         return False
-    return bool(np.all(np.abs(steps - np.median(steps)) <= 0.02 * np.median(steps))) or _even(column, rounded)
+    usual = _median(steps)
+    return bool(np.all(np.abs(steps - usual) <= 0.02 * usual)) or _even(column, rounded)
+
+
+def _median(values: np.ndarray) -> float:
+    """As numpy's, which for it alone loads the arrays with masks: a fiftieth of the time of `extrados check`."""
+    ordered = np.sort(values)
+    half = len(ordered) // 2
+    return float(ordered[half] if len(ordered) % 2 else 0.5 * (ordered[half - 1] + ordered[half]))
 
 
 def _step(
@@ -137,7 +146,7 @@ def _step(
     if len(time) < 3:
         raise text.error(rows[-1][0], f"only {len(time)} samples; a record has at least three")
     steps = np.diff(time)
-    step = float(np.median(steps))
+    step = _median(steps)
     if not step > 0.0:
         raise text.error(rows[int(np.argmin(steps)) + 1][0], "the time column does not ascend")
     off = np.flatnonzero(np.abs(steps - step) > 0.02 * step)

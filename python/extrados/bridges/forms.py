@@ -1,0 +1,42 @@
+"""The formats that a deck's building is written in, by their names."""
+
+from collections.abc import Callable
+from typing import Any
+
+from extrados.bridges import compas, itasca, opensees
+from extrados.building.errors import BadGeometry
+from extrados.decks.reader import Deck, DeckError
+
+#: Format -> what writes it, the ending of its files, and what it is
+FORMS: dict[str, tuple[Callable[[Deck], str], str, str]] = {
+    "compas": (compas.written, ".json", "the stones as an Assembly of compas_assembly"),
+    "udec": (itasca.udec, ".dat", "the stones of a plane section as blocks of UDEC 7"),
+    "3dec": (itasca.threedec, ".dat", "the stones in space as blocks of 3DEC 7"),
+    "opensees": (opensees.written, ".py", "a rocking block, or else a mesh with dry joints, as a script of OpenSeesPy"),
+}
+
+
+def exported(deck: Deck, form: str) -> str:
+    """The text of a format; DeckError where there is no such format, or the building has no such view."""
+    if form not in FORMS:
+        raise DeckError([f"no format '{form}'; there are {', '.join(FORMS)}"])
+    if deck.structure is None:
+        raise DeckError([f"{form} needs a [structure]"])
+    try:
+        return FORMS[form][0](deck)
+    except BadGeometry as error:
+        raise DeckError([deck.complaint(None, error.at, str(error))]) from None
+
+
+def scene(deck: Deck) -> Any:
+    """The stones as a pyvista.MultiBlock, a mesh for each by its name; ImportError says what to install."""
+    try:
+        import pyvista
+    except ImportError:
+        raise ImportError("this needs pyvista: pip install pyvista") from None
+    solids = deck.building.solids()
+    made = pyvista.MultiBlock()
+    for part, owner in zip(solids.parts, solids.owner, strict=True):
+        faces = [number for face in part.faces for number in (len(face), *face)]
+        made.append(pyvista.PolyData(part.vertices, faces), solids.block_names[owner])
+    return made

@@ -1,0 +1,95 @@
+"""What the page draws of a building that has no stones in a plane: blocks in space, walls on a plan, a wall's elements.
+
+It can be looked at and turned; a drawing in words says why limit analysis of a section does not follow a hand there.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.limit.solids import scene_arrays
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry, NoView
+from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.building.mesh.mesh import EDGES, Mesh
+from extrados.building.mesh.options import MeshOptions
+from extrados.building.mesh.shells import ShellMesh, ShellOptions
+from extrados.schema.constants import GRAVITY
+
+#: Elements of a wall beyond which its drawing would be all lines
+MOST_ELEMENTS = 60_000
+#: Of faces in space: what they are, by which they are coloured
+TONES = {"wall": 0, "floor": 1}
+Drawn = tuple[dict[str, Any], dict[str, np.ndarray]]
+
+
+def seen(building: Building, mesh: Any = None) -> Drawn | None:
+    """Words and arrays of the first of solids, shells and elements that the building has; None where it has none of them.
+
+    mesh: [analysis.mesh] of the deck's analysis of finite elements.
+    """
+    try:
+        return of_solids(building.solids())
+    except NoView:
+        pass
+    try:
+        return of_shells(building.shell(mesh if isinstance(mesh, ShellOptions) else None))
+    except NoView:
+        pass
+    try:
+        return of_elements(building.mesh(mesh if isinstance(mesh, MeshOptions) else None))
+    except BadGeometry:
+        return None
+
+
+def of_solids(assembly: SolidAssembly) -> Drawn:
+    """Blocks in space: `vertex` (nv, 3) [m], `face` numbers of vertices one face after the other, `face_start`,
+    `face_body` whose they are, `body_centre` (nb, 3) [m]."""
+    found = {name: array.data for name, array in scene_arrays(assembly).items()}
+    vertex = found["solid_vertex"]
+    words = {
+        "sort": "space", "of": "solids", "blocks": len(assembly.mass), "joints": len(assembly.a), "measures": assembly.measures,
+        "weight_N": GRAVITY * float(assembly.mass.sum() + assembly.fill[:, 1].sum()), "size_m": np.ptp(vertex, axis=0).tolist(),
+    }  # fmt: skip
+    return words, {
+        "vertex": vertex, "face": found["solid_face"], "face_start": found["solid_face_start"],
+        "face_body": found["solid_face_block"], "body_centre": found["solid_centroid"],
+    }  # fmt: skip
+
+
+def of_shells(mesh: ShellMesh) -> Drawn:
+    """Walls and floors by their elements: as `of_solids`, with `face_tone` of TONES and `bar` (n, 2, 3) [m]."""
+    floors = {part.name for part in mesh.parts if part.wall < 0}
+    words = {
+        "sort": "space", "of": "walls", "walls": len(mesh.walls), "floors": len(floors), "elements": mesh.elements(),
+        "weight_N": GRAVITY * float(mesh.mass().sum()), "size_m": np.ptp(mesh.xyz, axis=0).tolist(),
+        "warnings": mesh.warnings,
+    }  # fmt: skip
+    faces = [row for part in mesh.parts for row in part.connect]
+    tone = [np.full(len(part.connect), TONES["floor" if part.wall < 0 else "wall"]) for part in mesh.parts]
+    return words, {
+        "vertex": mesh.xyz, "face": np.concatenate(faces), "face_start": np.cumsum([0, *map(len, faces)]),
+        "face_tone": np.concatenate(tone).astype(np.uint8),
+        "bar": np.array([mesh.xyz[list(bar.nodes)] for bar in mesh.bars]).reshape(-1, 2, 3),
+    }  # fmt: skip
+
+
+def of_elements(mesh: Mesh) -> Drawn:
+    """A wall in its plane by its elements, as the drawing takes stones: `outline`, `outline_start`; no joints. `held`
+    (n, 2): nodes on supports; `ties`: ends of its bars [m]."""
+    groups = [g.connect[:, : len(EDGES[g.kind])] for g in mesh.groups if g.law is None]
+    count = sum(map(len, groups))
+    words = {
+        "sort": "elements", "of": "elements", "elements": count, "nodes": len(mesh.xy), "size_m": np.ptp(mesh.xy, axis=0).tolist(),
+        "warnings": mesh.warnings,
+    }  # fmt: skip
+    if count > MOST_ELEMENTS:
+        words["warnings"] = [*mesh.warnings, f"{count} elements are too many to be drawn"]
+        groups = []
+    held = [mesh.nodes_at(place, "supports.held") for place in mesh.held]
+    faces = [mesh.xy[row] for group in groups for row in group]
+    none, corners = np.empty((0, 2)), np.concatenate([mesh.xy[:0], *faces])
+    return words, {
+        "outline": corners, "outline_start": np.cumsum([0, *map(len, faces)]), "centroid": none, "joint_p": none, "joint_q": none,
+        "joint_block": np.empty((0, 2), dtype=int), "held": mesh.xy[np.unique(np.concatenate([*held, np.empty(0, dtype=int)]))],
+    }  # fmt: skip

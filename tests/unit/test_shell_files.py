@@ -1,0 +1,216 @@
+"""Shells in space from mesh files with groups: gmsh, Abaqus and VTU; what groups say, and what does not fit."""
+
+import textwrap
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry
+from extrados.building.mesh.shells import ShellOptions, nodal_areas
+from extrados.building.properties import Material
+from extrados.building.templates.walls import MeshFile
+from extrados.schema.constants import GRAVITY
+
+meshio = pytest.importorskip("meshio")
+N = 4  # elements of a side
+
+
+def corner():
+    """Two walls of 2 m that meet in a corner, 2 m high: nodes, quadrilaterals of each, nodes on the ground, lines there."""
+    s = np.linspace(0.0, 2.0, N + 1)
+    first = np.array([[x, 0.0, z] for x in s for z in s])
+    second = np.array([[0.0, y, z] for y in s[1:] for z in s])
+    xyz = np.concatenate([first, second])
+
+    def quads(columns):
+        return np.array(
+            [
+                [columns[i] + k, columns[i + 1] + k, columns[i + 1] + k + 1, columns[i] + k + 1]
+                for i in range(N)
+                for k in range(N)
+            ]
+        )
+
+    along = [(N + 1) * i for i in range(N + 1)]
+    beside = [0, *((N + 1) * (N + 1 + i) for i in range(N))]
+    ground = np.flatnonzero(xyz[:, 2] == 0.0)
+    lines = np.array([[c[i], c[i + 1]] for c in (along, beside) for i in range(N)])
+    return xyz, quads(along), quads(beside), ground, lines
+
+
+def written(folder, form):
+    """The corner as a file of a format, its groups called alike but in VTU, where they are numbers."""
+    xyz, one, two, ground, lines = corner()
+    path = folder / f"corner.{form}"
+    if form == "msh":
+        data = [np.array([1] * len(one) + [2] * len(two)), np.full(len(lines), 7)]
+        mesh = meshio.Mesh(
+            xyz, [("quad", np.concatenate([one, two])), ("line", lines)],
+            cell_data={"gmsh:physical": data, "gmsh:geometrical": data},
+            field_data={"front": np.array([1, 2]), "side": np.array([2, 2]), "ground": np.array([7, 1])},
+        )  # fmt: skip
+        meshio.write(path, mesh, file_format="gmsh22", binary=False)
+    elif form == "inp":
+        path.write_text(abaqus(xyz, one, two, ground))
+    else:
+        group = [np.array([1] * len(one) + [2] * len(two)), np.full(len(lines), 7)]
+        meshio.write(
+            path, meshio.Mesh(xyz, [("quad", np.concatenate([one, two])), ("line", lines)], cell_data={"group": group})
+        )
+    return path
+
+
+def abaqus(xyz, one, two, ground):
+    """An input file as Abaqus and its pre-processors write it."""
+    rows = ["*NODE"] + [f"{k}, {x:g}, {y:g}, {z:g}" for k, (x, y, z) in enumerate(xyz, 1)]
+    number = 1
+    for name, quads in (("front", one), ("side", two)):
+        rows.append(f"*ELEMENT, TYPE=S4, ELSET={name}")
+        for quad in quads:
+            rows.append(f"{number}, " + ", ".join(str(n + 1) for n in quad))
+            number += 1
+    rows += ["*NSET, NSET=ground", ", ".join(str(n + 1) for n in ground)]
+    return "\n".join(rows) + "\n"
+
+
+def read(path, groups, **keys):
+    structure = MeshFile(kind="mesh", file=str(path), thickness=0.3, groups=groups, **keys)
+    light = Material(density=1000.0, young=1e9)
+    return Building(structure, Material(density=2000.0), materials={"light": light}, folder=path.parent).shell(
+        ShellOptions(layers=3)
+    )
+
+
+@pytest.mark.parametrize("form", ["msh", "inp", "vtu"])
+def test_groups_say_what_elements_are(tmp_path, form):
+    """Thickness, material, support, pressure and force by group, whatever the format calls them."""
+    front, side, ground = ("front", "side", "ground") if form != "vtu" else ("1", "2", "7")
+    mesh = read(
+        written(tmp_path, form),
+        [
+            {"name": front, "thickness": 0.2, "pressure": [0.0, 500.0, 0.0]},
+            {"name": side, "material": "light", "force": [0.0, 0.0, -1e4]},
+            {"name": ground, "support": "pinned"},
+        ],
+    )
+    assert mesh.elements() == 2 * N * N and len(mesh.xyz) == (2 * N + 1) * (N + 1)
+    assert mesh.mass().sum() == pytest.approx(4.0 * (0.2 * 2000.0 + 0.3 * 1000.0))
+    assert mesh.push.sum(axis=0) == pytest.approx([0.0, 2000.0, -1e4])
+    low = np.flatnonzero(mesh.xyz[:, 2] == 0.0)
+    assert mesh.held == sorted((int(n), d) for n in low for d in range(3))
+    assert [foot.name for foot in mesh.feet] == [ground] and mesh.feet[0].nodes.tolist() == low.tolist()
+
+
+def test_a_file_bears_as_the_plan_does(tmp_path):
+    """The same corner of two walls from a file and on a plan: the same weight, stiffness and first crack."""
+    written(tmp_path, "msh")
+    material = """
+        [material]
+        density = 2000
+        young = "3 GPa"
+        tensile_strength = "0.1 MPa"
+        fracture_energy = "50 N/m"
+        [[analysis]]
+        kind = "pushover"
+        ripple = 0.2
+        events = 60
+    """
+    file = '[structure]\nkind = "mesh"\nfile = "corner.msh"\nthickness = 0.3\ngroups = [{ name = "ground", support = "fixed" }]\n'
+    plan = """
+        [structure]
+        kind = "building"
+        storeys = [2.0]
+        walls = [
+          { name = "front", start = [0, 0], end = [2, 0], thickness = 0.3 },
+          { name = "side", start = [0, 0], end = [0, 2], thickness = 0.3 },
+        ]
+    """
+    found = []
+    for name, text, more in (
+        ("file", file, "mesh.layers = 3\n"),
+        ("plan", plan, 'mesh = { size = 0.5, layers = 3 }\ncontrol = { wall = "front", storey = 1 }\n'),
+    ):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(textwrap.dedent(text) + textwrap.dedent(material) + more)
+        found.append(extrados.run(path).results[0].results)
+    of_file, of_plan = found
+    assert of_file.weight_N == pytest.approx(of_plan.weight_N, rel=1e-12) == pytest.approx(2 * 4 * 0.3 * 2000 * GRAVITY)
+    assert of_file.first_event_load_N == pytest.approx(of_plan.first_event_load_N, rel=1e-9)
+    assert of_file.initial_stiffness_N_m == pytest.approx(of_plan.initial_stiffness_N_m, rel=1e-9)
+    assert of_file.feet[0].vertical_N == pytest.approx(of_file.weight_N, rel=1e-9)
+
+
+def test_a_membrane_is_a_floor(tmp_path):
+    """Level elements that do not bend: nodes of theirs alone only move in their plane."""
+    xyz, one, two, ground, _ = corner()
+    inner = np.array([[2.0, 2.0, 2.0]])
+    roof = np.array([[N, (N + 1) * N + N, len(xyz), len(xyz) - 1]])
+    group = [np.array([1] * (2 * N * N) + [3])]
+    path = tmp_path / "roof.vtu"
+    lines = np.array([[n, n] for n in ground])
+    meshio.write(
+        path,
+        meshio.Mesh(
+            np.concatenate([xyz, inner]), [("quad", np.concatenate([one, two, roof])), ("line", lines)],
+            cell_data={"group": [*group, np.full(len(lines), 7)]},
+        ),
+    )  # fmt: skip
+    mesh = read(
+        path,
+        [
+            {"name": "3", "membrane": True, "thickness": 0.05, "pressure": [0.0, 0.0, -1e3]},
+            {"name": "7", "support": "fixed"},
+        ],
+    )
+    # What weighs on the corner that no wall holds goes to those that walls do
+    area = float(nodal_areas(mesh.xyz, mesh.parts[-1].connect).sum())
+    inner = 0.25 * area * (1e3 + 0.05 * 2000.0 * GRAVITY)
+    assert mesh.push[len(xyz), 2] == 0.0
+    assert mesh.push[:, 2].sum() == pytest.approx(-0.75 * area * 1e3 - inner)
+    assert {(len(xyz), d) for d in (2, 3, 4, 5)} <= set(mesh.held) and (len(xyz), 0) not in mesh.held
+    assert [part.bends for part in mesh.parts].count(False) == 1
+
+
+@pytest.mark.parametrize(
+    "groups, words",
+    [
+        ([{"name": "back", "support": "fixed"}], "'back': there is none in the file; there are front, ground, side"),
+        ([{"name": "front", "thickness": 0.2}], "nothing holds it: give a group `support`"),
+        ([{"name": "ground", "thickness": 0.2}], "group 'ground': thickness is of elements"),
+        ([{"name": "ground"}], "nothing is said of it"),
+        ([{"name": "front", "material": "steel"}, {"name": "ground", "support": "fixed"}], r"no \[materials.steel\]"),
+        ([{"name": "front", "membrane": True}, {"name": "ground", "support": "fixed"}], "a membrane is level"),
+    ],
+)  # fmt: skip
+def test_groups_that_do_not_fit_are_told(tmp_path, groups, words):
+    with pytest.raises(BadGeometry, match=words) as told:
+        read(written(tmp_path, "msh"), groups)
+    assert str(told.value).startswith("corner.msh")
+
+
+def test_files_that_do_not_fit_are_told(tmp_path):
+    xyz, one, _, _, _ = corner()
+    ground = [{"name": "7", "support": "fixed"}]
+    for cells, words in (
+        ([("quad8", np.array([[0, 1, 2, 3, 4, 5, 6, 7]]))], "cells of kind 'quad8'; expected triangle and quad"),
+        ([("line", np.array([[0, 1]]))], "holds no shells"),
+        ([("quad", np.array([[0, 1, 1, 0]])), ("line", np.array([[0, 1]]))], "have no area"),
+        ([("quad", one), ("line", np.array([[44, 43]]))], "no node of a shell"),
+    ):  # fmt: skip
+        path = tmp_path / "bad.vtu"
+        group = [np.full(len(data), 7) if kind == "line" else np.full(len(data), 1) for kind, data in cells]
+        meshio.write(path, meshio.Mesh(xyz, cells, cell_data={"group": group}))
+        with pytest.raises(BadGeometry, match=words):
+            read(path, ground)
+    (tmp_path / "no.msh").write_text("nothing of a mesh")
+    with pytest.raises(BadGeometry, match=r"no\.msh: is not a mesh"):
+        read(tmp_path / "no.msh", ground)
+    flat = written(tmp_path, "vtu")
+    with pytest.raises(BadGeometry, match="groups are of shells"):
+        Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).mesh()
+    with pytest.raises(BadGeometry, match=r"leave mesh\.size out"):
+        Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).shell(
+            ShellOptions(size=0.5)
+        )

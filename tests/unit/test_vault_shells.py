@@ -1,0 +1,255 @@
+"""Vaults and domes as shells from decks: their meshes, what their feet bear, springings that spread, stages."""
+
+import textwrap
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.analyses.context import Refused
+from extrados.analyses.shell.model import build
+from extrados.analyses.shell.tables import Pushover
+from extrados.building.building import Building
+from extrados.building.errors import BadGeometry, NoView
+from extrados.building.mesh.shells import ShellOptions, nodal_areas
+from extrados.building.properties import Material
+from extrados.building.templates.arch import Arch
+from extrados.building.templates.cross_vault import CrossVault
+from extrados.building.templates.dome import Dome
+from extrados.building.templates.vault import Vault
+from extrados.core import sla as core
+
+MASONRY = Material(density=2000.0, young=5e9, poisson=0.0)
+BARREL = Arch(kind="arch", radius=5.0, thickness=0.5, embrace=160.0, voussoirs=20, depth=2.0)
+DOME = Dome(kind="dome", radius=5.0, thickness=0.5, embrace=150.0, rings=6, lunes=12)
+OPEN_DOME = Dome(kind="dome", radius=5.0, thickness=0.5, embrace=150.0, rings=6, lunes=12, oculus=30.0)
+GROINS = CrossVault(kind="cross-vault", radius=3.0, thickness=0.4, embrace=140.0, voussoirs=16, edge=0.5)
+ON_WALLS = Vault(
+    kind="vault", radius=4.0, thickness=0.7, embrace=180.0, face=3.65, buttress_width=1.9, height=4.0, height_to="centre",
+    depth=0.6,
+)  # fmt: skip
+EVERY = {"barrel": BARREL, "dome": DOME, "open dome": OPEN_DOME, "groins": GROINS, "on walls": ON_WALLS}
+
+
+def meshed(structure, size=0.5, layers=3):
+    return Building(structure, MASONRY).shell(ShellOptions(size=size, layers=layers))
+
+
+def free_edges(mesh):
+    """Edges that one element alone has."""
+    found = []
+    for part in mesh.parts:
+        n = part.connect.shape[1]
+        found += [part.connect[:, [k, (k + 1) % n]] for k in range(n)]
+    edges, count = np.unique(np.sort(np.concatenate(found), axis=1), axis=0, return_counts=True)
+    assert count.max() == 2
+    return edges[count == 1]
+
+
+@pytest.mark.parametrize(
+    "structure, area",
+    [
+        (BARREL, 5.0 * np.radians(160.0) * 2.0),
+        (DOME, 2.0 * np.pi * 25.0 * (1.0 - np.cos(np.radians(75.0)))),
+        (OPEN_DOME, 2.0 * np.pi * 25.0 * (np.cos(np.radians(15.0)) - np.cos(np.radians(75.0)))),
+        # Eight half webs: R times the integral of reach - R sin a
+        (
+            GROINS,
+            8 * 3.0 * ((3.2 * np.sin(np.radians(70)) + 0.5) * np.radians(70) - 3.0 * (1 - np.cos(np.radians(70)))),
+        ),
+        (ON_WALLS, 0.6 * (4.0 * np.pi + 2 * 4.0 + 2 * 0.6)),
+    ],
+)
+def test_areas_come_to_those_of_the_surfaces(structure, area):
+    """By the second order in the size."""
+    gap = [
+        abs(1.0 - sum(nodal_areas(mesh.xyz, part.connect).sum() for part in mesh.parts) / area)
+        for mesh in (meshed(structure, 0.6), meshed(structure, 0.3))
+    ]
+    assert 0.0 < gap[1] < 0.006 and 3.0 < gap[0] / gap[1] < 5.5
+
+
+def test_vaults_end_where_they_should():
+    """Free edges lie at the feet, at the gables, and at the eye of a dome; all nodes are of one surface."""
+    ends = {
+        "barrel": lambda p: np.isclose(p[:, 1], 0.0) | np.isclose(p[:, 1], 2.0) | np.isclose(p[:, 2], 5.0 * np.cos(np.radians(80.0))),
+        "dome": lambda p: np.isclose(p[:, 2], 5.0 * np.cos(np.radians(75.0))),
+        "open dome": lambda p: np.isclose(p[:, 2], 5.0 * np.cos(np.radians(75.0))) | np.isclose(p[:, 2], 5.0 * np.cos(np.radians(15.0))),
+        "groins": lambda p: np.isclose(np.abs(p[:, :2]).max(axis=1), 3.2 * np.sin(np.radians(70.0)) + 0.5) | np.isclose(p[:, 2], 3.0 * np.cos(np.radians(70.0))),
+        "on walls": lambda p: np.isclose(p[:, 1], 0.0) | np.isclose(p[:, 1], 0.6) | np.isclose(p[:, 2], -4.0),
+    }  # fmt: skip
+    for name, structure in EVERY.items():
+        mesh = meshed(structure)
+        edges = free_edges(mesh)
+        assert ends[name](mesh.xyz[edges].mean(axis=1)).all() or ends[name](mesh.xyz[edges[:, 0]]).all(), name
+        assert len(np.unique(np.round(mesh.xyz, 9), axis=0)) == len(mesh.xyz)
+        assert set(np.concatenate([foot.nodes for foot in mesh.feet])) == {n for n, _ in mesh.held}
+
+
+def test_normals_look_outward():
+    """The last layer is the extrados."""
+    for name, structure in EVERY.items():
+        mesh = meshed(structure)
+        for part in mesh.parts:
+            normal = core.shell_axes(mesh.xyz, part.connect)[:, 2]
+            middle = mesh.xyz[part.connect].mean(axis=1)
+            if part.name.endswith("wall"):
+                assert (normal[:, 0] * middle[:, 0] > 0.0).all()
+            else:
+                assert (np.einsum("ex,ex->e", normal, middle) > 0.0).all(), (name, part.name)
+
+
+@pytest.mark.parametrize("name", EVERY)
+def test_feet_bear_the_weight_and_the_push(name):
+    """What the feet press on the ground with is the weight, and against each other the push; alone they thrust alike."""
+    mesh = meshed(EVERY[name], 0.8)
+    options = Pushover(kind="pushover", mesh=ShellOptions(size=0.8, layers=3))
+    model = build(mesh, options)
+    with model.open(options, 1) as core_model:
+        core_model.supports(model.settled, 0.0 * model.settled)
+        core_model.loads(model.constant, model.reference)
+        inner = core_model.reactions()
+    nodes, axis = np.nonzero(model.freedoms.equation >= core_model.equations)
+    of = model.freedoms.equation[nodes, axis] - core_model.equations
+    own = np.stack(
+        [np.bincount(of, model.freedoms.factor[nodes, axis] * load[nodes, axis], len(model.grounds)) for load in (model.constant, model.reference)],
+        axis=1,
+    )  # fmt: skip
+    borne = own - inner
+    by = {(mesh.feet[ground.foot].name, ground.way): borne[k] for ground, k in model.grounds.items()}
+    assert sum(force[0] for (_, way), force in by.items() if way == "down") == pytest.approx(model.weight, rel=1e-9)
+    assert sum(force[1] for (_, way), force in by.items() if way == "down") == pytest.approx(
+        0.0, abs=1e-6 * model.weight
+    )
+    outs = [force for (_, way), force in by.items() if way == "out"]
+    assert [force[0] for force in outs] == pytest.approx(len(outs) * [outs[0][0]], rel=1e-6) and outs[0][0] > 0.0
+    if len(outs) == 2:
+        assert outs[1][1] - outs[0][1] == pytest.approx(model.weight, rel=1e-9)
+
+
+DECK = """
+    [structure]
+    kind = "arch"
+    radius = 5.0
+    thickness = 0.8
+    embrace = 160.0
+    voussoirs = 60
+    depth = 0.6
+    [material]
+    density = 2000
+    young = "5 GPa"
+    poisson = 0.0
+    tensile_strength = "5 kPa"
+    fracture_energy = "2 N/m"
+    [[analysis]]
+    kind = "pushover"
+    mesh = { size = "0.6 m", layers = 5 }
+    ripple = 0.2
+    events = 3000
+"""
+
+
+def deck(tmp_path, stages, change=("", "")):
+    path = tmp_path / "vault.toml"
+    path.write_text(textwrap.dedent(DECK).replace(*change) + stages)
+    return path
+
+
+BOTH = """
+[[analysis.stages]]
+name = "spread"
+settlements = [{ foot = "all", out = "2 mm" }]
+[[analysis.stages]]
+name = "right"
+base_shear = "15 kN"
+[[analysis.stages]]
+name = "off"
+sense = "-"
+base_shear = 0
+[[analysis.stages]]
+name = "left"
+sense = "-"
+target_displacement = "1 mm"
+"""
+
+
+def test_stages_inherit_the_damage(tmp_path):
+    """Springings part, a push, off again, a push to the other side: loads, ways and damage go on from stage to stage, each
+    ends where it is told, and the energies balance to the end."""
+    found = extrados.run(deck(tmp_path, BOTH)).results[0]
+    spread, right, off, left = found.results.stages
+    weight = found.results.weight_N
+    assert [stage.stop for stage in (spread, right, off, left)] == 3 * ["target load"] + ["target displacement"]
+    assert spread.of == "settlement" and spread.last_displacement_m == pytest.approx(2e-3)
+    assert spread.feet[0].thrust_N == pytest.approx(spread.feet[1].thrust_N, rel=1e-3)
+    assert right.end_load_N == pytest.approx(15e3) and off.start_load_N == pytest.approx(-15e3)
+    assert off.end_load_N == pytest.approx(0.0, abs=1.0) and left.start_load_N == pytest.approx(0.0, abs=1.0)
+    assert left.last_displacement_m == pytest.approx(1e-3)
+    for stage in (right, off, left):
+        push = (1 if stage.sense == "+" else -1) * stage.end_load_N
+        shown = push if stage is not off and stage.greatest_load_N == pytest.approx(stage.end_load_N) else None
+        assert sum(foot.vertical_N for foot in stage.feet) == pytest.approx(weight, rel=1e-6)
+        if shown is not None:
+            assert stage.feet[1].thrust_N - stage.feet[0].thrust_N == pytest.approx(shown, rel=1e-4)
+    dissipated = [stage.dissipated_energy_J for stage in (spread, right, off, left)]
+    assert dissipated == sorted(dissipated) and dissipated[-1] > 1.2 * dissipated[0]
+    assert max(stage.energy_residual_ratio for stage in (spread, right, off, left)) < 1e-8
+    base = np.isclose(found["node"][:, 2], found["node"][:, 2].min())
+    moved = found["stage_2_state_displacement"][-1][base]
+    assert moved[:, 0] == pytest.approx(2e-3 * np.sign(found["node"][base, 0]), abs=1e-9)
+    assert found.results.sense == "-" and left.prefix == "" and any("cracks stay open" in w for w in found.warnings)
+
+
+def test_a_spreading_barrel_opens_in_three_hinge_lines(tmp_path):
+    """At the crown from the intrados, at both haunches from the extrados; the thrust goes down."""
+    stages = '\n[[analysis.stages]]\nsettlements = [{ foot = "left", out = "4 mm" }]\n'
+    found = extrados.run(deck(tmp_path, stages)).results[0]
+    x, width, side = found["place_xyz"][:, 0], found["state_width"][-1], found["state_side"][-1]
+    wide = width > 0.1 * width.max()
+    crown, haunch = wide & (np.abs(x) < 1.5), wide & (np.abs(x) > 3.5)
+    assert crown.any() and (side[crown] == -1.0).all()
+    assert (side[haunch] == 1.0).all() and (x[haunch] < 0.0).any() and (x[haunch] > 0.0).any()
+    assert found.results.stages[0].feet[0].thrust_N < 30e3  # the elastic vault's 35 kN and more
+    assert found.results.stages[0].of == "settlement" and "After stage 1" in found.answer
+
+
+@pytest.mark.parametrize(
+    "stages, change, words",
+    [
+        ('\n[[analysis.stages]]\nsettlements = [{ foot = "springing", out = 0.01 }]\n', ("", ""), "no foot 'springing'; there are left, right"),
+        ('\n[[analysis.stages]]\nbase_shear = -5.0\n', ("", ""), "not below"),
+        ('control = { wall = "a", storey = 1 }\n', ("", ""), "it has none"),
+        ("", ("depth = 0.6", "depth = 0.6\nskew = 20"), "skew"),
+    ],
+)  # fmt: skip
+def test_what_a_vault_cannot_do_is_told(tmp_path, stages, change, words):
+    run = extrados.run(deck(tmp_path, stages, change)).results[0]
+    assert run.status == "refused" and words in run.reason
+
+
+@pytest.mark.parametrize(
+    "keys, words",
+    [
+        ({"settlements": [{"out": 0.01}]}, "either wall"),
+        ({"settlements": [{"foot": "left"}]}, "nothing moves"),
+        ({"stages": [{"settlements": [{"foot": "left", "out": 0.01}], "sense": "-"}]}, "take two stages"),
+        ({"stages": [{"name": "a"}, {"name": "a"}]}, "stands twice"),
+        ({"stages": [{}], "directions": ["+", "-"]}, "beside stages"),
+        ({"main_stage": "a"}, "there are none"),
+    ],
+)
+def test_wrong_stages_are_told(keys, words):
+    with pytest.raises(ValueError, match=words):
+        Pushover(kind="pushover", **keys)
+
+
+def test_thick_walls_are_no_shells():
+    with pytest.raises(BadGeometry, match="no shell"):
+        meshed(ON_WALLS.model_copy(update={"buttress_width": 2.5}))
+    with pytest.raises(NoView, match="skew"):
+        meshed(BARREL.model_copy(update={"skew": 10.0}))
+    with pytest.raises(Refused, match="density"):
+        build(
+            Building(BARREL, MASONRY.model_copy(update={"density": 0.0})).shell(ShellOptions(size=0.8)),
+            Pushover(kind="pushover"),
+        )
