@@ -6,7 +6,7 @@ import sys
 
 from extrados import interrupts
 
-MANY = 50_000  # objects made before garbage is looked for
+MANY = 100_000  # objects made before garbage is looked for: a run makes as many within seconds, a short command never
 
 
 def main() -> None:
