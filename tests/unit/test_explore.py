@@ -570,9 +570,16 @@ def test_saving_replaces_nothing_unasked(session: Session, tmp_path: Path) -> No
     assert (tmp_path / "new" / "mine.toml").read_text() == session.document.text
 
 
-def test_the_map_gets_finer_and_is_kept(session: Session) -> None:
+@pytest.mark.parametrize("patience", [1e9, 0.0], ids=["fast", "slow, and a hand is let in between"])
+def test_the_map_gets_finer_and_is_kept(session: Session, monkeypatch: pytest.MonkeyPatch, patience: float) -> None:
+    monkeypatch.setattr("extrados.explore.rocking.PATIENCE", patience)
     do(session, do="set", changes={"motion": {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.2}})
     replies = do(session, do="domain")
+    if patience == 0.0:
+        assert len(replies) > 10
+        replies = list(
+            {int((r.arrays["codes"] < 255).sum()): r for r in replies if (r.arrays["codes"] < 255).any()}.values()
+        )
     assert [r.words["domain"]["stride"] for r in replies] == [4, 2, 1]
     known = [(r.arrays["codes"] < 255).sum() for r in replies]
     assert known == [100, 500, 1600]
