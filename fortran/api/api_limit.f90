@@ -1,9 +1,9 @@
-!> Small linear programmes of limit analysis.
+!> Small linear programmes of limit analysis, and the systems of equations of large ones.
 module api_limit
-   use, intrinsic :: iso_c_binding, only : c_double, c_int
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
    implicit none
    private
-   public :: vertex
+   public :: vertex, factor_band, solve_band
 
 contains
 
@@ -26,5 +26,27 @@ contains
       call least_vertex(gradients, least, cost, low, high, x, rows, sides, found)
       solved = merge(1, 0, found)
    end subroutine vertex
+
+   !> Cholesky's factor of a symmetric positive band, in its place
+   subroutine factor_band(high, n, band, status)
+      use limit_c_bindings, only : extrados_band_factor
+      integer(c_int), intent(in) :: high              !! entries of a column, from the diagonal down
+      integer(c_int), intent(in) :: n                 !! equations
+      real(c_double), intent(inout) :: band(high, n)  !! lower triangle by columns
+      integer(c_int), intent(out) :: status
+      !f2py threadsafe
+      status = extrados_band_factor(int(n, c_int64_t), int(high - 1, c_int64_t), band)
+   end subroutine factor_band
+
+   !> The x of K x = b by the factor of the band K
+   subroutine solve_band(high, n, band, x)
+      use limit_c_bindings, only : extrados_band_solve
+      integer(c_int), intent(in) :: high              !! entries of a column, from the diagonal down
+      integer(c_int), intent(in) :: n                 !! equations
+      real(c_double), intent(in) :: band(high, n)     !! what factor_band left there
+      real(c_double), intent(inout) :: x(n)           !! b, then x
+      !f2py threadsafe
+      call extrados_band_solve(int(n, c_int64_t), int(high - 1, c_int64_t), band, x)
+   end subroutine solve_band
 
 end module api_limit

@@ -21,7 +21,8 @@ module sla_events
    use sla_group, only : bound, component, most_entries, most_rank, point_group, scan_result, slider, unbounded
    use sla_guard, only : guard_every, guard_residual
    use sla_ledger, only : account, event_log, follow_supports, log_reals, record, watch
-   use sla_model, only : element_model, model_balance, model_settled, model_slips, model_solve, model_turns
+   use sla_model, only : element_model, model_balance, model_follow, model_settled, model_slips, model_solve, &
+      model_turns
    use sla_regions, only : regions_bring, regions_home
    use sla_release, only : hold_state, set_free
    use sla_scan, only : bring_all, choose, crossed, scan_model, scan_scaled
@@ -257,7 +258,7 @@ contains
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
       if (.not. circle) then
-         call slide(model, place, reason, status)
+         call slide(model, reason, status)
          if (status /= status_ok) return
          if (reason == stop_none) then
             circle = .not. abs(model%work_now(3)) <= softest * model%first_compliance
@@ -287,11 +288,12 @@ contains
             model%pending = turn(:, i)
             call apply_event(model, reason, status)
             if (status /= status_ok .or. reason /= stop_none) return
-            call bring_all(model, status)
+            call model_follow(model, status)
+            if (status == status_ok) call bring_all(model, status)
             if (status /= status_ok) return
          end do
       end if
-      if (found) call slide(model, [0, 0], reason, status)
+      if (found) call slide(model, reason, status)
    end subroutine change_state
 
    !> Damage the pending point; the factor follows, and the displacements on the path of its element
@@ -318,6 +320,9 @@ contains
       model%tree%now = model%tree%now + 1
       associate (event => model%event, tree => model%tree)
          if (event%rank == 0) return
+         ! Flexibilities that have not followed the event before this one are lost
+         model%friction%known = model%friction%known .and. model%friction%current
+         model%friction%current = .false.
          model%cracked = model%cracked + event%crack
          n = event%entries
          do i = 1, event%rank
@@ -390,7 +395,6 @@ contains
                if (status /= status_ok) return
             end do
          end if
-         model%friction%current = .false.
          do i = 1, merge(0, event%rank, model%slides)   ! sliding friction lets the loads do other work, see account
             after = [component(event, i, model%ua), component(event, i, model%ub)]
             model%work_now = model%work_now + event%sign(i) * &
@@ -401,15 +405,14 @@ contains
    end subroutine apply_event
 
    !> What slides balances with what changed, and has come as far as it is
-   subroutine slide(model, place, reason, status)
+   subroutine slide(model, reason, status)
       type(element_model), intent(inout) :: model
-      integer, intent(in) :: place(2)          !! group and point of the event
       integer(c_int), intent(inout) :: reason
       integer(c_int), intent(out) :: status
       integer :: g
       call bring_all(model, status)
       if (status /= status_ok) return
-      call model_balance(model, place, status)
+      call model_balance(model, status)
       if (status == status_not_positive_definite) then
          status = status_ok
          reason = stop_mechanism

@@ -7,8 +7,9 @@
 !>     (I - R inv(K) F) dh = R u - h,     u <- u + inv(K) F dh
 !>
 !> for the constant loads and those per unit multiplier alike (Woodbury's formula). So friction is exact between events.
-!> The matrix R inv(K) F is kept from event to event: an event changes K by a few vectors, K_old = K + W S W', which
-!> adds R Z inv(inv(S) + W' Z) Z' F with Z = inv(K) W, and one row and column at most are new.
+!> Both f and r are made of the two vectors of a point whose products with u are its jumps, n across and t along the
+!> joint. The flexibilities n inv(K) t and t inv(K) t between all points that have slid are kept from event to event: an
+!> event changes K by a few vectors, K_old = K + W S W', which adds n Z inv(inv(S) + W' Z) Z' t with Z = inv(K) W.
 module sla_friction
    use common_kinds, only : wp
    use common_status, only : status_ok, status_not_positive_definite, status_out_of_memory
@@ -17,31 +18,31 @@ module sla_friction
    use, intrinsic :: iso_c_binding, only : c_int, c_ptr
    implicit none
    private
-   public :: friction_store, friction_balance
-   public :: add_force, eliminate, find_sliders, product_of, solve
+   public :: friction_store, friction_balance, friction_flexibility, friction_follow
+   public :: eliminate, find_sliders, product_of
 
    !> Pivot of the unsymmetric system, whose diagonal is near one, below which the joints slide on without more load
    real(wp), parameter :: least_pivot = 1.0e-9_wp
    !> Right sides of one solution
    integer, parameter :: most_vectors = 4
+   !> Points that are kept though they slide no more, over those that do, and some more
+   integer, parameter :: most_kept = 2, some = 50
 
-   !> The points that slide and what they do to each other
+   !> Points that have slid, and what their forces do to their jumps
    type :: friction_store
-      logical :: known = .false.                  !! there are answers,
+      logical :: known = .false.                  !! there are flexibilities,
       logical :: current = .false.                !! and they are those of the factor as it is
       type(slider), allocatable :: point(:)
-      real(wp), allocatable :: answer(:, :)       !! R inv(K) F
+      real(wp), allocatable :: jump(:, :, :)      !! (2, to, from) across and along, of a unit force along [m/N]
    end type friction_store
 
 contains
 
    !> Forces of sliding friction and displacements that balance with them
-   subroutine friction_balance(store, holders, event, place, handle, fresh, value, n, ua, ub, fh, &
-                               status)
+   subroutine friction_balance(store, holders, event, handle, fresh, value, n, ua, ub, fh, status)
       type(friction_store), intent(inout) :: store
       type(group_holder), intent(inout) :: holders(:)
       type(event_vectors), intent(in) :: event !! by which the factor changed since the last balance
-      integer, intent(in) :: place(2)          !! group and point of the event
       type(c_ptr), intent(in) :: handle        !! of the factor
       logical, intent(in) :: fresh             !! solve with a new factor of `value`
       real(wp), intent(in) :: value(:)         !! of the stiffness
@@ -52,28 +53,32 @@ contains
       integer(c_int), intent(out) :: status    !! not_positive_definite: what slides is a mechanism; nothing was changed
       type(slider), allocatable :: point(:)
       real(wp), allocatable :: coupling(:, :), change(:, :), force(:, :)
+      integer, allocatable :: at(:)
       integer :: i, j, m, info
 
       call find_sliders(holders, point, status)
       if (status /= status_ok) return
       m = size(point)
-      allocate (coupling(m, m), change(m, 2), force(size(ua) - 1, 2), stat=info)
+      allocate (coupling(m, m), change(m, 2), force(size(ua) - 1, 2), at(m), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
-      call find_answers(store, point, event, place, handle, fresh, value, n, status)
+      call friction_flexibility(store, point, event, handle, fresh, value, n, at, status)
       if (status /= status_ok .or. m == 0) return
-      coupling(:, :) = -store%answer
-      do i = 1, m
-         coupling(i, i) = coupling(i, i) + 1.0_wp
-         change(i, :) = [product_of(point(i)%law, point(i), ua(1:)), product_of(point(i)%law, point(i), ub(1:))] &
-            - point(i)%held
+      do j = 1, m
+         do i = 1, m
+            coupling(i, j) = point(j)%area * dot_product(point(i)%law, store%jump(:, at(i), at(j)))
+         end do
+         coupling(j, j) = coupling(j, j) + 1.0_wp
+         change(j, :) = point(j)%law(1) * [product_of(point(j)%across, point(j), ua(1:)), &
+            product_of(point(j)%across, point(j), ub(1:))] + point(j)%law(2) * &
+            [product_of(point(j)%slip, point(j), ua(1:)), product_of(point(j)%slip, point(j), ub(1:))] - point(j)%held
       end do
       call eliminate(coupling, change, status)
       if (status /= status_ok) return
       force = 0.0_wp
       do j = 1, m
          do i = 1, 2
-            call add_force(point(j)%force * change(j, i), point(j), force(:, i))
+            call add_force(-point(j)%area * change(j, i) * point(j)%slip, point(j), force(:, i))
          end do
          select type (group => holders(point(j)%group)%group)
          class is (point_group)
@@ -112,92 +117,135 @@ contains
       end do
    end subroutine find_sliders
 
-   !> Bring the stored answers to the points that slide now and to the factor as it is
-   subroutine find_answers(store, point, event, place, handle, fresh, value, n, status)
+   !> Where in the store some points are, with the flexibilities between them of the factor as it is
+   subroutine friction_flexibility(store, point, event, handle, fresh, value, n, at, status)
       type(friction_store), intent(inout) :: store
       type(slider), intent(in) :: point(:)
       type(event_vectors), intent(in) :: event
-      integer, intent(in) :: place(2)
+      type(c_ptr), intent(in) :: handle
+      logical, intent(in) :: fresh
+      real(wp), intent(in) :: value(:)
+      integer, intent(in) :: n                 !! equations
+      integer, intent(out) :: at(:)            !! (points)
+      integer(c_int), intent(out) :: status
+      type(slider), allocatable :: all_of(:)
+      real(wp), allocatable :: jump(:, :, :), x(:, :)
+      logical, allocatable :: wanted(:)
+      integer, allocatable :: kept(:)
+      integer :: i, j, k, old, count, info
+
+      call friction_follow(store, event, handle, fresh, value, n, status)
+      if (status /= status_ok) return
+      old = 0
+      if (store%known) old = size(store%point)
+      allocate (wanted(old), kept(old), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      wanted = .false.
+      at = 0
+      do i = 1, size(point)
+         do k = 1, old
+            if (store%point(k)%point /= point(i)%point .or. store%point(k)%group /= point(i)%group) cycle
+            at(i) = k
+            wanted(k) = .true.
+            exit
+         end do
+      end do
+      if (old <= most_kept * size(point) + some) wanted = .true.
+      if (all(at > 0) .and. all(wanted) .and. store%known) return
+      count = 0
+      do k = 1, old
+         if (.not. wanted(k)) cycle
+         count = count + 1
+         kept(count) = k
+         where (at == k) at = count
+      end do
+      i = count
+      count = count + size(pack(at, at == 0))
+      allocate (all_of(count), jump(2, count, count), x(n, 2), stat=info)
+      if (info /= 0) status = status_out_of_memory
+      if (info /= 0) return
+      do k = 1, i
+         all_of(k) = store%point(kept(k))
+         do j = 1, i
+            jump(:, j, k) = store%jump(:, kept(j), kept(k))
+         end do
+      end do
+      do k = 1, size(point)
+         if (at(k) > 0) cycle
+         i = i + 1
+         at(k) = i
+         all_of(i) = point(k)
+         x = 0.0_wp
+         call add_force(point(k)%slip, point(k), x(:, 1))
+         call add_force(point(k)%across, point(k), x(:, 2))
+         call solve(handle, fresh, value, x, status)
+         if (status /= status_ok) return
+         do j = 1, i
+            jump(:, j, i) = [product_of(all_of(j)%across, all_of(j), x(:, 1)), &
+               product_of(all_of(j)%slip, all_of(j), x(:, 1))]
+            jump(:, i, j) = [product_of(all_of(j)%slip, all_of(j), x(:, 2)), jump(2, j, i)]
+         end do
+      end do
+      store%known = .true.
+      store%current = .true.
+      call move_alloc(all_of, store%point)
+      call move_alloc(jump, store%jump)
+   end subroutine friction_flexibility
+
+   !> The flexibilities after an event, from those before it
+   subroutine friction_follow(store, event, handle, fresh, value, n, status)
+      type(friction_store), intent(inout) :: store
+      type(event_vectors), intent(in) :: event
       type(c_ptr), intent(in) :: handle
       logical, intent(in) :: fresh
       real(wp), intent(in) :: value(:)
       integer, intent(in) :: n                 !! equations
       integer(c_int), intent(out) :: status
-      real(wp), allocatable :: answer(:, :), z(:, :), x(:, :)
+      real(wp), allocatable :: z(:, :), moved(:, :, :)
       real(wp) :: small(most_rank, most_rank), left(most_rank)
-      integer :: old(size(point)), i, j, k, m, info
+      integer :: i, j, k, m, r, info
 
-      m = size(point)
-      old = 0
-      if (store%known) then
-         k = 1
-         do i = 1, m    ! both lists are in the order of groups and points
-            if (all([point(i)%group, point(i)%point] == place)) cycle
-            do while (k <= size(store%point))
-               if (store%point(k)%group > point(i)%group) exit
-               if (store%point(k)%group == point(i)%group .and. store%point(k)%point >= point(i)%point) exit
-               k = k + 1
-            end do
-            if (k > size(store%point)) exit
-            if (store%point(k)%group == point(i)%group .and. store%point(k)%point == point(i)%point) old(i) = k
-         end do
-      end if
-      allocate (answer(m, m), z(n, max(event%rank, 1)), x(n, 2), stat=info)
-      status = merge(status_ok, status_out_of_memory, info == 0)
+      status = status_ok
+      if (.not. store%known .or. store%current) return
+      store%known = .false.      ! until it has succeeded
+      r = event%rank
+      m = size(store%point)
+      allocate (z(n, max(r, 1)), moved(2, r, m), stat=info)
+      if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
-      do j = 1, m
-         do i = 1, m
-            if (old(i) > 0 .and. old(j) > 0) answer(i, j) = store%answer(old(i), old(j))
+      z = 0.0_wp
+      do k = 1, r
+         do i = 1, event%entries
+            if (event%index(i) <= n) z(event%index(i), k) = event%w(i, k)
          end do
       end do
-      if (any(old > 0) .and. .not. store%current) then
-         z = 0.0_wp
-         do k = 1, event%rank
-            do i = 1, event%entries
-               if (event%index(i) <= n) z(event%index(i), k) = event%w(i, k)
-            end do
+      if (r > 0) call solve(handle, fresh, value, z, status)
+      if (status /= status_ok) return
+      do k = 1, r
+         do i = 1, r
+            small(i, k) = sum(event%w(1:event%entries, i) * z(min(event%index(1:event%entries), n), k), &
+               mask=event%index(1:event%entries) <= n)
          end do
-         call solve(handle, fresh, value, z, status)
-         if (status /= status_ok) return
-         do k = 1, event%rank
-            do i = 1, event%rank
-               small(i, k) = sum(event%w(1:event%entries, i) * z(min(event%index(1:event%entries), n), k), &
-                  mask=event%index(1:event%entries) <= n)
-            end do
-            small(k, k) = small(k, k) + event%sign(k)
+         small(k, k) = small(k, k) + event%sign(k)
+         do i = 1, m
+            moved(:, k, i) = [product_of(store%point(i)%across, store%point(i), z(:, k)), &
+               product_of(store%point(i)%slip, store%point(i), z(:, k))]
          end do
-         do j = 1, m
-            if (old(j) == 0) cycle
-            do k = 1, event%rank
-               left(k) = product_of(point(j)%force, point(j), z(:, k))
-            end do
-            call eliminate_one(small(1:event%rank, 1:event%rank), left(1:event%rank), status)
-            if (status /= status_ok) return
-            do i = 1, m
-               if (old(i) == 0) cycle
-               do k = 1, event%rank
-                  answer(i, j) = answer(i, j) + product_of(point(i)%law, point(i), z(:, k)) * left(k)
-               end do
-            end do
-         end do
-      end if
+      end do
       do j = 1, m
-         if (old(j) > 0) cycle
-         x = 0.0_wp
-         call add_force(point(j)%force, point(j), x(:, 1))
-         call add_force(point(j)%law, point(j), x(:, 2))
-         call solve(handle, fresh, value, x, status)
+         left(1:r) = moved(2, :, j)
+         call eliminate_one(small(1:r, 1:r), left(1:r), status)
          if (status /= status_ok) return
          do i = 1, m
-            answer(i, j) = product_of(point(i)%law, point(i), x(:, 1))
-            answer(j, i) = product_of(point(i)%force, point(i), x(:, 2))
+            do k = 1, r
+               store%jump(:, i, j) = store%jump(:, i, j) + moved(:, k, i) * left(k)
+            end do
          end do
       end do
       store%known = .true.
       store%current = .true.
-      store%point = point
-      call move_alloc(answer, store%answer)
-   end subroutine find_answers
+   end subroutine friction_follow
 
    !> Displacements of some loads
    subroutine solve(handle, fresh, value, x, status)

@@ -77,12 +77,13 @@ module sla_group
       integer :: group = 0
       integer :: point = 0
       integer(c_int) :: index(most_slider) = 0       !! equations, 0 held
-      real(wp) :: law(most_slider) = 0.0_wp          !! h = law.u [Pa/m]
-      real(wp) :: force(most_slider) = 0.0_wp        !! nodal forces of a unit of h [m^2]
+      real(wp) :: across(most_slider) = 0.0_wp       !! across.u is the jump across the joint,
+      real(wp) :: slip(most_slider) = 0.0_wp         !! slip.u that along it
+      real(wp) :: area = 0.0_wp                      !! h acts on the nodes by -area slip [m^2]
+      real(wp) :: law(2) = 0.0_wp                    !! h = law(1) across.u + law(2) slip.u [Pa/m]
       real(wp) :: held(2) = 0.0_wp                   !! h as it is, constant and per unit multiplier [Pa]
-      ! The whole of its friction is spring slip + h, its strength that of sense strength.u
-      real(wp) :: slip(most_slider) = 0.0_wp         !! slip = slip.u
-      real(wp) :: strength(most_slider) = 0.0_wp     !! [Pa/m]
+      ! The whole of its friction is spring slip + h, its strength that of sense strength across.u
+      real(wp) :: strength = 0.0_wp                  !! [Pa/m]
       real(wp) :: spring = 0.0_wp                    !! in the stiffness [Pa/m]
       real(wp) :: elastic = 0.0_wp                   !! that of a point that sticks [Pa/m]
       real(wp) :: sense = 0.0_wp                     !! of the slip, +1 or -1; 0: it sticks

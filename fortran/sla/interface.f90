@@ -236,9 +236,10 @@ contains
       e = (p + 1) / 2
       as%point = p
       as%index = group%equation(:, e)
-      as%force = -group%area(p) * nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
+      as%across = nodal(group, e, p, [1.0_wp, 0.0_wp]) * group%factor(:, e)
       as%slip = nodal(group, e, p, [0.0_wp, 1.0_wp]) * group%factor(:, e)
-      as%strength = nodal(group, e, p, [-group%law%friction(e) * across(group, e, p), 0.0_wp]) * group%factor(:, e)
+      as%area = group%area(p)
+      as%strength = -group%law%friction(e) * across(group, e, p)
       as%elastic = shear(group, e, p) - bond(group, e, p)
       if (group%mode(p) == sticks) then
          as%spring = as%elastic
@@ -246,8 +247,7 @@ contains
          return
       end if
       as%sense = merge(1.0_wp, -1.0_wp, group%mode(p) == slides_up)
-      as%law = nodal(group, e, p, [-as%sense * group%law%friction(e) * across(group, e, p), &
-         -soft * shear(group, e, p)]) * group%factor(:, e)
+      as%law = [as%sense * as%strength, -soft * shear(group, e, p)]
       as%spring = soft * shear(group, e, p)
       as%held = group%held(:, p)
    end subroutine describe

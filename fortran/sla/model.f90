@@ -11,7 +11,7 @@ module sla_model
       extrados_sparse_factor, extrados_sparse_solve, extrados_sparse_plain
    use sla_group, only : group_holder, element_group, point_group, material_options, event_vectors, scan_result, &
       most_entries, most_rank, report_rows
-   use sla_friction, only : friction_store, friction_balance
+   use sla_friction, only : friction_store, friction_balance, friction_follow
    use sla_turns, only : friction_turns
    use sla_regions, only : region_tree, regions_new, regions_measure, regions_settled, regions_made_up
    use sla_tables, only : tooth_tables
@@ -20,7 +20,8 @@ module sla_model
    private
    public :: element_model, model_new, model_add, model_prepare, model_factor, model_loads, model_free, model_solve
    public :: model_displacements, model_settled, model_balance, model_reactions, model_recorded
-   public :: model_slips, model_turns, held_work, model_damage, model_standing, model_resume, standing_values
+   public :: model_follow, model_slips, model_turns, held_work, model_damage, model_standing, model_resume
+   public :: standing_values
 
    !> Pivot ratio below which the structure counts as a mechanism
    real(wp), parameter :: least_ratio = 1.0e-13_wp
@@ -355,7 +356,7 @@ contains
       model%ua(1:n) = model%z(:, 1)
       model%ub(1:n) = model%z(:, 2)
       model%friction%known = .false.
-      call model_balance(model, [0, 0], status)
+      call model_balance(model, status)
    end subroutine model_solve
 
    !> Once a point has slipped there are forces beside the stiffness
@@ -383,12 +384,11 @@ contains
    end subroutine model_slips
 
    !> Where all displacements are known: let friction balance with them, then see `model_settled`
-   subroutine model_balance(model, place, status)
+   subroutine model_balance(model, status)
       type(element_model), intent(inout) :: model
-      integer, intent(in) :: place(2)             !! group and point of the last event, 0 none
       integer(c_int), intent(out) :: status        !! not_positive_definite: what slides is a mechanism
       status = status_ok
-      if (model%slides) call friction_balance(model%friction, model%holders, model%event, place, model%handle, &
+      if (model%slides) call friction_balance(model%friction, model%holders, model%event, model%handle, &
          model%refactor, model%value, model%equations, model%ua, model%ub, model%fh, status)
       call model_settled(model)
    end subroutine model_balance
@@ -399,10 +399,17 @@ contains
       integer, allocatable, intent(out) :: change(:, :)    !! (3, changes) group, point, code
       logical, intent(out) :: found
       integer(c_int), intent(out) :: status
-      call friction_turns(model%holders, model%handle, model%refactor, model%value, model%equations, model%lambda, &
-         model%ua, model%ub, change, found, status)
-      model%friction%known = .false.
+      call friction_turns(model%friction, model%holders, model%event, model%handle, model%refactor, model%value, &
+         model%equations, model%lambda, model%ua, model%ub, change, found, status)
    end subroutine model_turns
+
+   !> What sliding points do to each other, after an event without a balance
+   subroutine model_follow(model, status)
+      type(element_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      call friction_follow(model%friction, model%event, model%handle, model%refactor, model%value, model%equations, &
+         status)
+   end subroutine model_follow
 
    !> The forces by which moved supports act on the unknowns, into z; the supports move
    subroutine push_supports(model)

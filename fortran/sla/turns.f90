@@ -14,8 +14,8 @@ module sla_turns
    use common_kinds, only : wp
    use common_lists, only : code_slide => sla_event_slide, code_stick => sla_event_stick
    use common_status, only : status_ok, status_out_of_memory
-   use sla_friction, only : add_force, eliminate, find_sliders, product_of, solve
-   use sla_group, only : group_holder, point_group, slider
+   use sla_friction, only : friction_flexibility, friction_store, eliminate, find_sliders, product_of
+   use sla_group, only : event_vectors, group_holder, point_group, slider
    use, intrinsic :: iso_c_binding, only : c_int, c_ptr
    implicit none
    private
@@ -24,8 +24,10 @@ module sla_turns
 contains
 
    !> The changes that let the structure go on with more load, all made at once
-   subroutine friction_turns(holders, handle, fresh, value, n, lambda, ua, ub, change, found, status)
+   subroutine friction_turns(store, holders, event, handle, fresh, value, n, lambda, ua, ub, change, found, status)
+      type(friction_store), intent(inout) :: store
       type(group_holder), intent(in) :: holders(:)
+      type(event_vectors), intent(in) :: event           !! by which the factor changed since the last balance
       type(c_ptr), intent(in) :: handle                  !! of the factor
       logical, intent(in) :: fresh                       !! solve with a new factor of `value`
       real(wp), intent(in) :: value(:)
@@ -37,8 +39,8 @@ contains
       logical, intent(out) :: found                      !! false: no motion goes on with more load
       integer(c_int), intent(out) :: status
       type(slider), allocatable :: point(:)
-      real(wp), allocatable :: x(:, :), g(:, :), f(:, :), g0(:), f0(:), matrix(:, :), side(:, :)
-      integer, allocatable :: rows(:, :)
+      real(wp), allocatable :: g(:, :), f(:, :), g0(:), f0(:), matrix(:, :), side(:, :)
+      integer, allocatable :: rows(:, :), at(:)
       logical, allocatable :: sliding(:)
       integer :: i, j, m, slides, count, info
 
@@ -46,30 +48,26 @@ contains
       call find_limited(holders, lambda, ua, ub, point, slides, status)
       if (status /= status_ok) return
       m = size(point)
-      allocate (x(n, m), g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), sliding(m), rows(3, m), &
+      allocate (g(m, m), f(m, m), g0(m), f0(m), matrix(m, m), side(m, m + 1), sliding(m), rows(3, m), at(m), &
          stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0 .or. m == 0) return
-      x = 0.0_wp
-      do j = 1, m
-         call add_force(point(j)%force, point(j), x(:, j))
-      end do
-      call solve(handle, fresh, value, x, status)
+      call friction_flexibility(store, point, event, handle, fresh, value, n, at, status)
       if (status /= status_ok) return
       do i = 1, m
          associate (p => point(i))
             g0(i) = product_of(p%slip, p, ub(1:))
             f0(i) = p%spring * g0(i) + merge(p%held(2), 0.0_wp, i <= slides)   ! the shear
             do j = 1, m
-               g(i, j) = product_of(p%slip, p, x(:, j))
+               g(i, j) = -point(j)%area * store%jump(2, at(i), at(j))
                f(i, j) = p%spring * g(i, j) + merge(1.0_wp, 0.0_wp, i == j)
             end do
             ! The slip is measured by the stress that it would be if it were elastic
             g0(i) = p%sense * (p%elastic * g0(i) - f0(i))
             g(i, :) = p%sense * (p%elastic * g(i, :) - f(i, :))
-            f0(i) = product_of(p%strength, p, ub(1:)) - p%sense * f0(i)
+            f0(i) = p%strength * product_of(p%across, p, ub(1:)) - p%sense * f0(i)
             do j = 1, m
-               f(i, j) = product_of(p%strength, p, x(:, j)) - p%sense * f(i, j)
+               f(i, j) = -p%strength * point(j)%area * store%jump(1, at(i), at(j)) - p%sense * f(i, j)
             end do
          end associate
       end do

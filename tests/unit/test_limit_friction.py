@@ -129,6 +129,18 @@ def test_one_interior_point_method() -> None:
         assert point.gamma == pytest.approx(limit.collapse()[0].gamma, abs=1e-8)
 
 
+@pytest.mark.parametrize("units, courses, friction", [(4, 3, 0.65), (6, 8, 0.4), (3, 9, 0.8)])
+def test_the_interior_point_method_settles_by_itself(units: int, courses: int, friction: float) -> None:
+    """What is charged for its steps leaves no trace in the answer, which is that of a linear programme."""
+    assembly = make_brickwork(Bond(0.5, 0.25, "whole", False), 0.5 * units, 0.25 * courses, ())
+    limit = LimitAnalysis(assembly, friction, form="sparse")
+    for direction in (1, -1):
+        point, misfit = CollapseProblem(limit.system, limit._mu, direction, dilates=True).state()
+        assert misfit < RESIDUAL
+        exact = limit._by_programme(direction)[0].gamma
+        assert direction * point.gamma == pytest.approx(exact, abs=1e-9)
+
+
 def test_bounds_of_drucker() -> None:
     """Without friction a bonded wall bears nothing sideways; with dilatancy it bears most."""
     limit = LimitAnalysis(bond(4, 5), 0.6, associated=False, starts=3)

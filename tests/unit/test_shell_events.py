@@ -204,3 +204,38 @@ def test_transverse_shear_softens_with_its_crack():
         assert (updated.point == anew.point).all()
         assert updated.load == pytest.approx(anew.load, rel=1e-8)
         assert updated.compliance[-1] > 1.5 * updated.compliance[0]
+
+
+@pytest.mark.parametrize("cracking, retention", [("orthotropic", None), ("orthotropic", 0.07), ("isotropic", None)])
+def test_transverse_shear_moduli_are_those_of_the_rule(cracking, retention):
+    """A thick plate that only shears, cracked aslant: across the crack fixed cracks soften the shear by Eq. 4.15, or to a
+    constant part of the modulus, and not along it; isotropic damage softens both alike."""
+    size, thickness, nu = 1.0, 40.0, 0.2
+    xyz = size * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    quads = np.array([[0, 1, 2, 3]])
+    frames, flat = node_frames(xyz, [quads])
+    shells = core.Shells(
+        "Q4", quads, thickness, YOUNG, nu, 0.5, LAW, frames=frames, flat=flat, layers=3, through="lobatto"
+    )
+    whole, c, s = 0.5 * YOUNG / (1.0 + nu), np.cos(0.5), np.sin(0.5)
+    for way, moved in (("x", (1, 2)), ("y", (2, 3))):
+        held = [(n, d) for n in range(4) for d in range(6) if not (d == 2 and n in moved)]
+        load = np.zeros((4, 6))
+        load[list(moved), 2] = 0.5
+        freedoms = core.Freedoms.make(4, held, [[(n, 2, 1.0) for n in moved]], of_node=6)
+        with core.Model(xyz, freedoms, [shells], core.Behaviour(cracking, retention)) as model:
+            model.loads(np.zeros((4, 6)), load)
+            sound = 1.0 / model.displacement(1.0)[moved[0], 2]
+            damage = model.damage()
+            damage[0], damage[1], damage[2] = c, s, 1.0
+            damage[3] += 3.0
+            model.set_damage(damage)
+            model.loads(np.zeros((4, 6)), load)
+            cracked = 1.0 / model.displacement(1.0)[moved[0], 2]
+            left = float(model.report(0.0)["ratio_n"][0])
+        assert sound == pytest.approx(5.0 / 6.0 * whole * thickness, rel=5e-3)
+        assert 0.05 < left < 0.95
+        modulus = left * YOUNG
+        across = retention or 0.5 * modulus / (1.0 + nu * modulus / YOUNG) / whole
+        expected = left if cracking == "isotropic" else c**2 * across + s**2 if way == "x" else s**2 * across + c**2
+        assert cracked / sound == pytest.approx(expected, rel=5e-3)

@@ -4,7 +4,10 @@ Equilibrium of the blocks, the laws of the joints, and a motion that goes with t
 ends part only where they do not press (or crush), joints slide only where |s| = mu N. Where sliding dilates by the
 angle of friction this is a linear programme and its dual, and Mehrotra's method with Gondzio's corrections; where it
 does not, the same Newton steps lead to a state, though to one of several. The unknowns of the joints are eliminated
-joint by joint, which leaves three equations per block, as sparse as the wall.
+joint by joint, which leaves three equations per block, as sparse as the wall. Near the end joints at rest are so much
+stiffer than those that move that these equations would drown in rounding: in the linear programme, a step of the forces is
+charged for its opening of the joints, and a step of the motion for its force, a little each. Both vanish with the steps
+(Friedlander and Orban 2012: a primal-dual regularisation that is exact in the end).
 """
 
 from dataclasses import dataclass
@@ -17,6 +20,7 @@ from extrados.limit.systems import Sparse
 
 GAP = 1e-9  # of the work of the load: where the iteration may end
 RESIDUAL = 1e-8  # a hundredth of it of the total load, and of the fastest motion
+WORK = 20.0  # that what is left of the forces times the fastest motion must stay below RESIDUAL
 ROUNDS = 150
 PATIENCE, POLISH = 25, 8  # rounds without a better state, before and after the gap is closed
 FLOOR = 0.2  # of GAP
@@ -26,6 +30,9 @@ FAR, FURTHER, GAINED = 0.95, 0.3, 0.03  # steps that need none; how much longer 
 LEAST_FRICTION = 1e-6  # what joints without friction have
 FLAT = 1e-9  # of the strength: so near to half of it the bounds of both ends are one
 LEAST_STIFF = 1e-10  # of what never yields either way
+SOFT, FIRM = 1e-8, 1e-9  # charged for steps: opening per force, force per motion
+CHARGES = (1.0, 1e2, 1e4)  # so many times, where rounding asks for it
+SHIFT = 1e-13  # where steps are free, keeps the factor alive if a block hangs by an edge
 SIDES = np.array([[1.0], [-1.0]])  # of the least and the greatest share
 SLIGHT = 0.25  # of the strength: joints pressed by less are taken as uncrushed by the formulas of small forces
 
@@ -111,6 +118,7 @@ class CollapseProblem:
         self.system, self.friction, self.sense, self.dilates = system, friction, sense, dilates
         self.crush = np.zeros(len(friction)) if crush is None else crush
         self.crushes = crush is not None
+        self.charged = dilates and not self.crushes
         self.corner = system.corner_matrix
         self.corner_t = sparse.csr_array(self.corner.T)
         self.live = sense * system.matrix[:, [-1]].toarray().ravel()
@@ -132,11 +140,11 @@ class CollapseProblem:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # an iteration that runs away is given up
             for _ in range(ROUNDS):
                 rest = self._rest(point, friction, dilatancy)
+                fastest = max(1.0, float(np.abs(point.u).max()))
                 misfit = max(
                     point.gap / max(1.0, abs(point.gamma)) * RESIDUAL / GAP,
-                    100.0 * max(float(np.abs(r).max()) for r in (rest.u, rest.v, rest.w)),
-                    max(float(np.abs(r).max(initial=0.0)) for r in (rest.o, rest.s, rest.share))
-                    / max(1.0, float(np.abs(point.u).max())),
+                    max(100.0, WORK * fastest) * max(float(np.abs(r).max()) for r in (rest.u, rest.v, rest.w)),
+                    max(float(np.abs(r).max(initial=0.0)) for r in (rest.o, rest.s, rest.share)) / fastest,
                 )
                 if not np.isfinite(misfit):
                     break
@@ -145,10 +153,10 @@ class CollapseProblem:
                     best, least, since = point, misfit, 0
                 if misfit < RESIDUAL or since > (PATIENCE if point.gap > GAP else POLISH):
                     break
-                try:
-                    point = self._stepped(point, rest, friction, dilatancy)
-                except RuntimeError:  # the factor met an exact zero
+                found = self._stepped(point, rest, friction, dilatancy)
+                if found is None:
                     break
+                point = found
         return best, least
 
     def _start(self, friction: np.ndarray, scatter: np.random.Generator | None) -> Point:
@@ -174,14 +182,14 @@ class CollapseProblem:
 
     def _rest(self, x: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point:
         """What is left of the equations, each under the name of the unknown it would fix."""
-        normal, motion = x.n.sum(axis=1), self.motion(x.u)
+        normal, motion = _sums(x.n), self.motion(x.u)
         bend = 2.0 * self.crush * normal
         return Point(
             n=np.empty(0),
             u=self.system.right - self.corner @ x.corners.ravel() - self.answers @ x.share - self.live * x.gamma,
             v=x.n - (self.crush * normal**2)[:, None] - x.v,
             w=np.column_stack([friction * normal - x.s, friction * normal + x.s]) - x.w,
-            o=x.o + (dilatancy * x.slip.sum(axis=1) - bend * x.o.sum(axis=1))[:, None] - motion[:, :2],
+            o=x.o + (dilatancy * _sums(x.slip) - bend * _sums(x.o))[:, None] - motion[:, :2],
             s=x.slip[:, 1] - x.slip[:, 0] - motion[:, 2],
             slip=np.empty(0),
             gamma=1.0 - float(self.live @ x.u),
@@ -190,18 +198,34 @@ class CollapseProblem:
             hold=np.empty(0),
         )
 
-    def _stepped(self, x: Point, rest: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point:
-        """The next iterate."""
+    def _stepped(self, x: Point, rest: Point, friction: np.ndarray, dilatancy: np.ndarray) -> Point | None:
+        """The next iterate, by the least charge at which the matrix has a factor; None where it has none."""
+        for charge in CHARGES if self.charged else (0.0,):
+            try:
+                return self._step(x, rest, friction, dilatancy, SOFT * charge, FIRM * charge if charge else SHIFT)
+            except RuntimeError:  # a pivot was lost in rounding, or is zero
+                continue
+        return None
+
+    def _step(
+        self, x: Point, rest: Point, friction: np.ndarray, dilatancy: np.ndarray, soft: float, shift: float
+    ) -> Point:
+        """The next iterate; RuntimeError where the matrix has no factor."""
         stiff = x.slip / x.w
-        both = stiff.sum(axis=1)
+        both = _sums(stiff)
         share = stiff / both[:, None]
         lean, press = share[:, 0] - share[:, 1], x.o / x.v
         # What slips both ways at once, which only the iteration knows, opens the joint and stiffens it.
         between = 4.0 * stiff[:, 0] * share[:, 1]
-        bend = 2.0 * self.crush * x.n.sum(axis=1)
-        curve = 2.0 * self.crush * x.o.sum(axis=1)
+        bend = 2.0 * self.crush * _sums(x.n)
+        curve = 2.0 * self.crush * _sums(x.o)
         # Inverse of the joint's law: openings to normal forces, a 2 x 2 without cancellation; slip to shear.
-        t_p, t_q, far, level = press[:, 0], press[:, 1], 1.0 - bend, curve + dilatancy * friction * between
+        t_p, t_q, far, level = (
+            press[:, 0] + soft,
+            press[:, 1] + soft,
+            1.0 - bend,
+            curve + dilatancy * friction * between,
+        )
         det = (1.0 - 2.0 * bend) ** 2 * t_p * t_q + level * (t_p + t_q)
         give = np.empty((self.joints, 2, 2))
         give[:, 0, 0] = (far**2 * t_q + bend**2 * t_p + level) / det
@@ -213,9 +237,9 @@ class CollapseProblem:
         spring[:, :2, :2] = give
         spring[:, 2, :2] = (friction * lean)[:, None] * total
         spring[:, :2, 2] = (dilatancy * lean)[:, None] * total
-        spring[:, 2, 2] = 1.0 / both + friction * dilatancy * lean**2 * (t_p + t_q) / det
+        spring[:, 2, 2] = 1.0 / (both + soft) + friction * dilatancy * lean**2 * (t_p + t_q) / det
         yields = 1.0 / np.maximum((x.hold / x.room).sum(axis=0), LEAST_STIFF)
-        solver = self.normal.factor(spring, yields, symmetric=self.dilates)
+        solver = self.normal.factor(spring, yields, shift, symmetric=self.dilates, positive=self.charged)
         along = solver.solve(self.live)
 
         def newton(aim: float, second: Products) -> Point:
@@ -225,27 +249,27 @@ class CollapseProblem:
             held = (SIDES * want / x.room).sum(axis=0) - rest.share
             opens, slips = (want_v - x.o * rest.v) / x.v, (want_w - x.slip * rest.w) / x.w
             free = np.empty((self.joints, 3))
-            free[:, :2] = rest.o + opens + (dilatancy * slips.sum(axis=1) - bend * opens.sum(axis=1))[:, None]
+            free[:, :2] = rest.o + opens + (dilatancy * _sums(slips) - bend * _sums(opens))[:, None]
             free[:, 2] = rest.s + slips[:, 1] - slips[:, 0]
-            pushed = self.corner @ np.matmul(spring, free[..., None]).ravel() + self.answers @ (yields * held)
+            pushed = self.corner @ np.einsum("jkl,jl->jk", spring, free).ravel() + self.answers @ (yields * held)
             part = solver.solve(pushed - rest.u)
             dgamma = (rest.gamma - float(self.live @ part)) / float(self.live @ along)
             du = part + along * dgamma
             moved = self.motion(du)
             left = free - moved
-            shear = left[:, 2] / both
+            shear = left[:, 2] / (both + soft)
             driven = left[:, :2] + (dilatancy * lean * left[:, 2])[:, None]
-            dn = np.matmul(give, driven[..., None])[..., 0]
-            dv = dn - (bend * dn.sum(axis=1))[:, None] + rest.v
+            dn = np.einsum("jkl,jl->jk", give, driven)
+            dv = dn - (bend * _sums(dn))[:, None] + rest.v
             do = (want_v - x.o * dv) / x.v
-            more = friction * (total * driven).sum(axis=1)
+            more = friction * _sums(total * driven)
             # (1 - lean) / 2 is the share of the other sense: no differences of nearly equal numbers.
             dw = np.column_stack([2.0 * more * share[:, 1] - shear, 2.0 * more * share[:, 0] + shear]) + rest.w
             dslip = slips - 0.5 * (more * between)[:, None]
             dslip += np.column_stack([stiff[:, 0] * shear, -stiff[:, 1] * shear])
             # Where an end opens its force is small and its opening known: the better of two equal formulas.
             opening = (x.v < x.o) & (bend < SLIGHT)[:, None]
-            known = moved[:, :2] - rest.o + (curve * dn.sum(axis=1) - dilatancy * dslip.sum(axis=1))[:, None]
+            known = moved[:, :2] - rest.o + (curve * _sums(dn) - dilatancy * _sums(dslip))[:, None]
             do = np.where(opening, self._unbent(known, bend), do)
             dv = np.where(opening, (want_v - x.v * do) / x.o, dv)
             dn = np.where((bend < SLIGHT)[:, None], self._unbent(dv - rest.v, bend), dn)
@@ -281,7 +305,7 @@ class CollapseProblem:
     @staticmethod
     def _unbent(value: np.ndarray, bend: np.ndarray) -> np.ndarray:
         """The (joints, 2) that less `bend` times their sum are `value`."""
-        return value + (bend / np.where(bend < SLIGHT, 1.0 - 2.0 * bend, 1.0) * value.sum(axis=1))[:, None]
+        return value + (bend / np.where(bend < SLIGHT, 1.0 - 2.0 * bend, 1.0) * _sums(value))[:, None]
 
     def motion(self, twist: np.ndarray) -> np.ndarray:
         """Motion (joints, 3) of block a against b: opening at p, at q, slip."""
@@ -339,8 +363,12 @@ def _products(x: Point) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def _reach(value: np.ndarray, change: np.ndarray) -> float:
-    falling = change < 0.0
-    return float((-value[falling] / change[falling]).min()) if falling.any() else np.inf
+    return float(np.where(change < 0.0, -value / change, np.inf).min(initial=np.inf))
+
+
+def _sums(pairs: np.ndarray) -> np.ndarray:
+    """Of pairs (joints, 2): numpy's sum over so short an axis takes many times as long."""
+    return pairs[:, 0] + pairs[:, 1]
 
 
 def _led_back(product: np.ndarray, aim: float) -> np.ndarray:

@@ -16,7 +16,7 @@ def signed_area(outline: np.ndarray) -> float:
 
 def properties(outline: np.ndarray) -> tuple[float, np.ndarray, float]:
     """Area [m^2], centroid [m] and polar moment of area about it [m^4] of a counter-clockwise outline."""
-    origin = outline.mean(axis=0)
+    origin = outline.sum(axis=0) / len(outline)
     p = outline - origin
     r = following(p)
     cross = p[:, 0] * r[:, 1] - p[:, 1] * r[:, 0]

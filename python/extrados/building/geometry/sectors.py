@@ -16,6 +16,14 @@ def ring_sector(inner: float, outer: float, angle: float) -> tuple[float, float,
     return area, centre, polar
 
 
+def directions(angle: np.ndarray) -> np.ndarray:
+    """Unit vectors (n, 2) at angles [rad] from the x axis."""
+    found = np.empty((len(angle), 2))
+    np.cos(angle, out=found[:, 0])
+    np.sin(angle, out=found[:, 1])
+    return found
+
+
 def sector_outlines(centre: np.ndarray, inner: float, outer: float, angle: np.ndarray) -> np.ndarray:
     """Counter-clockwise outlines (n, 14, 2) of ring sectors between the joint angles, which fall from left to right."""
     first, step = angle[:-1, None], np.diff(angle)[:, None]
