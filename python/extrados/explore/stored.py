@@ -322,9 +322,20 @@ class _Maker:
             self._moving(time[keep], self.arrays["place"][keep], "s", "time")
             if "support_outline" in self.arrays:
                 self.send("support_outline", "support_start")
+        elif "solid_vertex" in self.arrays:
+            for name, source in SOLIDS.items():
+                self.out[name] = self.arrays[source]
+            self.out |= {"body_time": time[keep], "pose": self.arrays["pose"][keep]}
+            self.body = {"sort": "space", "unit": "s", "label": "time", "over_time": True}
         fine = self._over_time(len(time))
         self.out["time"] = time[fine]
         axis = _axis("time", "time", "s")
+        if "turn" in self.arrays:  # of blocks in space: by how much, whatever the axis
+            rows = []
+            for i in self.arrays["tracked"][:6].tolist():
+                self.out[f"turn_{i}"] = np.linalg.norm(self.arrays["turn"][fine, i], axis=1)
+                rows.append(_series(f"turn_{i}", f"stone {i + 1}", factor=1e3))
+            self.charts.append(_chart("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True))
         if "rotation" in self.arrays:
             tracked = self.arrays["tracked"][:6]
             rows = []
