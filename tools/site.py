@@ -28,7 +28,7 @@ display: public
          private
 source: false
 graph: false
-search: true
+search: false
 preprocess: false
 parallel: 0
 """
