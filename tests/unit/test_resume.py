@@ -19,7 +19,7 @@ from extrados.analyses.sla.model import build
 from extrados.core import calls
 from extrados.core import sla as core
 from extrados.decks.reader import make_deck, read_deck
-from extrados.results.checkpoint import Checkpoint, folder_of
+from extrados.results.checkpoint import Checkpoint, folder_of, let_go
 from extrados.running.run import run_to
 
 BLOCK = """
@@ -473,3 +473,20 @@ def test_a_new_factor_forgets_the_history(tmp_path: Path) -> None:
             ends.append(it.run(60, [model.control], core.Stop()))
     for name in ("load", "compliance", "stored", "external", "dissipated", "crack", "point", "number", "monitors"):
         assert getattr(ends[0], name).tobytes() == getattr(ends[1], name).tobytes(), name
+
+
+@pytest.mark.skipif(os.name != "posix", reason="folders are held by POSIX locks")
+def test_two_runs_do_not_share_their_batches(tmp_path) -> None:
+    """The second into a folder is refused in words, whether it resumes or not, and the batches of the first are left."""
+    path, out = tmp_path / "deck.toml", tmp_path / "out"
+    path.write_text(DECKS["failure-domain at amplitudes"])
+    begun = Checkpoint(out, read_deck(path).identity, resume=False)
+    kept = begun.keep("sweep", 0, {"x": np.arange(3.0)})
+    words = [sys.executable, "-m", "extrados", "run", str(path), "--no-figures", "--out", str(out)]
+    for more in ([], ["--resume"]):
+        run = subprocess.run([*words, *more], capture_output=True, text=True)
+        assert run.returncode == 3 and "another run keeps its unfinished batches there" in run.stdout + run.stderr
+        assert "internal error" not in run.stdout + run.stderr
+        assert kept.exists()
+    let_go(out)
+    assert subprocess.run(words, capture_output=True).returncode == 0 and not folder_of(out).exists()

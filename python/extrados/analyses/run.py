@@ -13,6 +13,7 @@ from extrados.building.errors import BadGeometry
 from extrados.core.errors import Cancelled, CoreError
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
+from extrados.results.store import StoreError
 from extrados.results.typed import shapes
 from extrados.results.verdict import KindResults
 
@@ -61,7 +62,7 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
         result = Result(options.kind, "interrupted", "interrupted before it had a result")
     except MemoryError as error:
         result = Result(options.kind, "failed", str(error) or "not enough memory")
-    except (CoreError, NoAnswer) as error:
+    except (CoreError, NoAnswer, StoreError) as error:
         result = Result(options.kind, "failed", str(error))
     except Exception as error:
         if isinstance(error, ImportError) and "failed to map" in str(error):  # a library that is loaded when needed

@@ -26,6 +26,11 @@ from extrados.results import written
 from extrados.results.store import SUMMARY, StoreError
 from extrados.schema import files
 
+try:
+    import fcntl
+except ImportError:  # not on Windows
+    fcntl = None  # type: ignore[assignment]
+
 HEAD = "deck.json"
 _TEMPORARY = ".new."
 log = logging.getLogger(__name__)
@@ -79,6 +84,48 @@ def program() -> str:
     return f"{VERSION} {digest.hexdigest()[:16]}"
 
 
+#: Folders of this process' runs, and what holds each against another process; the children of a fork hold none
+_held: dict[Path, int] = {}
+
+
+def let_go(out: Path) -> None:
+    """Let another process keep its batches beside `out`."""
+    handle = _held.pop(folder_of(out), None)
+    if handle is not None:
+        os.close(handle)
+
+
+def _forget() -> None:
+    """In the child of a fork: closing a copy of the handle leaves the lock with the parent."""
+    while _held:
+        os.close(_held.popitem()[1])
+
+
+if fcntl is not None:
+    os.register_at_fork(after_in_child=_forget)
+
+
+def _hold(out: Path) -> None:
+    """Keep the batches beside `out` for this process until it lets go or ends, however that may be; StoreError where
+    another process does."""
+    let_go(out)
+    folder = folder_of(out)
+    if fcntl is None:
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise StoreError(
+            f"{folder}: another run keeps its unfinished batches there now; wait for its end, or name another folder with --out"
+        ) from None
+    except OSError:  # a file system that knows no locks
+        os.close(handle)
+        return
+    _held[folder] = handle
+
+
 def refuse_other_deck(out: Path, deck: str) -> None:
     """StoreError where results or batches in or beside `out` are of another deck than the one of hash `deck`, or where
     another version of the program began them."""
@@ -117,8 +164,10 @@ class Checkpoint:
                     raise StoreError(
                         f"{self.folder}: is in the way and was not written by extrados; remove it or use --out"
                     )
+                _hold(out)
                 _clear(self.folder)
             self.folder.mkdir(parents=True, exist_ok=True)
+            _hold(out)
             _write(self.folder / HEAD, json.dumps({"sha256": deck, "program": program()}).encode())
         except OSError as error:
             raise StoreError(f"{self.folder}: cannot write here: {error.strerror or error}") from None
@@ -179,9 +228,13 @@ def _sound(path: Path) -> bytes | None:
 
 
 def discard(out: Path) -> None:
-    """Remove the batches of a run that has finished, and nothing else."""
-    if (folder_of(out) / HEAD).exists():
-        _clear(folder_of(out))
+    """Remove the batches of a run that has finished, and nothing else; those of another run that goes on are left."""
+    folder = folder_of(out)
+    if (folder / HEAD).exists():
+        with contextlib.suppress(StoreError, FileNotFoundError):
+            _hold(out)
+            _clear(folder)
+    let_go(out)
 
 
 def _clear(folder: Path) -> None:

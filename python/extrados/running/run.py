@@ -122,10 +122,13 @@ def run_to(context: Context, out: str | Path, figures: bool = True) -> Run:
     context.out = out
     if context.resume:
         checkpoint.refuse_other_deck(out, deck.identity)
-    run = compute(context)
-    run.write(out, figures)
-    if all(r.status in ("ok", "refused") for r in run.results):
-        checkpoint.discard(out)
+    try:
+        run = compute(context)
+        run.write(out, figures)
+        if all(r.status in ("ok", "refused") for r in run.results):
+            checkpoint.discard(out)
+    finally:
+        checkpoint.let_go(out)
     return run
 
 
