@@ -207,7 +207,7 @@ def test_explain_schema_and_starters() -> None:
 
 
 def test_what_explain_tells_is_what_the_tables_say() -> None:
-    assert manual.stored() == explain.facts(), "run `make docs`"
+    assert manual.stored() == explain.facts(), "run `make references`"
 
 
 def test_decks_from_python() -> None:

@@ -68,7 +68,7 @@ def test_the_deck_reference_is_up_to_date() -> None:
     made = subprocess.run(
         [sys.executable, "-m", "extrados.cli", "explain", "--manual"], capture_output=True, text=True, check=True
     )
-    assert made.stdout == (ROOT / "docs" / "decks.md").read_text(encoding="utf-8"), "run `make docs`"
+    assert made.stdout == (ROOT / "docs" / "decks.md").read_text(encoding="utf-8"), "run `make references`"
 
 
 def test_the_conda_recipe_has_the_libraries_of_the_project() -> None:

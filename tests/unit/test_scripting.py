@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import os
 import tomllib
 from pathlib import Path
 
@@ -166,3 +167,33 @@ def test_results_say_where_when_and_by_whom(tmp_path: Path) -> None:
         assert "joint_name" in data["collapse_normal"].coords and list(data["axis"].values) == ["x", "y"]
     with h5py.File(tmp_path / "r" / "results.h5") as file:
         assert file["tilt/joint_name"].asstr()[0] == run.dataset("tilt")["joint_name"].values[0]
+
+
+def test_a_cluster_gives_the_bits_of_one(cluster) -> None:
+    address, _ = cluster
+    over = {"structure.thickness": [1.2, 1.3, 1.4]}
+    one, two = (extrados.sweep(DECK, over=over, workers=count, progress=False) for count in (1, address))
+    assert one.rows == two.rows and len(two) == 3
+
+
+def test_a_process_that_dies_is_told(tmp_path: Path) -> None:
+    """A member that ends its process, as one for which there is no memory would."""
+    from extrados.analyses import workers
+
+    with workers.processes(Deadly(), 1) as elsewhere:
+        assert elsewhere.run(0, 2, 1)["value"].tolist() == [0.0, 1.0]
+        with pytest.raises(RuntimeError, match="members 5 to 5 ended with code 9"):
+            elsewhere.run(5, 1, 1)
+    with workers.processes(Deadly(), 1) as elsewhere, pytest.raises(ValueError, match="member 7"):
+        elsewhere.run(7, 1, 1)
+
+
+class Deadly:
+    """Member 5 ends its process, member 7 fails, the others give their numbers."""
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        if first == 5:
+            os._exit(9)
+        if first == 7:
+            raise ValueError("member 7")
+        return {"value": np.arange(first, first + count, dtype=float)}

@@ -4,6 +4,7 @@ Each is `python -m extrados.analyses.workers`, told its job and its batches thro
 of the caller's program, so a script needs no guard around its main part.
 """
 
+import os
 import queue
 import signal
 import subprocess
@@ -53,6 +54,8 @@ class Elsewhere:
 def processes(job: Any, count: int) -> Iterator[Elsewhere]:
     """The job in `count` processes, which end with the block."""
     started: list[Worker] = []
+    # They find what we find
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     free: queue.SimpleQueue[Worker] = queue.SimpleQueue()
     try:
         for _ in range(count):
@@ -60,7 +63,11 @@ def processes(job: Any, count: int) -> Iterator[Elsewhere]:
             with theirs:
                 number = theirs.fileno()
                 command = [sys.executable, "-m", "extrados.analyses.workers", str(number)]
-                started.append(Worker(subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[number]), ours))
+                started.append(
+                    Worker(
+                        subprocess.Popen(command, stdin=subprocess.DEVNULL, pass_fds=[number], env=environment), ours
+                    )
+                )
             ours.send(job)
             free.put(started[-1])
         yield Elsewhere(free)

@@ -5,7 +5,7 @@ The ground is a thin support below every contact with it. extrados reads such a 
 
 import json
 import uuid
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,15 +25,8 @@ def written(deck: Deck) -> str:
     def add(vertices: np.ndarray, faces: Sequence[tuple[int, ...]], name: str, is_support: bool = False) -> None:
         nodes[str(len(nodes))] = _node(vertices, faces, name, is_support)
 
-    try:
-        section = deck.building.blocks()
-    except NoView:
-        for part, owner in zip(solids.parts, solids.owner, strict=True):
-            add(part.vertices, part.faces, solids.block_names[owner])
-    else:
-        for name, outline in zip(section.block_names, section.outlines, strict=True):
-            front, back = (np.insert(outline, 1, y, axis=1) for y in (-0.5 * section.depth, 0.5 * section.depth))
-            add(*_between(front, back), name)
+    for name, vertices, faces in bodies(deck):
+        add(vertices, faces, name)
     for j in np.flatnonzero((solids.a == GROUND) | (solids.b == GROUND)):
         top, upward = solids.polygon[j], solids.normal[j]
         if solids.a[j] == GROUND:
@@ -48,6 +41,21 @@ def written(deck: Deck) -> str:
     return (
         json.dumps(_object("compas_assembly.datastructures/Assembly", attributes={"name": title}, graph=graph)) + "\n"
     )
+
+
+def bodies(deck: Deck) -> Iterator[tuple[str, np.ndarray, list[tuple[int, ...]]]]:
+    """Name, vertices (n, 3) [m] and faces, counter-clockwise from outside: whole stones of a plane section, drawn out to its
+    depth; in space the convex parts."""
+    try:
+        section = deck.building.blocks()
+    except NoView:
+        solids = deck.building.solids()
+        for part, owner in zip(solids.parts, solids.owner, strict=True):
+            yield solids.block_names[owner], part.vertices, list(part.faces)
+        return
+    for name, outline in zip(section.block_names, section.outlines, strict=True):
+        front, back = (np.insert(outline, 1, y, axis=1) for y in (-0.5 * section.depth, 0.5 * section.depth))
+        yield name, *_between(front, back)
 
 
 def _between(one: np.ndarray, two: np.ndarray) -> tuple[np.ndarray, list[tuple[int, ...]]]:

@@ -34,9 +34,7 @@ def scene(deck: Deck) -> Any:
         import pyvista
     except ImportError:
         raise ImportError("this needs pyvista: pip install pyvista") from None
-    solids = deck.building.solids()
     made = pyvista.MultiBlock()
-    for part, owner in zip(solids.parts, solids.owner, strict=True):
-        faces = [number for face in part.faces for number in (len(face), *face)]
-        made.append(pyvista.PolyData(part.vertices, faces), solids.block_names[owner])
+    for name, vertices, faces in compas.bodies(deck):
+        made.append(pyvista.PolyData(vertices, [number for face in faces for number in (len(face), *face)]), name)
     return made

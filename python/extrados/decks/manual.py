@@ -1,7 +1,7 @@
 """What is told of deck keys: `explain` and the reference manual, from what the tables say of themselves.
 
 The facts are kept beside this file, since to load all tables takes longer than anyone waits for the meaning of a word;
-`make docs` writes them anew, and a test holds them to the tables.
+`make references` writes them anew, and a test holds them to the tables.
 """
 
 import difflib

@@ -1,0 +1,93 @@
+"""The tools of those who keep the program: a release, the history of benchmarks, the recipe of the forge."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def tool(place: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(Path(place).stem, ROOT / place)
+    assert spec is not None and spec.loader is not None
+    made = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(made)
+    return made
+
+
+release, history = tool("tools/release.py"), tool("tests/bench/history.py")
+
+
+@pytest.fixture
+def sources(tmp_path: Path) -> Path:
+    """A repository that holds what a release touches."""
+    for name in ["CHANGELOG.md", *release.PLACES]:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text((ROOT / name).read_text(encoding="utf-8"), encoding="utf-8")
+    for words in (
+        ["init", "-q"],
+        ["config", "user.email", "a@b"],
+        ["config", "user.name", "a"],
+        ["add", "."],
+        ["commit", "-qm", "all"],
+    ):
+        subprocess.run(["git", "-C", tmp_path, *words], check=True)
+    return tmp_path
+
+
+def test_a_release_sets_the_version_everywhere(sources: Path) -> None:
+    before = release.current(sources)
+    major, minor, _ = release.numbers(before)
+    version = f"{major}.{minor + 1}.0"
+    archive = release.release(sources, version, "2026-12-01")
+    assert archive.stat().st_size > 1000 and release.current(sources) == version
+    for name, (left, right) in release.PLACES.items():
+        text = (sources / name).read_text(encoding="utf-8")
+        assert re.search(f"{left}{re.escape(version)}{right}", text, re.M) and f"'{before}'" not in text
+    log = (sources / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"## {major}.{minor + 2}.0 (unreleased)\n\n## {version} (2026-12-01)\n\n### " in log
+    assert release.git(sources, "tag") == f"v{version}" and not release.git(sources, "status", "--porcelain", "-uno")
+    with pytest.raises(release.Refused, match="not larger"):
+        release.prepare(sources, version, "2026-12-02")
+    with pytest.raises(release.Refused, match="tells nothing"):
+        release.prepare(sources, f"{major}.{minor + 3}.0", "2026-12-02")
+
+
+def test_a_release_is_refused_with_the_reason(sources: Path) -> None:
+    with pytest.raises(release.Refused, match="expected three numbers"):
+        release.release(sources, "next", "2026-12-01")
+    (sources / "pyproject.toml").write_text("")
+    with pytest.raises(release.Refused, match="holds changes"):
+        release.release(sources, "9.0.0", "2026-12-01")
+
+
+def test_benchmarks_have_a_history(tmp_path: Path) -> None:
+    """Labels are lines without their numbers; curves need two runs, and their picture is drawn."""
+    place = tmp_path / "history.jsonl"
+    for seconds in (2.0, 1.5):
+        history.append("arch", f"domain 40 x 40, one thread: {seconds} s (4,000 runs/s)\nno time here: 3\n", place)
+    history.append("dem", "step 12.5 ns per block", place)
+    entries = history.read(place)
+    assert len(entries) == 3 and entries[0]["told"] == {"domain # x #, one thread: # s (# runs/s)": [2.0, "s"]}
+    [(label, points)] = history.curves(entries, "arch").items()
+    assert [(value, unit) for _, value, unit in points] == [(2.0, "s"), (1.5, "s")] and label.startswith("domain")
+    assert history.curves(entries, "dem") == {} and history.parsed("4,000 motions/s") == {
+        "# motions/s": (4000.0, "motions/s")
+    }
+    [picture] = history.draw(place, tmp_path / "pictures")
+    assert picture.stat().st_size > 5000
+
+
+def test_the_forge_calls_what_is_there() -> None:
+    recipe = (ROOT / ".github" / "workflows" / "ci.yml").read_text(encoding="utf-8")
+    targets = set(re.findall(r"^([\w-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M))
+    called = re.findall(r"run: (?:sudo )?(\S+)(?: (\S+))?$", recipe, re.M)
+    assert len(called) >= 4
+    for command, word in called:
+        assert word in targets if command == "make" else (ROOT / command).exists() or command == "git", (command, word)
+    assert sys.version_info >= (3, 11)

@@ -1,0 +1,102 @@
+"""Which lines of Python, Fortran and C the quick suite runs: three shares, and what is least covered.
+
+    python tools/coverage.py [TESTS ...]
+
+The program is built anew in build/coverage with gcov's counters; pytest-cov and gcovr (the extra `coverage`) are installed
+first where they are missing. HTML: build/coverage/html. The wanted shares are told beside those found; exit code 1 below them, unless tests
+are named.
+"""
+
+import json
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import apart
+
+ROOM = apart.ROOT / "build" / "coverage"
+HTML = ROOM / "html"
+WANTED = {"Python": 90.0, "Fortran": 85.0, "C": 85.0}
+LEAST = 8  # files of each language that are told
+
+
+def install() -> None:
+    """The extra `coverage`, where one of its packages is missing."""
+    project = tomllib.loads((apart.ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    asked = project["optional-dependencies"]["coverage"]
+    try:
+        for line in asked:
+            version(line.partition(">=")[0])
+    except PackageNotFoundError:
+        subprocess.run(
+            [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", *asked], check=True
+        )
+
+
+def run(tests: list[str]) -> None:
+    """The tests, Python's and those of Fortran and C, by the counted build; earlier counts are forgotten."""
+    for path in [*(ROOM / "build").rglob("*.gcda"), *ROOM.glob(".coverage*")]:
+        path.unlink()
+    python = apart.python(ROOM)
+    options = ["--cov=extrados", "--cov-report=", "-q", "-n", "auto", "--maxprocesses", "8", "--dist", "worksteal"]
+    subprocess.run([python, "-m", "pytest", *options, *tests], cwd=ROOM, check=False)
+    if not tests:
+        meson = str(Path(sys.executable).with_name("meson"))
+        subprocess.run([meson, "test", "-C", str(ROOM / "build"), "-q"], check=False, stdout=subprocess.DEVNULL)
+    subprocess.run([python, "-m", "coverage", "html", "-q", "-d", str(HTML / "python")], cwd=ROOM, check=True)
+    subprocess.run([python, "-m", "coverage", "json", "-q", "-o", str(ROOM / "python.json")], cwd=ROOM, check=True)
+
+
+def of_python() -> dict[str, tuple[int, int]]:
+    """File -> lines that ran, lines."""
+    files = json.loads((ROOM / "python.json").read_text())["files"]
+    return {name: (f["summary"]["covered_lines"], f["summary"]["num_statements"]) for name, f in files.items()}
+
+
+def of_core(folder: str) -> dict[str, tuple[int, int]]:
+    """The same of the Fortran or the C sources, by gcov."""
+    (HTML / folder).mkdir(parents=True, exist_ok=True)
+    out = ROOM / f"{folder}.json"
+    subprocess.run(
+        [
+            sys.executable, "-m", "gcovr", "-q", "--root", str(ROOM), "--filter", str(ROOM / folder), "--gcov-ignore-errors", "all",
+            "--json-summary", str(out), "--html-details", str(HTML / folder / "index.html"), str(ROOM / "build"),
+        ],
+        check=True,
+    )  # fmt: skip
+    return {f["filename"]: (f["line_covered"], f["line_total"]) for f in json.loads(out.read_text())["files"]}
+
+
+def tell(language: str, files: dict[str, tuple[int, int]]) -> float:
+    """Print the share of a language and its least covered files; the share in percent."""
+    ran, lines = (sum(pair[k] for pair in files.values()) for k in (0, 1))
+    share = 100.0 * ran / max(lines, 1)
+    print(f"{language:8} {share:5.1f} % of {lines} lines (wanted {WANTED[language]:g} %)")
+    for name, (some, most) in sorted(files.items(), key=lambda item: item[1][0] - item[1][1])[:LEAST]:
+        if some < most:
+            print(f"    {most - some:4d} lines never run in {name}")
+    return share
+
+
+def main() -> int:
+    install()
+    apart.copy(ROOM)
+    # -O1: the optimiser would merge lines; the counters must be exact where threads count too
+    apart.build(
+        ROOM,
+        "-Db_coverage=true",
+        "-Doptimization=1",
+        "-Dc_args=-fprofile-update=atomic",
+        "-Dfortran_args=-fprofile-update=atomic",
+    )
+    run(sys.argv[1:])
+    found = {"Python": of_python(), "Fortran": of_core("fortran"), "C": of_core("c")}
+    shares = {language: tell(language, files) for language, files in found.items()}
+    print(f"Lines: {HTML}")
+    return 0 if sys.argv[1:] else int(any(shares[language] < wanted for language, wanted in WANTED.items()))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,102 @@
+"""Build the documentation site into build/site: the references, a gallery of cases run now, Sphinx, and FORD for the Fortran.
+
+What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error.
+"""
+
+import shutil
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+SITE, GALLERY, PAGE = ROOT / "build" / "site", ROOT / "docs" / "_gallery", ROOT / "docs" / "gallery.md"
+#: Decks of the gallery, each with the analysis whose first figure is shown; together they take about a minute
+SHOWN = [
+    ("arch/oppenheim", "tilt"), ("arch/oppenheim-domain", "failure-domain"), ("arch/figure-5-4", "failure-curves"), ("vault/dejong-a", "tilt"),
+    ("bridge/road", "moving-load"), ("limit/tied-arch", "tilt"), ("limit/settling-pier", "supports"), ("solid/corner", "tilt"),
+    ("rocking/el-centro-block", "rocking-spectrum"), ("motion/el-centro", "motion"), ("dem/oppenheim", "dem"), ("codes/facade", "local-mechanism"),
+]  # fmt: skip
+FORD = """project: extrados
+summary: The Fortran core
+src_dir: {root}/fortran
+output_dir: {out}
+predocmark: >
+docmark: !
+display: public
+         private
+source: false
+graph: false
+search: false
+preprocess: false
+parallel: 0
+"""
+
+
+def install() -> None:
+    """The extra `docs`, where one of its packages is missing."""
+    asked = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"][
+        "docs"
+    ]
+    try:
+        for line in asked:
+            version(line.partition(">=")[0])
+    except PackageNotFoundError:
+        subprocess.run(
+            [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", *asked], check=True
+        )
+
+
+def gallery() -> None:
+    """docs/gallery.md, and its figures, by running the cases."""
+    import extrados
+
+    shutil.rmtree(GALLERY, ignore_errors=True)
+    GALLERY.mkdir()
+    lines = ["# Gallery", "", "Made by running these decks of `cases/`, each with its first figure."]
+    for case, analysis in SHOWN:
+        run = extrados.run(ROOT / "cases" / f"{case}.toml")
+        drawn = run.plot(analysis)
+        name = next(iter(drawn))
+        picture = GALLERY / f"{case.replace('/', '-')}.png"
+        drawn[name].savefig(picture, format="png")
+        title = run.summary["deck"]["title"] or case
+        lines += [
+            "",
+            f"## {title}",
+            "",
+            f"`cases/{case}.toml`, `{analysis}`: {drawn.captions[name]}",
+            "",
+            f"![{drawn.captions[name]}](_gallery/{picture.name})",
+        ]
+    PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def fortran() -> None:
+    """The reference of the Fortran core, from its comments."""
+    project = ROOT / "build" / "ford.md"
+    project.write_text(FORD.format(root=ROOT, out=SITE / "fortran"), encoding="utf-8")
+    subprocess.run([sys.executable, "-m", "ford", project], check=True, stdout=subprocess.DEVNULL)
+
+
+def main() -> None:
+    """The site; `--quick` leaves out what takes long, the gallery and the Fortran reference."""
+    install()
+    (ROOT / "build").mkdir(exist_ok=True)
+    quick = "--quick" in sys.argv
+    if quick:
+        PAGE.write_text("# Gallery\n\nLeft out of this quick build.\n", encoding="utf-8")
+    else:
+        gallery()
+    shutil.rmtree(SITE, ignore_errors=True)
+    subprocess.run(
+        [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", ROOT / "docs", SITE], check=True
+    )
+    if not quick:
+        fortran()
+    print(f"Site: {SITE / 'index.html'}")
+
+
+if __name__ == "__main__":
+    main()
