@@ -234,7 +234,7 @@ contains
       real(wp), allocatable :: ua(:), ub(:), fh(:, :)
       integer, allocatable :: turn(:, :)
       integer :: i, place(2), info
-      logical :: circle, found
+      logical :: circle, nowhere, found
       turned = .false.
       place = model%pending(1:2)
       circle = .false.
@@ -257,14 +257,17 @@ contains
       if (info == 0) allocate (fh, source=model%fh, stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
-      if (.not. circle) then
-         call slide(model, reason, status)
-         if (status /= status_ok) return
-         if (reason == stop_none) then
-            circle = .not. abs(model%work_now(3)) <= softest * model%first_compliance
-            if (driven) circle = too_soft(model, driven, softest)
-            if (.not. circle) return
-         end if
+      ! Also where all are asked: a point beyond its limit has some way to go at this load, before any rate counts
+      call slide(model, reason, status)
+      if (status /= status_ok) return
+      nowhere = reason /= stop_none
+      if (driven) then
+         nowhere = nowhere .or. too_soft(model, driven, softest)
+      else
+         nowhere = nowhere .or. .not. abs(model%work_now(3)) <= softest * model%first_compliance
+      end if
+      if (.not. (nowhere .or. circle)) return
+      if (nowhere) then
          ! Back to where they had not moved yet, whose numbers have more digits
          model%ua(:) = ua
          model%ub(:) = ub
@@ -417,6 +420,7 @@ contains
          status = status_ok
          reason = stop_mechanism
       end if
+      if (reason /= stop_none) return
       do g = 1, size(model%holders)
          select type (group => model%holders(g)%group)
          class is (point_group)

@@ -306,8 +306,8 @@ contains
          ta = ta - group%held(1, p) - k * da(2)
          tb = tb - group%held(2, p) - k * db(2)
          k = side * (group%held(1, p) + lambda * group%held(2, p) + k * (da(2) + lambda * db(2)))
-         call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, 0.0_wp, lambda, noise, p, &
-            code_stick, found)
+         if (-side * tb > noise) call reach(-side * tb, turned * law%ripple * max(k, scale) + side * ta, 0.0_wp, &
+            lambda, noise, p, code_stick, found)
       end associate
    end subroutine scan_point
 

@@ -167,6 +167,33 @@ def test_no_point_is_sheared_beyond_its_friction() -> None:
     assert slid > 50
 
 
+def test_a_load_that_falls_for_the_next_tooth_turns_nothing_back() -> None:
+    """What the fall undid slides on as the load grows: no point sticks only to slide again at that load."""
+    wall = {
+        "kind": "panel", "width": 0.44, "height": 0.25, "thickness": 0.1, "unit_length": 0.22, "unit_height": 0.0625,
+    }  # fmt: skip
+    joints = {
+        "normal_stiffness": KN, "shear_stiffness": KS, "tension": 2.5e5, "fracture_energy": 18.0, "friction": MU,
+        "cohesion": C, "shear_energy": GII,
+    }  # fmt: skip
+    push = {"hold": [{"edge": "top", "fix": "y"}], "target_displacement": 4e-4}
+    push |= {"reference": [{"kind": "displacement", "direction": "x", "parts": [{"edge": "top"}]}]}
+    press = {"reference": [{"kind": "pressure", "edge": "top", "value": "0.3 MPa"}], "target_multiplier": 1.0}
+    data = {
+        "structure": wall, "joints": joints, "supports": {"held": [{"edge": "bottom"}]},
+        "material": {"density": 0.0, "young": 16.7e9, "poisson": 0.15},
+        "analysis": {
+            "kind": "sla", "events": 600, "mesh": {"joints": "interfaces", "size": 0.11},
+            "stages": [{"name": "press", **press}, {"name": "push", **push}],
+        },
+    }  # fmt: skip
+    found = run_analyses(Context(make_deck(data)))[0]
+    load, point, code = (np.asarray(found[f"event_{name}"]) for name in ("load", "point", "code"))
+    assert (np.diff(load) < 0.0).sum() > 20 and (code == EVENT["wear"]).sum() > 50
+    again = (code[:-1] == EVENT["stick"]) & (code[1:] == EVENT["slide"]) & (point[:-1] == point[1:])
+    assert not (again & (np.diff(load) <= 1e-12 * load.max())).any()
+
+
 def test_sliding_friction_follows_a_changed_factor_as_a_new_one() -> None:
     """Forces that friction holds go with the change of the factor; all regions are looked at."""
     update, refactor = (
