@@ -12,6 +12,7 @@ module dem_state
    implicit none
    private
    public :: state_words, state_save, state_load
+   public :: tape, measuring, saving, loading, per_word
 
    integer, parameter :: entries = 10       !! of the head
    integer, parameter :: per_word = 8       !! bytes

@@ -30,6 +30,7 @@ module rocking_block_rocker
       real(wp) :: alpha(2) = 0.0_wp    !! angle of the toe's ray from the vertical [rad]
       real(wp) :: moment(2) = 0.0_wp   !! m R [kg m]
       real(wp) :: inertia(2) = 0.0_wp  !! about the toe [kg m^2]
+      real(wp) :: ratio(2) = 0.0_wp    !! of both, p^2 / g [1/m]
    contains
       procedure :: coefficients
       procedure :: potential
@@ -64,6 +65,7 @@ contains
          body%alpha = atan2(toe, height) + parameters(9) * [1.0_wp, -1.0_wp]
          body%moment = mass * radius
          body%inertia = inertia + mass * radius**2
+         body%ratio = body%moment / body%inertia
       end associate
       if (any(body%alpha <= 0.0_wp) .or. any(body%alpha >= 0.5_wp * pi)) return  ! it slopes more than the block stands
       body%restitution = parameters(7:8)
@@ -224,7 +226,7 @@ contains
 
       associate (x => series%x, u => series%u, last => series%last)
          ! u is h v, so that q_k = u_(k-1)/k; the right-hand side is scaled by h^2
-         factor = h * h * model%moment(i) / model%inertia(i)
+         factor = h * h * model%ratio(i)
          pull = factor * (gravity + value(2))
          pull_slope = factor * h * slope(2)
          push = factor * sigma * value(1)
@@ -244,6 +246,7 @@ contains
          tolerance_q = tolerance(1) + tolerance(3) * abs(q)
          tolerance_u = h * tolerance(2) + tolerance(3) * abs(u(0))
          last = order
+         series%error = 0.0_wp
          do k = 1, order - 1
             if (model%linear) then
                s(k) = -x(k)
@@ -277,7 +280,7 @@ contains
             if (abs(u(k + 1)) + abs(u(k)) <= negligible * tolerance_u .and. &
                 abs(x(k + 2)) + abs(x(k + 1)) <= negligible * tolerance_q) then
                last = k + 1
-               exit
+               return  ! with an error that counts for nothing
             end if
          end do
          series%error = max((abs(x(last + 1)) + abs(x(last))) / tolerance_q, &

@@ -68,8 +68,8 @@ contains
       s = root_between(step%cq, step%degree, level, 0.0_wp, last)
    end function crossing_fraction
 
-   !> Where a polynomial passes a level, to rounding: Newton's method from the false position, by halves where it
-   !> leaves the bracket or does not converge
+   !> Where a polynomial passes a level, to rounding: Newton's method from the root of the parabola that has its slope at
+   !> the start and its values at both ends, by halves where it leaves the bracket or does not converge
    pure function root_between(c, degree, level, start, finish) result(s)
       real(wp), intent(in) :: c(0:)     !! coefficients of the powers
       integer, intent(in) :: degree
@@ -79,19 +79,21 @@ contains
       real(wp) :: s
       !> Newton's error after a change is its square times curvature over slope
       real(wp), parameter :: enough = 1.0e-10_wp
-      real(wp) :: low, high, f, slope, change, wide
+      real(wp) :: low, high, f, f_low, slope, bend, change, wide
       logical :: above
       integer :: j
 
       low = start
       high = finish
-      call polynomial(low, f, slope)
-      above = f > 0.0_wp
-      change = f
       call polynomial(high, f, slope)
+      call polynomial(low, f_low, slope)
+      above = f_low > 0.0_wp
       s = high
       wide = 2.0_wp * (high - low)
-      change = -f * (high - low) / (f - change)
+      ! the ends are of unlike sign: of both roots that by the sum without cancellation, or the other, lies between
+      bend = (f - f_low) / (high - low) - slope
+      change = sqrt(max(slope**2 - 4.0_wp * bend * f_low / (high - low), 0.0_wp))
+      change = low - 2.0_wp * f_low / (slope + merge(-change, change, above)) - high
       do j = 1, 100
          if (f == 0.0_wp) exit
          if ((f > 0.0_wp) .eqv. above) then

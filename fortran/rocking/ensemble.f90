@@ -91,18 +91,18 @@ contains
    end subroutine make_body
 
    !> A structure of any kind as it was given
-   subroutine build(given, made)
+   subroutine build(given, body)
       type(body_data), intent(in) :: given
-      type(any_body), intent(out) :: made
+      type(any_body), intent(out) :: body
       integer :: stat
-      made%status = status_not_ready
+      body%status = status_not_ready
       if (.not. allocated(given%parameters)) return
       if (given%kind == body_soft_base) then
-         made%status = status_out_of_memory
-         allocate (made%soft, stat=stat)
-         if (stat == 0) call soft_base_body_new(given%parameters, made%soft, made%status)
+         body%status = status_out_of_memory
+         allocate (body%soft, stat=stat)
+         if (stat == 0) call soft_base_body_new(given%parameters, body%soft, body%status)
       else
-         call make_body(given%kind, given%parameters, made%model, made%status)
+         call make_body(given%kind, given%parameters, body%model, body%status)
       end if
    end subroutine build
 

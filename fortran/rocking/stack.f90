@@ -38,9 +38,9 @@ module rocking_stack
 contains
 
    !> Set up from the flat parameter list
-   subroutine stack_new(parameters, made, status)
+   subroutine stack_new(parameters, blocks, status)
       real(wp), intent(in) :: parameters(:)  !! see stack_parameters
-      type(stack), intent(out) :: made
+      type(stack), intent(out) :: blocks
       integer(c_int), intent(out) :: status
       real(wp) :: radius
       integer :: i
@@ -48,17 +48,17 @@ contains
       status = status_invalid_argument
       if (size(parameters) /= stack_parameters) return
       if (any(parameters <= 0.0_wp) .or. parameters(8) <= parameters(3)) return
-      made%mass = parameters([1, 4])
-      made%inertia = parameters([2, 5])
-      made%centre = parameters([3, 6])
-      made%half = parameters([7, 9])
-      made%height = parameters(8)
+      blocks%mass = parameters([1, 4])
+      blocks%inertia = parameters([2, 5])
+      blocks%centre = parameters([3, 6])
+      blocks%half = parameters([7, 9])
+      blocks%height = parameters(8)
       do i = 1, 2
-         made%limit(i) = min(2.0_wp * atan2(made%half(i), made%centre(i)), 0.5_wp * pi)
+         blocks%limit(i) = min(2.0_wp * atan2(blocks%half(i), blocks%centre(i)), 0.5_wp * pi)
          ! a millionth of the energy that overturns the block alone
-         radius = hypot(made%half(i), made%centre(i))
-         made%rest_rate(i) = 1.0e-3_wp * sqrt(2.0_wp * made%mass(i) * gravity * (radius - made%centre(i)) &
-            / (made%inertia(i) + made%mass(i) * radius**2))
+         radius = hypot(blocks%half(i), blocks%centre(i))
+         blocks%rest_rate(i) = 1.0e-3_wp * sqrt(2.0_wp * blocks%mass(i) * gravity * (radius - blocks%centre(i)) &
+            / (blocks%inertia(i) + blocks%mass(i) * radius**2))
       end do
       status = status_ok
    end subroutine stack_new

@@ -5,6 +5,7 @@ from typing import Any
 api_arch: Any
 api_mechanism: Any
 api_dem: Any
+api_dem3: Any
 api_limit: Any
 api_motion: Any
 api_rocking: Any

@@ -21,11 +21,13 @@ from extrados import _core
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import arch, dem, limit, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
+from extrados.core import arch, dem, dem3, limit, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-dem.FIRST_PAUSE = 3  # steps
+dem.FIRST_PAUSE = dem3.FIRST_PAUSE = 3  # steps
+CUBE = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))])
+CUBE_FACES = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 LAW = dem.Law(1e8, 1e8, 0.6, damping=1e-3)
 
 
@@ -118,6 +120,22 @@ def blocks(centroid, mass, inertia, part, owner, outer, depth, joint, law, end_t
         paused = model.run(motions, number, scale=scale, times=times, watch=lambda _: states.append(model.state()))
         again = model.run(motions, number, scale=scale, times=times, state=states[0]) if states else paused
         return run.reason, run.place, run.energy, run.contacts.force, again.rate
+
+
+def solids(centroid, mass, inertia, vertices, faces, owner, joint, law, end_time, output_step, step, fraction, settle, gravity, way,
+           rate, times, scale, number, samples, dt, threads) -> Any:  # fmt: skip
+    """A cube on a support in space, shaken."""
+    bodies = dem3.Solids(
+        centroid, mass, inertia, [vertices, vertices - [0.0, 0.0, 1.0]], [faces, faces], owner, [dem3.Law(1e8, 1e8, 0.6, 1e-3)],
+        {joint: law},
+    )  # fmt: skip
+    options = dem3.Options(end_time, output_step, step, fraction, settle, gravity=gravity, way=way, threads=threads)
+    with dem3.Model(bodies, options, rate=rate) as model, MotionSet([Ground(samples=samples, step=dt)]) as motions:
+        run = model.run(motions, number, scale=scale, times=times)
+        states = []
+        paused = model.run(motions, number, scale=scale, times=times, watch=lambda _: states.append(model.state()))
+        again = model.run(motions, number, scale=scale, times=times, state=states[0]) if states else paused
+        return run.reason, run.place, run.turn, run.energy, again.rate
 
 
 def rockers(mass, inertia, height, toe, restitution, linear, kind, parameters, samples, dt, start, breaks, wave, body, shake, scale,
@@ -332,6 +350,12 @@ def _valid() -> list[tuple[Callable[..., Any], dict[str, Any]]]:
             owner=[0, 1], outer=np.ones(4, bool), depth=1.0, joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
             settle=5000, domain=(-9.0, 9.0, -9.0, 9.0), gravity=(0.0, -9.8), shift=np.zeros((2, 3)), rate=np.full((2, 3), 1e-3), mover=1, travel=0.001, begin=0.0,
             lasts=0.01, times=np.array([0.0, 0.01]), scale=1.0, number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
+        )),
+        (solids, dict(
+            centroid=np.array([[0.5, 0.5, 0.5], [0.5, 0.5, -0.5]]), mass=np.array([2000.0, 0.0]), inertia=np.tile(300.0 * np.eye(3), (2, 1, 1)),
+            vertices=CUBE, faces=CUBE_FACES, owner=[0, 1], joint=(0, 1), law=0, end_time=0.02, output_step=0.01, step=0.0, fraction=0.3,
+            settle=5000, gravity=(0.0, 0.0, -9.8), way=(0.6, 0.8, 0.0), rate=np.full((2, 6), 1e-3), times=np.array([0.0, 0.01]), scale=1.0,
+            number=0, samples=np.ones((1, 5)), dt=0.01, threads=2,
         )),
         (rockers, dict(
             mass=1000.0, inertia=1500.0, height=2.0, toe=0.5, restitution=(0.9, 0.9), linear=False, kind=rocking.block_body(

@@ -61,6 +61,7 @@ MAY_USE = {
     "shell": {"common", "sla"},
     "nonsmooth": {"common"},
     "dem": {"common", "nonsmooth"},
+    "dem3": {"common", "dem"},
     "motion": {"common"},
     "limit": {"common"},
 }

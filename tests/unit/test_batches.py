@@ -322,8 +322,9 @@ class Roots:
         return {"value": np.sqrt(np.arange(first, first + count))}
 
 
-def test_cluster_gives_the_same_bytes(cluster, tmp_path: Path) -> None:
-    address, _ = cluster
+def test_cluster_gives_the_same_bytes_and_survives(cluster, tmp_path: Path) -> None:
+    """On one cluster: a deck, a worker that is killed, and at last a scheduler that dies."""
+    address, processes = cluster
     deck = tmp_path / "deck.toml"
     deck.write_text(FRAGILITY.format(count=600))
     command = [sys.executable, "-m", "extrados.cli", "run", str(deck), "--no-figures", "--quiet"]
@@ -332,9 +333,6 @@ def test_cluster_gives_the_same_bytes(cluster, tmp_path: Path) -> None:
     assert (tmp_path / "a" / "ensemble.csv").read_bytes() == (tmp_path / "b" / "ensemble.csv").read_bytes()
     assert (tmp_path / "a" / "results.h5").read_bytes() == (tmp_path / "b" / "results.h5").read_bytes()
 
-
-def test_cluster_survives_a_killed_worker(cluster, tmp_path: Path) -> None:
-    address, processes = cluster
     c = context(tmp_path / "run")
     c.scheduler = address
     s = sweep(c, "t", Roots(300, str(tmp_path / "died")), 800, "roots")
@@ -343,10 +341,7 @@ def test_cluster_survives_a_killed_worker(cluster, tmp_path: Path) -> None:
     assert (tmp_path / "died").exists()
     assert sorted(process.poll() or 0 for process in processes) == [-signal.SIGKILL, 0, 0]
 
-
-def test_cluster_scheduler_dies(cluster, tmp_path: Path) -> None:
-    address, processes = cluster
-    out = tmp_path / "run"
+    out = tmp_path / "last"
     c = context(out)
     c.scheduler = address
     killed = []

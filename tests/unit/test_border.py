@@ -78,7 +78,7 @@ ABUSES = {
     "dem state of a run that has ended": ("m = dem.Model(bodies(), short); m.run(MotionSet([one])); m.state()", "HandleError"),
     "dem state that is damaged": ("dem.Model(bodies(), short).run(MotionSet([one]), state=np.zeros(40))", "ValueError"),
     "dem state that is too short": (
-        "w = np.zeros(20, int); dem.Model(bodies(), short).run(MotionSet([one]), state=np.r_[w, dem._digest(w)])",
+        "w = np.zeros(20, int); dem.Model(bodies(), short).run(MotionSet([one]), state=np.r_[w, dem.state_digest(w)])",
         "ValueError"),
     "dem read before a run": ("m = dem.Model(bodies(), short); m._last_run(False)", "HandleError"),
     # indices

@@ -20,6 +20,11 @@ TILT = '[[analysis]]\nkind = "tilt"\n'
 ROCKING = '[[analysis]]\nkind = "rocking"\n'
 DEM = '[[analysis]]\nkind = "dem"\nend_time = 0.02\n'
 SLA = '[[analysis]]\nkind = "sla"\nevents = 3\n'
+PUSH = '[[analysis]]\nkind = "pushover"\nevents = 3\nmesh.layers = 3\n'
+HOUSE = (
+    '[structure]\nkind = "building"\nstoreys = [2.0]\nwalls = [{ name = "a", start = [0, 0], end = [1, 0], thickness = 0.3 }]\n'
+    + PUSH
+)
 TIE = "[[ties]]\nstart = [-9.5, 3.0]\nground = [0.0, 0.0]\n"
 GENERATED = '[motion]\nkind = "generated"\nmmi = 8\nduration = 15\n'
 FRAGILITY = '[[analysis]]\nkind = "fragility"\ncount = 4\nlevels = ["0.1 g"]\n'
@@ -119,6 +124,14 @@ WRONG = {
         '[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n',
     ),
     "no stages": ("expected at least 1", PANEL + SLA + "stages = [] # here\n"),
+    "drive on no wall": ("no wall 'b'", HOUSE + 'drives = [{ wall = "b", storey = 1 }] # here\n'),
+    "ground under no foot": (
+        "no foot 'middle'", ARCH + PUSH + '[[analysis.stages]]\n[[analysis.stages.settlements]] # here\nfoot = "middle"\nout = 0.01\n',
+    ),
+    "piers without a strength": ("compressive_strength", HOUSE + "[analysis.frame] # here\ndiagonal_strength = 5e4\n"),
+    "mesh of shells that is not there": (
+        "none.msh", '[structure] # here\nkind = "mesh"\nthickness = 0.3\nfile = "none.msh"\n' + PUSH,
+    ),
     "speed of no film": ("needs animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
     "wall without a load": (
         "give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',

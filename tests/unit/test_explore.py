@@ -501,6 +501,21 @@ def test_blocks_in_space_are_pushed_as_a_run_pushes_them(session: Session) -> No
     np.testing.assert_array_equal(reply.arrays["mechanism_pose"], run.array("tilt", "mechanism_pose"))
 
 
+def test_a_stored_run_of_blocks_in_space_moves_over_time(session: Session, tmp_path: Path) -> None:
+    deck = {
+        "structure": {"kind": "column", "section": "round", "sides": 8, "width": 1.0, "height": 4.0, "drums": 2},
+        "joints": {"friction": 0.7, "normal_stiffness": 1e8},
+        "motion": {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.1},
+        "analysis": [{"kind": "dem", "direction": 0.0, "end_time": 0.2}],
+    }
+    run = extrados.run(deck, tmp_path / "space")
+    (reply,) = do(session, do="run", path="space", analysis="dem", side="A")
+    body = reply.words["run"]["body"]
+    assert (body["sort"], body["unit"], body["over_time"]) == ("space", "s", True)
+    assert reply.arrays["pose"].shape == (len(reply.arrays["body_time"]), 2, 6)
+    np.testing.assert_array_equal(reply.arrays["pose"][-1], run.array("dem", "pose")[-1])
+
+
 @pytest.mark.parametrize("preset", ["rocking/stack", "rocking/soft-base"])
 def test_what_rocks_in_two_coordinates_does_so_as_in_a_run(session: Session, preset: str) -> None:
     do(session, do="open", preset=preset)
@@ -570,9 +585,16 @@ def test_saving_replaces_nothing_unasked(session: Session, tmp_path: Path) -> No
     assert (tmp_path / "new" / "mine.toml").read_text() == session.document.text
 
 
-def test_the_map_gets_finer_and_is_kept(session: Session) -> None:
+@pytest.mark.parametrize("patience", [1e9, 0.0], ids=["fast", "slow, and a hand is let in between"])
+def test_the_map_gets_finer_and_is_kept(session: Session, monkeypatch: pytest.MonkeyPatch, patience: float) -> None:
+    monkeypatch.setattr("extrados.explore.rocking.PATIENCE", patience)
     do(session, do="set", changes={"motion": {"kind": "step-pulse", "amplitude": "0.5 g", "duration": 0.2}})
     replies = do(session, do="domain")
+    if patience == 0.0:
+        assert len(replies) > 10
+        replies = list(
+            {int((r.arrays["codes"] < 255).sum()): r for r in replies if (r.arrays["codes"] < 255).any()}.values()
+        )
     assert [r.words["domain"]["stride"] for r in replies] == [4, 2, 1]
     known = [(r.arrays["codes"] < 255).sum() for r in replies]
     assert known == [100, 500, 1600]

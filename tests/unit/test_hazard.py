@@ -151,13 +151,15 @@ def test_bad_hazard_files_are_refused(text: str, said: str, tmp_path: Path) -> N
 # --- clouds -----------------------------------------------------------------------------------------------------
 
 
-def test_cloud_finds_known_capacities_and_its_interval_covers() -> None:
-    """120 motions of scattered intensity against capacities of median .4 and dispersion .35; 200 sets."""
+@pytest.mark.parametrize("sets", [40, pytest.param(200, marks=pytest.mark.verify)])
+def test_cloud_finds_known_capacities_and_its_interval_covers(sets: int) -> None:
+    """120 motions of scattered intensity against capacities of median .4 and dispersion .35."""
+    slack = np.sqrt(200 / sets)
     random = np.random.default_rng(2)
     medians, covered, rate_covered = [], 0, 0
     hazard = HazardCurve(np.array(HAZARD["intensities"]), np.array(HAZARD["annual_rates"]))
     truth = hazard.rate_of(lambda v: ndtr(np.log(v / 0.4) / 0.35))
-    for _ in range(200):
+    for _ in range(sets):
         x = np.exp(random.normal(np.log(0.35), 0.6, 120))
         found, region = fit_cloud(x, np.exp(random.normal(np.log(0.4), 0.35, 120)) < x, 0.95)
         medians.append(found.median)
@@ -165,11 +167,12 @@ def test_cloud_finds_known_capacities_and_its_interval_covers() -> None:
         covered += low <= 0.4 <= high
         least, most = rates(hazard, found, region.curves, None)[1]
         rate_covered += least <= truth <= most
-    assert np.exp(np.mean(np.log(medians))) == pytest.approx(0.4, rel=0.015)
-    assert covered / 200 == pytest.approx(0.95, abs=0.035)
-    assert rate_covered / 200 == pytest.approx(0.95, abs=0.035)
+    assert np.exp(np.mean(np.log(medians))) == pytest.approx(0.4, rel=0.015 * slack)
+    assert covered / sets == pytest.approx(0.95, abs=0.035 * slack)
+    assert rate_covered / sets == pytest.approx(0.95, abs=0.035 * slack)
 
 
+@pytest.mark.verify
 def test_cloud_curves_are_the_shares_of_many_motions() -> None:
     """Bins of 2,000 motions: the curves fit the shares of collapse and of rotations; a logistic curve of collapse is the
     same; the regression of the logarithms (Jalayer and others 2017) is wrong by more than .25 for rotations."""
@@ -277,12 +280,12 @@ def test_imperfect_stones_rock_about_as_the_perfect_ones() -> None:
         for m in (near, perfect)
     ]
     assert peaks[0] == pytest.approx(peaks[1], rel=1e-3)
-    draws = ((np.arange(64) + 0.5) / 64)[:, None]
+    draws = ((np.arange(16) + 0.5) / 16)[:, None]
     capacity = np.array([m.uplift for m in models({"imperfection": 0.02}, draws)])
     assert 0.01 < capacity.std() / perfect.uplift < 0.1 and capacity.mean() < perfect.uplift  # the weaker side counts
     weights = [m.model.assembly.mass for m in models({"density": 0.2}, draws)]
     share = np.array(weights) / weights[0].mean()
-    assert np.std(np.log(share)) == pytest.approx(np.sqrt(np.log(1.04)), rel=0.1)
+    assert np.std(np.log(share)) == pytest.approx(np.sqrt(np.log(1.04)), rel=0.15)
 
 
 def test_no_impact_of_a_sample_creates_energy() -> None:
@@ -299,8 +302,8 @@ def test_no_impact_of_a_sample_creates_energy() -> None:
 
 def test_buildings_of_the_sample_that_cannot_stand_are_left_out_and_told() -> None:
     thin = {**ARCH, "thickness": 0.13, "embrace": 180.0, "thickness_factor": 1.0}
-    result = run({"count": 32, "uncertain": {"thickness": 0.2}, "seed": 1}, thin)
-    assert result.status == "ok" and 0 < result.results["failed"] < 32
+    result = run({"count": 16, "uncertain": {"thickness": 0.2}, "seed": 1}, thin)
+    assert result.status == "ok" and 0 < result.results["failed"] < 16
     assert any("cannot stand" in text for text in result.warnings)
     asked = run({"count": 4, "uncertain": {"thickness": 0.2}, "seed": 1, "sensitivity": 16}, thin)
     assert asked.status == "refused" and "do not rock" in asked.reason
@@ -317,6 +320,7 @@ def test_what_a_building_does_not_know_is_refused() -> None:
     assert run({"count": 4, "uncertain": {"imperfection": 0.02, "restitution": 0.05}}, vault).status == "ok"
 
 
+@pytest.mark.verify
 def test_structure_and_motion_together_by_sobol_indices() -> None:
     """Thickness, corners, impact, density and shape of an arch beside the motion: what has no scatter has no index."""
     uncertain = {"thickness": 0.05, "corners": 1e-6, "restitution": 0.05, "density": 1e-6, "imperfection": 0.01}

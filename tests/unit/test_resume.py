@@ -90,6 +90,15 @@ kind = "dem"
 end_time = 0.6
 time_step = 1e-5
 """,
+    "dem of solids": BLOCK
+    + PULSE
+    + """
+[[analysis]]
+kind = "dem"
+direction = 30.0
+end_time = 0.6
+time_step = 2e-5
+""",
     "dem tilt": BLOCK
     + """
 [[analysis]]
@@ -400,9 +409,10 @@ def test_joints_that_slide_go_on_with_the_same_bits(
         assert np.asarray(array.data).tobytes() == np.asarray(found.arrays[name].data).tobytes(), name
 
 
-def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(tmp_path: Path, monkeypatch) -> None:
+@pytest.mark.parametrize("kind", ["dem, one run", "dem of solids"])
+def test_an_interrupted_run_of_discrete_elements_goes_on_where_it_was(kind: str, tmp_path: Path, monkeypatch) -> None:
     """Its state is kept when it is stopped; the resumed one takes only the steps that were missing."""
-    deck, out = make_deck(tomllib.loads(DECKS["dem, one run"])), tmp_path / "run"
+    deck, out = make_deck(tomllib.loads(DECKS[kind])), tmp_path / "run"
     told: list[float] = []
 
     def stop(done: float, total: float, text: str) -> None:

@@ -15,6 +15,7 @@ LEVELS = [0.3, 0.4, 0.5, 0.6, 0.8, 1.0]  # PGA [g]
 HEIGHTS = (1.5, 3.0, 6.0)  # [m]
 SLENDERNESS = (4.0, 5.0, 6.0)  # height over width
 MOTIONS = 160
+pytestmark = pytest.mark.verify  # the quick rows are those of cases/fragility/yim-chopra-penzien
 #: Probabilities of this many motions may disagree by chance
 CHANCE = 0.05
 

@@ -47,15 +47,20 @@ def overturned(motions: np.ndarray, step: float, width: float = 0.1, height: flo
     return float(gone.mean())
 
 
-@pytest.mark.parametrize(("duration", "share"), [(3.0, 0.45), (6.0, 0.80)])
-def test_calibrated_deck(duration: float, share: float) -> None:
+@pytest.mark.parametrize(
+    ("duration", "share", "count"),
+    [(3.0, 0.45, 100), *(pytest.param(*row, marks=pytest.mark.verify) for row in ((3.0, 0.45, 600), (6.0, 0.80, 600)))],
+)
+def test_calibrated_deck(duration: float, share: float, count: int) -> None:
     """The calibration at 3 s and its test at 6 s (thesis 6.3.2); 600 motions have a sampling error of 2 %."""
     data = tomllib.loads(DECK.read_text())
     data["motion"]["duration"] = duration
     made = generated_set(make_deck(data).motion, DECK.parent)
-    assert overturned(made.batch(0, 600, threads=2), made.step) == pytest.approx(share, abs=0.05)
+    slack = np.sqrt(600 / count)
+    assert overturned(made.batch(0, count, threads=2), made.step) == pytest.approx(share, abs=0.05 * slack)
 
 
+@pytest.mark.verify
 def test_energy_scaling_overturns_nothing() -> None:
     """What records of intensity 6 are worth: none of the calibrated strength is left."""
     data = tomllib.loads(DECK.read_text())

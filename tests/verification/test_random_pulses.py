@@ -152,8 +152,8 @@ def check(count: int, seed: int) -> None:
     assert np.abs(one - other).max() < 1e-6
 
 
-def test_forty_pulses() -> None:
-    check(40, 3)
+def test_twenty_pulses() -> None:
+    check(20, 3)
 
 
 @pytest.mark.verify

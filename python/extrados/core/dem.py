@@ -320,15 +320,11 @@ class Model(Owner):
         check(status, "state of a run that has paused")
         state, status = _core.api_dem.state(self.handle, int(words))
         check(status, "state of the run")
-        return np.concatenate([state, _digest(state)])
+        return np.concatenate([state, state_digest(state)])
 
     def _resume(self, state: np.ndarray, wanted: np.ndarray) -> None:
         """ValueError where the state is damaged or none of this model, these times and this build."""
-        state = np.ascontiguousarray(state, dtype=np.int64)
-        words = state[:-_DIGEST]
-        if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], _digest(words)):
-            raise ValueError("the state of the run is damaged")
-        status = _core.api_dem.resume(self.handle, wanted, words)
+        status = _core.api_dem.resume(self.handle, wanted, state_words(state))
         if status == status_code("out_of_memory"):
             check(status, "state of the run")
         if status != status_code("ok"):
@@ -381,7 +377,17 @@ def _effort(counts: np.ndarray, violation: float) -> Effort:
     return Effort(steps, factors, rounds, open_steps, float(violation))
 
 
-def _digest(words: np.ndarray) -> np.ndarray:
+def state_words(state: np.ndarray) -> np.ndarray:
+    """The words of a state that was kept with its digest; ValueError where they are damaged."""
+    state = np.ascontiguousarray(state, dtype=np.int64)
+    words = state[:-_DIGEST]
+    if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], state_digest(words)):
+        raise ValueError("the state of the run is damaged")
+    return words
+
+
+def state_digest(words: np.ndarray) -> np.ndarray:
+    """What tells a damaged state."""
     return np.frombuffer(hashlib.sha256(words.tobytes()).digest(), dtype=np.int64)
 
 

@@ -59,14 +59,14 @@ def of_solids(assembly: SolidAssembly) -> Drawn:
 
 def of_shells(mesh: ShellMesh) -> Drawn:
     """Walls and floors by their elements: as `of_solids`, with `face_tone` of TONES and `bar` (n, 2, 3) [m]."""
-    floors = {part.name for part in mesh.parts if part.wall < 0}
+    floors, walls = ({part.name for part in mesh.parts if part.bends is bends} for bends in (False, True))
     words = {
-        "sort": "space", "of": "walls", "walls": len(mesh.walls), "floors": len(floors), "elements": mesh.elements(),
+        "sort": "space", "of": "walls", "walls": len(walls), "floors": len(floors), "elements": mesh.elements(),
         "weight_N": GRAVITY * float(mesh.mass().sum()), "size_m": np.ptp(mesh.xyz, axis=0).tolist(),
         "warnings": mesh.warnings,
     }  # fmt: skip
     faces = [row for part in mesh.parts for row in part.connect]
-    tone = [np.full(len(part.connect), TONES["floor" if part.wall < 0 else "wall"]) for part in mesh.parts]
+    tone = [np.full(len(part.connect), TONES["wall" if part.bends else "floor"]) for part in mesh.parts]
     return words, {
         "vertex": mesh.xyz, "face": np.concatenate(faces), "face_start": np.cumsum([0, *map(len, faces)]),
         "face_tone": np.concatenate(tone).astype(np.uint8),

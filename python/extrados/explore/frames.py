@@ -29,7 +29,8 @@ class Reply:
             sort = {"f": "d" if name in self.exact else "f", "b": "b", "u": "b" if array.itemsize == 1 else "i"}.get(
                 array.dtype.kind, "i"
             )
-            raw = np.ascontiguousarray(array, dtype=TYPES[sort]).tobytes()
+            with np.errstate(over="ignore"):  # what single precision cannot hold is infinite, and not drawn
+                raw = np.ascontiguousarray(array, dtype=TYPES[sort]).tobytes()
             places[name] = [sort, list(array.shape), offset]
             room = -len(raw) % 8
             parts.append(raw + bytes(room))

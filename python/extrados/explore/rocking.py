@@ -1,5 +1,6 @@
 """What the page shows of rocking: the history with its shapes, the map of pulses that bring it down, the primary impulse."""
 
+import time
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,6 +23,8 @@ MOST_PICTURES, MOST_POINTS = 600, 1600
 MOST_OUTPUTS = 20_000
 #: What each round of the map adds: every 4th, every 2nd, every cell
 STRIDES = (4, 2, 1)
+#: Cells of the map that are run at once to begin with, and how long they may take [s]
+CELLS, PATIENCE = 100, 0.06
 #: Shares of the sampling at which a motion is drawn
 CURVE = 1200
 
@@ -142,7 +145,7 @@ def domain(
     context: Context, building: Building, options: FailureDomain
 ) -> Iterator[tuple[dict[str, Any], dict[str, np.ndarray]]]:
     """The map of pulses, coarse first: codes (durations, amplitudes), 255 where nothing has been run yet."""
-    rocker = building.rocker(options.form == "linear")
+    rocker = building.rocker(options.form == "linear", soft_base=True)
     unit = float(np.sqrt(rocker.scale / GRAVITY))
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
     amplitudes = np.linspace(0.0, options.max_amplitude, options.amplitudes + 1)[1:]
@@ -152,17 +155,24 @@ def domain(
         "pulse": options.pulse, "uplift_g": rocker.uplift, "mode_I": MODE_I, "word": rocker.word,
         "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses at once (Mode II)"],
     }  # fmt: skip
+    axes = {"duration": durations, "amplitude": amplitudes / GRAVITY}
+    drawn, count = (STRIDES[0], codes.copy()), CELLS
     for stride in STRIDES:
         half = stride // 2
         chosen = np.zeros(codes.shape, dtype=bool)
         chosen[half::stride, half::stride] = True
         i, k = np.nonzero(chosen & (codes == 255))
-        if len(i):
-            codes[i, k] = mapper.codes(i, amplitudes[k])
-        yield (
-            {**words, "stride": stride, "whole": stride == 1},
-            {"duration": durations, "amplitude": amplitudes / GRAVITY, "codes": codes.copy()},
-        )
+        done = 0
+        while done < len(i):
+            begin, part = time.perf_counter(), slice(done, done + count)
+            codes[i[part], k[part]] = mapper.codes(i[part], amplitudes[k[part]])
+            done += count
+            slow = time.perf_counter() - begin > PATIENCE
+            count = max(8, count // 2) if slow else 2 * count
+            if slow and done < len(i):  # as it was drawn: between two replies a hand is answered
+                yield {**words, "stride": drawn[0], "whole": False}, {**axes, "codes": drawn[1]}
+        drawn = stride, codes.copy()
+        yield {**words, "stride": stride, "whole": stride == 1}, {**axes, "codes": drawn[1]}
 
 
 def pulse_of(motion: Any) -> dict[str, float] | None:

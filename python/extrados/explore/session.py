@@ -595,12 +595,12 @@ class Session:
         live = self._there()
         options, building, name = self._options(FailureDomain, lambda: None)
         motion = live.deck.motion
-        uplift = building.rocker().uplift
+        uplift = building.rocker(soft_base=True).uplift
         kind = None if motion is None else motion.kind
         asked = rocking.domain_options(kind, options if name else None, uplift)
         if message.get("pulse") in ("step", "sine"):
             asked = asked.model_copy(update={"pulse": message["pulse"]})
-        rocker = building.rocker(asked.form == "linear")
+        rocker = building.rocker(asked.form == "linear", soft_base=True)
         mark = f"{asked.model_dump_json()} {rocker.body.kind} {rocker.body.parameters.tobytes().hex()} {rocker.start_rotation}"
         known = self._maps.get(mark, [])
         if known and known[-1][0]["whole"]:

@@ -8,7 +8,6 @@ import numpy as np
 
 from extrados.decks.reader import Deck
 from extrados.kinds import STRUCTURES, table
-from extrados.results.sla import PREFIXES
 from extrados.results.store import Stored, StoreError
 from extrados.schema.constants import GRAVITY
 from extrados.schema.table import Table
@@ -217,13 +216,18 @@ class _Maker:
             )  # fmt: skip
 
     def pushover(self) -> None:
-        """Base shear over displacement both ways, and the building as it cracks from state to state under the first."""
+        """Base shear over displacement of every sense or stage, and the building as it cracks under the first of them."""
+        r: Any = self.run[self.name]
+        if r.stages:
+            curves = [(stage.prefix, stage.name) for stage in r.stages]
+        else:
+            curves = [("", f"push to {r.sense}"), *([("minus_", f"push to {r.minus.sense}")] if r.minus else [])]
         series = []
-        for prefix, numbers in zip(PREFIXES, (self.run[self.name], self.run[self.name].minus), strict=True):
-            if f"{prefix}envelope_load" in self.arrays and numbers is not None:
-                self.send(f"{prefix}envelope_load", f"{prefix}envelope_displacement")
-                series.append(_series(f"{prefix}envelope_load", f"push to {numbers.sense}", x=f"{prefix}envelope_displacement",
-                                      factor=1e-3, dashed=bool(prefix)))  # fmt: skip
+        for k, (prefix, label) in enumerate(curves):
+            if f"{prefix}envelope_load" in self.arrays:
+                x = f"{prefix}envelope_displacement"
+                self.send(f"{prefix}envelope_load", x)
+                series.append(_series(f"{prefix}envelope_load", label, x=x, factor=1e-3, dashed=k % 2 == 1))
         axis = _axis("envelope_displacement", "displacement", "mm", 1e3)
         self.charts.append(
             _chart("Base shear and displacement", axis, _axis("", "base shear", "kN"), series, trace="state")
@@ -233,23 +237,23 @@ class _Maker:
         events = self.arrays["state_event"]
         pick = np.unique(np.linspace(0, len(events) - 1, min(len(events), MOST_STATES)).round().astype(int))
         parts = [a.data for a in self.run.series(self.name, "elements")]
-        walls = [int(a.data[0]) for a in self.run.series(self.name, "wall_of")]
+        bends = [bool(a.data[0]) for a in self.run.series(self.name, "bends")]
         faces = [row for part in parts for row in part]
         self.out |= {
             "vertex": self.arrays["node"], "face": np.concatenate(faces), "face_start": np.cumsum([0, *map(len, faces)]),
             "body_time": events[pick], "state_load": self.arrays["state_load"][pick], "state_held": self._held(events[pick]),
             "state_moved": self.arrays["state_displacement"][pick],
-            "state_tone": self._cracked(parts, walls, self.arrays["state_width"][pick]),
+            "state_tone": self._cracked(parts, bends, self.arrays["state_width"][pick]),
             "state_width": self.arrays["state_width"][pick].max(axis=1),
         }  # fmt: skip
         self.body = {"sort": "space", "unit": "", "label": "event", "walls": True}
 
-    def _cracked(self, parts: list[np.ndarray], walls: list[int], width: np.ndarray) -> np.ndarray:
-        """Tones (states, faces) of elements: of floors 1, of walls 0, or 2 to 5 by quarters of the widest crack."""
+    def _cracked(self, parts: list[np.ndarray], bends: list[bool], width: np.ndarray) -> np.ndarray:
+        """Tones (states, faces) of elements: of floors 1, of walls and vaults, which bend, 0, or 2 to 5 by quarters of the widest crack."""
         from extrados.plots.shell import LEAST_WIDTH
 
         counts = [len(part) for part in parts]
-        wall = np.repeat(np.array(walls) >= 0, counts)
+        wall = np.repeat(np.array(bends, dtype=bool), counts)
         tone = np.zeros((len(width), len(wall)), dtype=np.uint8)
         tone[:, ~wall] = 1
         element, most = self.arrays["place_element"], max(float(width.max(initial=0.0)), 1e-12)
@@ -318,9 +322,20 @@ class _Maker:
             self._moving(time[keep], self.arrays["place"][keep], "s", "time")
             if "support_outline" in self.arrays:
                 self.send("support_outline", "support_start")
+        elif "solid_vertex" in self.arrays:
+            for name, source in SOLIDS.items():
+                self.out[name] = self.arrays[source]
+            self.out |= {"body_time": time[keep], "pose": self.arrays["pose"][keep]}
+            self.body = {"sort": "space", "unit": "s", "label": "time", "over_time": True}
         fine = self._over_time(len(time))
         self.out["time"] = time[fine]
         axis = _axis("time", "time", "s")
+        if "turn" in self.arrays:  # of blocks in space: by how much, whatever the axis
+            rows = []
+            for i in self.arrays["tracked"][:6].tolist():
+                self.out[f"turn_{i}"] = np.linalg.norm(self.arrays["turn"][fine, i], axis=1)
+                rows.append(_series(f"turn_{i}", f"stone {i + 1}", factor=1e3))
+            self.charts.append(_chart("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True))
         if "rotation" in self.arrays:
             tracked = self.arrays["tracked"][:6]
             rows = []

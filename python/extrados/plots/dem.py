@@ -8,9 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import BoundaryNorm, ListedColormap
 
-from extrados.plots import animation, style
+from extrados.plots import animation, solid_dem, style
 from extrados.plots.arch import moved, outlines
-from extrados.results.dem import HINGED_FIRST, HINGED_SECOND
+from extrados.results.dem import HINGED_FIRST, HINGED_SECOND, SolidDemRun, SolidDemTilt
 from extrados.results.store import Stored
 from extrados.schema.constants import GRAVITY
 
@@ -110,6 +110,9 @@ def _block_of_joint(run: Stored, name: str) -> np.ndarray:
 
 def draw_dem(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
     """Everything that a run or a tilt test has to show."""
+    if isinstance(run[name], SolidDemRun | SolidDemTilt):
+        figures = solid_dem.draw(run, name, folder)
+        return [*figures, _energies(run, name, folder)] if "kinetic_energy" in run.arrays[name] else figures
     figures = [_snapshots(run, name, folder)]
     if "rotation" in run.arrays[name]:
         figures += [_histories(run, name, folder), _energies(run, name, folder)]

@@ -9,6 +9,8 @@ from extrados.results.verdict import Demand, KindResults, Outcome, Verdict, acce
 
 #: What a joint does, in the stored array `hinge`: hinged at its first end (intrados) or its second (extrados)
 HINGED_FIRST, CLOSED, HINGED_SECOND, APART = -1, 0, 1, 2
+#: What a contact of solids does, in the stored array `state`: CLOSED, open at some corners, APART
+ROCKS = 1
 
 
 class Variation(ResultModel):
@@ -91,14 +93,7 @@ class DemRun(KindResults):
 
     def judged(self, demand: Demand) -> Verdict:
         """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
-        outcome: Outcome = "falls" if self.outcome == "collapse" else "open" if self.still_moving else "stands"
-        most, limit = self.peak_displacement_m, self.collapse_displacement_m
-        text = {
-            "falls": f"A block moves farther than the {limit:.3g} m that count as collapse",
-            "stands": f"No block moves farther than {most:.3g} m; {limit:.3g} m count as collapse",
-            "open": "The run ended while it still moved",
-        }[outcome]
-        return judge(f"{text}.", most, limit, "m", outcome)
+        return _judged_run(self)
 
 
 class DemTilt(KindResults):
@@ -128,7 +123,89 @@ class DemTilt(KindResults):
         return acceleration(least, demand)
 
 
-Dem = DemRun | DemTilt
+class SolidDemRun(KindResults):
+    """dem: blocks in space under a motion."""
+
+    outcome: RockingOutcome = fact("no contact opens, contacts open and it stands, or it comes down")
+    collapse_time_s: float | None = fact("when a block first moved farther than the collapse displacement", "s")
+    direction_deg: float = fact("direction in plan of the horizontal motion, from +x to +y", "deg")
+    stopped: str = fact("why the run ended")
+    stopped_by: list[str] = fact("the blocks that ended it")
+    stop_time_s: float = fact("when it ended", "s")
+    still_moving: bool = fact("whether it still moved at the end")
+    blocks: int = fact("stones")
+    contacts: int = fact("polygons along which they touch")
+    peak_rotation_rad: dict[str, float] = fact("greatest angle by which each followed block has turned", "rad")
+    collapse_displacement_m: float = fact("displacement of a block that counts as collapse", "m")
+    peak_displacement_m: float = fact("greatest displacement of any block from its settled place", "m")
+    final_displacement_m: float = fact("greatest displacement of any block at the end", "m")
+    peak_opening_m: float = fact("greatest gap at a corner of a contact that still touches", "m")
+    peak_slip_m: float = fact("greatest slip of contacts that still touch", "m")
+    peak_kinetic_energy_J: float = fact("greatest kinetic energy", "J")
+    friction_loss_J: float = fact("energy lost in friction", "J")
+    damping_loss_J: float = fact("energy lost in damping", "J")
+    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    bounces: int = fact("times that blocks left the ground or each other")
+    airborne_time_s: float = fact("longest time that a block was without contact", "s")
+    solver: Literal["compliant"] = fact("springs at the contacts")
+    joint_stiffness_min_Pa_per_m: float = fact("least normal stiffness of the contacts", "Pa/m")
+    joint_stiffness_max_Pa_per_m: float = fact("greatest normal stiffness of the contacts", "Pa/m")
+    beta_s: float = fact("stiffness-proportional damping", "s")
+    damping_ratio_rotation: float = fact(
+        "least fraction of critical damping at rotational impact", source="thesis Eq. 7.13"
+    )
+    damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
+    damping_ratio_edge: float = fact("least fraction of critical damping at edge impact", source="thesis Eq. 7.9")
+    steps: int = fact("time steps")
+    settling_steps: int = fact("time steps until it had settled under its weight")
+    time_step_s: float = fact("time step", "s")
+    critical_step_s: float = fact("greatest stable time step", "s")
+    contact_searches: int = fact("searches for contacts")
+    animation: Literal["none", "gif", "mp4"] = fact("the animation that is drawn")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """As of a plane run."""
+        return _judged_run(self)
+
+
+class SolidDemTilt(KindResults):
+    """dem: the constant acceleration along a direction that brings blocks in space down."""
+
+    test: Literal["tilt"] = fact("the test")
+    outcome: RockingOutcome = fact("it comes down, at these accelerations")
+    collapse_acceleration_g: float = fact("constant acceleration that brings it down, pushed along the direction", "g")
+    collapse_acceleration_opposite_g: float = fact("the same, pushed the opposite way", "g")
+    tilt_angle_deg: float = fact("tilt of the ground that pushes alike, along the direction", "deg")
+    tilt_angle_opposite_deg: float = fact("tilt of the ground that pushes alike, the opposite way", "deg")
+    load_direction_deg: float = fact("direction in plan of the push, from +x to +y", "deg")
+    blocks: int = fact("stones")
+    contacts: int = fact("polygons along which they touch")
+    opening_contacts: list[str] = fact("contacts that gape or slide as it begins to go, at most 20, the widest first")
+    opening_contacts_opposite: list[str] = fact("the same, pushed the opposite way")
+    energy_residual_ratio: float = fact("error of the energy ledger over the energy that went round")
+    time_step_s: float = fact("time step", "s")
+    steps: int = fact("time steps of the last run")
+    solver: Literal["compliant"] = fact("springs at the contacts")
+    beta_s: float = fact("stiffness-proportional damping", "s")
+
+    def judged(self, demand: Demand) -> Verdict:
+        """The lesser capacity of the two senses against the peak ground acceleration of the motion [g]."""
+        return acceleration(min(self.collapse_acceleration_g, self.collapse_acceleration_opposite_g), demand)
+
+
+def _judged_run(run: DemRun | SolidDemRun) -> Verdict:
+    """The greatest displacement against the one that counts as collapse [m]; open where it still moves."""
+    outcome: Outcome = "falls" if run.outcome == "collapse" else "open" if run.still_moving else "stands"
+    most, limit = run.peak_displacement_m, run.collapse_displacement_m
+    text = {
+        "falls": f"A block moves farther than the {limit:.3g} m that count as collapse",
+        "stands": f"No block moves farther than {most:.3g} m; {limit:.3g} m count as collapse",
+        "open": "The run ended while it still moved",
+    }[outcome]
+    return judge(f"{text}.", most, limit, "m", outcome)
+
+
+Dem = DemRun | DemTilt | SolidDemRun | SolidDemTilt
 
 
 class DemCurve(ResultModel):

@@ -30,8 +30,8 @@ from extrados.schema.text import printable
 SUMMARY = "summary.json"
 STORE = "results.h5"
 CSV_ROWS = 10_000  # turned into text at a time
-#: Numbers of one axis beyond which a folder is read piece by piece
-LARGE = 1_000_000
+#: Of arrays so many numbers are written or read at a time; results.h5 of more bytes leaves longer ones on disk
+LARGE, SMALL = 100_000, 8_000_000
 REPORT = "report.html"
 #: Axes along which x, y and z stand
 AXES = ("axis", "axis3")
@@ -448,7 +448,7 @@ def read(folder: str | Path) -> Stored:
         _check_shape(summary)
         if files.sum_of(STORE, folder) != summary["files"].get(STORE):
             raise StoreError(f"{folder / STORE}: does not match its checksum in {SUMMARY}; the file is damaged")
-        small = (folder / STORE).stat().st_size <= 8 * LARGE
+        small = (folder / STORE).stat().st_size <= SMALL
         content = io.BytesIO(files.read(STORE, None, folder).content) if small else folder / STORE
         arrays: dict[str, dict[str, Array]] = {}
         with h5py.File(content, "r") as file:
@@ -457,7 +457,7 @@ def read(folder: str | Path) -> Stored:
                 for title, store in group.items():
                     if "unit" not in store.attrs:
                         continue
-                    if not small and store.ndim == 1 and len(store) > LARGE // 8 and store.dtype.kind in "iuf":
+                    if not small and store.ndim == 1 and len(store) > LARGE and store.dtype.kind in "iuf":
                         data = _on_disk(folder / STORE, store.name, len(store), store.dtype)
                     else:
                         data = store.asstr()[()] if h5py.check_string_dtype(store.dtype) else store[()]

@@ -2,15 +2,20 @@
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import model as dem_model
-from extrados.analyses.dem import motion, tilt
-from extrados.analyses.dem.standing import against_limit_analysis
+from extrados.analyses.dem import motion, solid_motion, solid_tilt, tilt
+from extrados.analyses.dem.solid_model import make_solid_model
+from extrados.analyses.dem.standing import against_limit_analysis, solids_against_limit_analysis
 from extrados.analyses.dem.tables import Dem
+from extrados.analyses.needs import stones_of
+from extrados.building.geometry.assembly import Assembly
 from extrados.core.calls import interruptible
 from extrados.results.model import Result
 
 
 def run(context: Context, options: Dem) -> Result:
-    """A run with its variations, or a tilt test."""
+    """A run with its variations, or a tilt test; of a section, or of solids."""
+    if not isinstance(stones_of(context.building, options), Assembly):
+        return _of_solids(context, options)
     model = dem_model.make_model(context, options)
     context.warnings += dem_model.warnings(model, options)
     try:
@@ -20,5 +25,19 @@ def run(context: Context, options: Dem) -> Result:
         told = against_limit_analysis(context.building, stands=False)
         raise Refused(f"{error}; {told}" if told else str(error)) from None
     if told := against_limit_analysis(context.building, stands=True):
+        result.warnings.append(told)
+    return result
+
+
+def _of_solids(context: Context, options: Dem) -> Result:
+    model = make_solid_model(context.building, options)
+    context.warnings += dem_model.under_damped(model.values)
+    try:
+        with interruptible():
+            result = (solid_tilt if options.test == "tilt" else solid_motion).run(context, options, model)
+    except dem_model.Falls as error:
+        told = solids_against_limit_analysis(context.building, stands=False)
+        raise Refused(f"{error}; {told}" if told else str(error)) from None
+    if told := solids_against_limit_analysis(context.building, stands=True):
         result.warnings.append(told)
     return result

@@ -2,11 +2,13 @@
 
 import itertools
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import impact_rules
+from extrados.analyses.dem.solid_model import SolidModel, SolidValues
 from extrados.analyses.dem.tables import DemTable
 from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND, Assembly
@@ -14,8 +16,10 @@ from extrados.building.geometry.earth import passive_left_out
 from extrados.building.geometry.rigid import RigidBodies
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.templates.arch import ArchAssembly
-from extrados.core import dem
+from extrados.core import dem, dem3
 from extrados.schema.constants import GRAVITY
+
+Found = TypeVar("Found", dem.Run, dem3.Run)
 
 
 @dataclass(frozen=True)
@@ -93,6 +97,11 @@ class Model:
     values: JointValues
 
     @property
+    def body_names(self) -> list[str]:
+        """Names of the bodies, then of the supports."""
+        return self.rigid.names
+
+    @property
     def size(self) -> float:
         """Greatest extent of the structure [m]."""
         return float(np.ptp(np.concatenate(self.assembly.outlines), axis=0).max())
@@ -141,12 +150,14 @@ class Falls(Refused):
     """The structure does not stand under its own weight."""
 
 
-def checked(run: dem.Run, model: Model, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")) -> dem.Run:
+def checked(
+    run: Found, model: Model | SolidModel, keep: tuple[str, ...] = ("end", "collapse", "rest", "left")
+) -> Found:
     """The run where it ended in one of the ways of `keep`; Refused says what stopped it and which block, Falls where it
     fell before it was shaken."""
     if run.interrupted or run.reason in keep:
         return run
-    names = [model.rigid.names[k] for k in run.blamed]
+    names = [model.body_names[k] for k in run.blamed]
     first = names[0] if names else "a block"
     raise (Falls if run.reason == "unsettled" else Refused)(
         {
@@ -162,17 +173,23 @@ def checked(run: dem.Run, model: Model, keep: tuple[str, ...] = ("end", "collaps
 def warnings(model: Model, options: DemTable, values: JointValues | None = None) -> list[str]:
     """What is doubtful about the damping (thesis 7.2.1, 7.4.2), and what of the building is left out."""
     found = passive_left_out(model.assembly.earth)
-    ratio = (values or model.values).ratios()
     if options.rigid:
         return found
+    found += under_damped(values or model.values)
+    if options.mass_damping > 0.0:
+        found.append(
+            "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
+        )
+    return found
+
+
+def under_damped(values: JointValues | SolidValues) -> list[str]:
+    """The warning that impacts are damped too little."""
+    ratio, found = values.ratios(), []
     if ratio["rotation"] < impact_rules.LEAST_AT_ROTATION or ratio["edge"] < impact_rules.LEAST_AT_EDGE:
         found.append(
             f"under-damped: {100 * ratio['rotation']:.3g} % of critical at rotational impact and {100 * ratio['edge']:.3g} % at edge "
             f"impact, advised are at least 10 % and 25 %; blocks may bounce and walk"
-        )
-    if options.mass_damping > 0.0:
-        found.append(
-            "mass-proportional damping acts on rigid rocking as air would: it has no physical meaning here and is unsafe"
         )
     return found
 
@@ -187,6 +204,6 @@ def unconverged(effort: dem.Effort) -> list[str]:
     ]
 
 
-def settle_time(model: Model) -> float:
+def settle_time(model: Model | SolidModel) -> float:
     """Long enough for the structure to come to rest or down after a pulse [s]."""
     return 15.0 * float(np.sqrt(model.size / GRAVITY))

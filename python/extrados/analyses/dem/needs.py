@@ -1,17 +1,30 @@
 """What analyses with discrete elements need of a deck: names that are there, one elastic material, a motion."""
 
 from collections.abc import Iterator
+from functools import partial
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
-from extrados.analyses.needs import Need
+from extrados.analyses.dem.solid_model import refusals, refuse_stones
+from extrados.analyses.needs import Need, stones_of
 from extrados.building.building import Building
+from extrados.building.errors import BadGeometry, Key
+from extrados.building.geometry.assembly import Assembly
+from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.building.templates.arch import ArchAssembly
 
 
 def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
+    try:
+        stones = stones_of(building, options)
+    except BadGeometry:
+        return  # told already
+    if not isinstance(stones, Assembly):
+        assert isinstance(options, tables.Dem)  # the others take sections alone
+        yield from _needs_of_solids(context, options, stones)
+        return
     yield building.refuse_mixture
     if options.merge == "three-bars":
         yield lambda: _refuse_bars(building)
@@ -21,7 +34,7 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
         if context.deck.motion is not None and options.test == "motion":
             yield context.refuse_motion
         if options.track:
-            yield lambda: refuse_untracked(building, options)
+            yield lambda: refuse_untracked(stones.block_names, options)
 
 
 def _refuse_bars(building: Building) -> None:
@@ -32,9 +45,23 @@ def _refuse_bars(building: Building) -> None:
         raise Refused('[initial] rotation_ratio: glued voussoirs do not start rotated; merge = "none" does', key)
 
 
-def refuse_untracked(building: Building, options: tables.Dem) -> None:
+def _needs_of_solids(context: Context, options: tables.Dem, stones: SolidAssembly) -> Iterator[Need]:
+    building = context.building
+
+    def refuse(text: str, key: Key) -> None:
+        raise Refused(text, key)
+
+    for text, key in refusals(building, options):
+        yield partial(refuse, text, key)
+    yield lambda: refuse_stones(building, stones)
+    if context.deck.motion is not None and options.test == "motion":
+        yield context.refuse_motion
+    if options.track:
+        yield lambda: refuse_untracked(stones.block_names, options)
+
+
+def refuse_untracked(names: list[str], options: tables.Dem) -> None:
     """Refused where a block that is to be followed is not there."""
-    names = building.blocks().block_names
     for k, name in enumerate(options.track):
         if name not in names:
             raise Refused(f"names no block '{name}'; there are {', '.join(names[:8])}", ("analysis", "track", k))

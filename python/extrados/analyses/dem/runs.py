@@ -4,18 +4,20 @@ import time
 from collections.abc import Callable
 from dataclasses import astuple, dataclass, replace
 from functools import partial
+from typing import Any, overload
 
 import numpy as np
 
 from extrados.analyses.batches import Chain, stacked, sweep
 from extrados.analyses.context import Context
-from extrados.core import dem
+from extrados.core import dem, dem3
 from extrados.core.calls import cancel_requested
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground, as_motion_set
 
 #: A run of fewer bodies is faster on one thread.
 BODIES_FOR_THREADS = 100
+SOLIDS_FOR_THREADS = 60
 #: The state of a single run is kept so often [s]; the number under which one that has ended is kept
 KEEP_SECONDS, ENDED = 10.0, 999_999_999_999
 NUMBERS = ("stop_time", "step", "critical_step", "residual")
@@ -38,8 +40,7 @@ class Task:
     @property
     def times(self) -> np.ndarray:
         """Output times [s]."""
-        count = round(self.options.end_time / self.options.output_step * (1 - 1e-12)) + 1
-        return np.arange(count) * self.options.output_step
+        return output_times(self.options.end_time, self.options.output_step)
 
 
 @dataclass(frozen=True)
@@ -74,26 +75,40 @@ class Runs:
     def rows(self, found: dem.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""
         length = max(len(task.times) for task in self.tasks)
-
-        def padded(history: np.ndarray) -> np.ndarray:
-            out = np.full((length, *history.shape[1:]), np.nan)
-            out[: len(history)] = history
-            return out
-
         return {
             "reason": np.array(found.reason),
             "blamed": np.array([*found.blamed, -1, -1][:2]),
             "points": np.array(len(found.time)),
-            "time": padded(found.time),
-            "place": padded(found.place),
-            "rate": padded(found.rate),
-            "energy": padded(np.stack([found.energy[name] for name in dem.ENERGIES], axis=-1)),
+            "time": padded(found.time, length),
+            "place": padded(found.place, length),
+            "rate": padded(found.rate, length),
+            "energy": padded(np.stack([found.energy[name] for name in dem.ENERGIES], axis=-1), length),
             "settled": found.settled,
             "bounces": found.bounces,
             "airborne": found.airborne,
             "effort": np.array(astuple(found.effort), dtype=float),
             **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
         }
+
+    def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
+        """The run of row k, but for the forces in its contacts at the end."""
+        row = {name: values[k] for name, values in rows.items()}
+        points = int(row["points"])
+        return dem.Run(
+            reason=str(row["reason"]),
+            blamed=[int(b) for b in row["blamed"] if b >= 0],
+            time=row["time"][:points],
+            place=row["place"][:points],
+            rate=row["rate"][:points],
+            energy={name: row["energy"][:points, i] for i, name in enumerate(dem.ENERGIES)},
+            settled=row["settled"],
+            bounces=row["bounces"],
+            airborne=row["airborne"],
+            contacts=NO_CONTACTS,
+            effort=dem.Effort(*(int(v) for v in row["effort"][:-1]), float(row["effort"][-1])),
+            **{name: float(row[name]) for name in NUMBERS},
+            **{name: int(row[name]) for name in COUNTS},
+        )
 
     def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
         def member(k: int) -> dict[str, np.ndarray]:
@@ -105,28 +120,101 @@ class Runs:
         return stacked(member, first, count)
 
 
-def run_of(rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
-    """The run of row k, but for the forces in its contacts at the end."""
-    row = {name: values[k] for name, values in rows.items()}
-    points = int(row["points"])
-    return dem.Run(
-        reason=str(row["reason"]),
-        blamed=[int(b) for b in row["blamed"] if b >= 0],
-        time=row["time"][:points],
-        place=row["place"][:points],
-        rate=row["rate"][:points],
-        energy={name: row["energy"][:points, i] for i, name in enumerate(dem.ENERGIES)},
-        settled=row["settled"],
-        bounces=row["bounces"],
-        airborne=row["airborne"],
-        contacts=NO_CONTACTS,
-        effort=dem.Effort(*(int(v) for v in row["effort"][:-1]), float(row["effort"][-1])),
-        **{name: float(row[name]) for name in NUMBERS},
-        **{name: int(row[name]) for name in COUNTS},
-    )
+@dataclass(frozen=True)
+class SolidTask:
+    """One run of blocks in space: options, and how the ground moves."""
+
+    options: dem3.Options
+    ground: Ground | None = None
+
+    @property
+    def times(self) -> np.ndarray:
+        """Output times [s]."""
+        return output_times(self.options.end_time, self.options.output_step)
 
 
-def watched(context: Context, name: str, job: Runs, text: str) -> dem.Run:
+@dataclass(frozen=True)
+class SolidRuns:
+    """Member k is tasks[k], all of the same bodies."""
+
+    bodies: dem3.Solids
+    tasks: list[SolidTask]
+
+    def one(
+        self,
+        k: int,
+        threads: int = 1,
+        state: np.ndarray | None = None,
+        watch: Callable[[dem3.Model, float], None] | None = None,
+    ) -> dem3.Run:
+        """A run, however it ends; from a state of it, and watched, where wanted (see core.dem3.Model.run)."""
+        task = self.tasks[k]
+        options = replace(task.options, threads=threads if len(self.bodies.mass) >= SOLIDS_FOR_THREADS else 1)
+        with (
+            dem3.Model(self.bodies, options) as model,
+            as_motion_set([task.ground or dem.STILL]) as motions,
+        ):
+            told = None if watch is None else partial(watch, model)
+            return model.run(motions, times=task.times, state=state, watch=told)
+
+    def rows(self, found: dem3.Run) -> dict[str, np.ndarray]:
+        """The row of a run; histories are as long as the longest that was asked for."""
+        length = max(len(task.times) for task in self.tasks)
+        energy = np.stack([found.energy[name] for name in dem3.ENERGIES], axis=-1)
+        histories = {"time": found.time, "place": found.place, "turn": found.turn, "rate": found.rate, "energy": energy}
+        return {
+            "reason": np.array(found.reason),
+            "blamed": np.array([*found.blamed, -1][:1]),
+            "points": np.array(len(found.time)),
+            **{name: padded(values, length) for name, values in histories.items()},
+            "settled": found.settled,
+            "settled_turn": found.settled_turn,
+            "bounces": found.bounces,
+            "airborne": found.airborne,
+            **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
+        }
+
+    def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem3.Run:
+        """The run of row k."""
+        row = {name: values[k] for name, values in rows.items()}
+        points = int(row["points"])
+        return dem3.Run(
+            reason=str(row["reason"]),
+            blamed=[int(b) for b in row["blamed"] if b >= 0],
+            energy={name: row["energy"][:points, i] for i, name in enumerate(dem3.ENERGIES)},
+            **{name: row[name][:points] for name in ("time", "place", "turn", "rate")},
+            **{name: row[name] for name in ("settled", "settled_turn", "bounces", "airborne")},
+            **{name: float(row[name]) for name in NUMBERS},
+            **{name: int(row[name]) for name in COUNTS},
+        )
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        def member(k: int) -> dict[str, np.ndarray]:
+            found = self.one(k, threads)
+            if found.interrupted:
+                raise Cancelled(status_code("cancelled"), "discrete elements interrupted")
+            return self.rows(found)
+
+        return stacked(member, first, count)
+
+
+def output_times(end: float, step: float) -> np.ndarray:
+    """Times from nought to an end [s]."""
+    return np.arange(round(end / step * (1 - 1e-12)) + 1) * step
+
+
+def padded(history: np.ndarray, length: int) -> np.ndarray:
+    """A history (nt, ...) made longer by NaN."""
+    out = np.full((length, *history.shape[1:]), np.nan)
+    out[: len(history)] = history
+    return out
+
+
+@overload
+def watched(context: Context, name: str, job: Runs, text: str) -> dem.Run: ...
+@overload
+def watched(context: Context, name: str, job: SolidRuns, text: str) -> dem3.Run: ...
+def watched(context: Context, name: str, job: Any, text: str) -> Any:
     """The one run of a job, with progress; its state is kept now and then and when it is interrupted, and the run when it
     has ended, so that one that is resumed goes on from there. Settling under the own weight is not kept."""
     chain = Chain(context, name, job)
@@ -134,12 +222,12 @@ def watched(context: Context, name: str, job: Runs, text: str) -> dem.Run:
     if chain.state is not None:
         step, kept = chain.state
         if step == ENDED:
-            return run_of(kept)
+            return job.run_of(kept)
         state = kept["state"]
     step, last = (0 if chain.state is None else chain.state[0]), time.monotonic()
     end = job.tasks[0].options.end_time
 
-    def watch(model: dem.Model, reached: float) -> None:
+    def watch(model: dem.Model | dem3.Model, reached: float) -> None:
         nonlocal step, last
         context.progress(min(reached, end), end, text)
         if chain.keeps and (time.monotonic() - last >= KEEP_SECONDS or cancel_requested()):
@@ -152,9 +240,15 @@ def watched(context: Context, name: str, job: Runs, text: str) -> dem.Run:
     return found
 
 
+@overload
 def answered(
     context: Context, name: str, job: Runs, text: str, tell: Callable[[int], None] | None = None
-) -> list[dem.Run]:
+) -> list[dem.Run]: ...
+@overload
+def answered(
+    context: Context, name: str, job: SolidRuns, text: str, tell: Callable[[int], None] | None = None
+) -> list[dem3.Run]: ...
+def answered(context: Context, name: str, job: Any, text: str, tell: Callable[[int], None] | None = None) -> list[Any]:
     """All runs of the job, kept by the batch layer; Unfinished where some are missing."""
     swept = sweep(context, name, job, len(job.tasks), text, slow=True, parallel=True, tell=tell).whole()
-    return [run_of(swept.arrays, k) for k in range(swept.count)]
+    return [job.run_of(swept.arrays, k) for k in range(swept.count)]

@@ -9,6 +9,7 @@ from extrados.limit.answer import why_not
 from extrados.limit.equilibrium import Disconnected
 from extrados.limit.errors import NoAnswer
 from extrados.limit.programme import LimitAnalysis
+from extrados.limit.solids import SolidLimit
 
 WEDGED = (
     "limit analysis finds forces by which it could stand, as friction holds a stone that is wedged in; elements begin "
@@ -16,6 +17,8 @@ WEDGED = (
 )
 #: Walls of more joints are not held against limit analysis, which would take as long as the elements.
 MOST_JOINTS = 3000
+#: Nor are more solids.
+MOST_SOLIDS = 300
 
 
 def against_limit_analysis(building: Building, stands: bool) -> str:
@@ -38,3 +41,21 @@ def against_limit_analysis(building: Building, stands: bool) -> str:
         "by the cohesion and tension of its joints, which limit analysis leaves out" if glued else "for no reason known"
     )
     return f"elements stand {held}, but limit analysis finds that it cannot stand under its own weight: {reason}"
+
+
+def solids_against_limit_analysis(building: Building, stands: bool) -> str:
+    """The same of blocks in space."""
+    assembly = building.solids()
+    if len(assembly.mass) > MOST_SOLIDS:
+        return ""
+    try:
+        found = SolidLimit(assembly, building.friction(assembly)).falls()
+    except NoAnswer:
+        return ""
+    if found is None:
+        return "" if stands else WEDGED
+    name = assembly.block_names[int(np.linalg.norm(found.motion[:, :3], axis=1).argmax())]
+    reason = f"a motion, fastest at {name}, that no contact hinders and by which the weights do work"
+    if not stands:
+        return f"limit analysis agrees: {reason}"
+    return f"elements stand for no reason known, but limit analysis finds that it cannot stand under its own weight: {reason}"

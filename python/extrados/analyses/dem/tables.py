@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from extrados.analyses.table import Animated, BuildingAnalysis
 from extrados.schema.constants import GRAVITY
-from extrados.schema.quantities import Acceleration, Gravities, Length, Time
+from extrados.schema.quantities import Acceleration, Angle, Gravities, Length, Time
 from extrados.schema.table import key
 
 if TYPE_CHECKING:
@@ -72,7 +72,12 @@ class Dem(DemTable, Animated):
     """Discrete elements: rigid blocks that rock, hinge, slide and fall (thesis chapter 7)."""
 
     starter_motion: ClassVar = "step-pulse"
+    solid: ClassVar = True
     kind: Literal["dem"]
+    direction: Angle | None = key(
+        None, "direction in plan of the horizontal motion or push, from +x to +y; with it, and where there is no plane section, the "
+        "blocks are looked at as solids", ge=-360, le=360,
+    )  # fmt: skip
     quasi_static: bool = key(
         False, "nonsmooth: without inertia, so that supports that move are followed through large displacements until "
         "what stands on them falls",

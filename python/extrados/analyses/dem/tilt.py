@@ -1,6 +1,8 @@
 """dem as a tilt test: the constant acceleration that brings a structure down."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -33,20 +35,17 @@ NOT_IN_TILT = (
 
 def run(context: Context, options: Dem, model: Model) -> Result:
     """The constant acceleration that brings the structure down: brought in slowly, held, bisected, in both senses."""
-    unused = [key for key in NOT_IN_TILT if key in options.model_fields_set]
-    if context.deck.motion:
-        unused.append("the [motion]")
-    if context.building.initial.movements:
-        unused.append("[[initial.movements]]")
-    if context.building.initial.rotation_ratio:
-        unused.append("[initial] rotation_ratio")
-    if unused:
-        context.warnings.append(f"plays no part in a tilt test: {', '.join(unused)}")
+    if without := unused(context, options):
+        context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
     base = replace(
         core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
         settlement=farthest_settlement(model, rigid=options.rigid), output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
     )  # fmt: skip
-    (collapse, last), (back, back_run) = _capacities(context, options, model, base)
+    bodies = [model.bodies()]
+    (collapse, last), (back, back_run) = capacities(
+        context, options, lambda asked: Runs(bodies, [Task(0, base, pushed(a, base.end_time)) for a in asked]),
+        lambda run: dem_model.checked(run, model),
+    )  # fmt: skip
     state, slip, at, found_hinges = _hinged(model, last)
     body = model.rigid.body_of_block
     rotation = -(last.place[:, body, 2] - last.settled[body, 2])
@@ -87,7 +86,7 @@ def run(context: Context, options: Dem, model: Model) -> Result:
     return result
 
 
-def _pushed(acceleration: float, end: float) -> Ground:
+def pushed(acceleration: float, end: float) -> Ground:
     """The ground accelerates to -x, which pushes the structure to +x [m/s^2], until `end` [s]."""
     return Ground(
         breaks=np.array([0.0, RAMP, end + 1.0]),
@@ -95,20 +94,34 @@ def _pushed(acceleration: float, end: float) -> Ground:
     )  # fmt: skip
 
 
-def _capacities(context: Context, options: Dem, model: Model, base: dem.Options) -> list[tuple[float, dem.Run]]:
-    """For each sense the acceleration [g] that brings it down and the last run that fell; both are bisected at once."""
+def unused(context: Context, options: Dem) -> list[str]:
+    """What of a deck a tilt test does not look at."""
+    found = [key for key in NOT_IN_TILT if key in options.model_fields_set]
+    if context.deck.motion:
+        found.append("the [motion]")
+    if context.building.initial.movements:
+        found.append("[[initial.movements]]")
+    if context.building.initial.rotation_ratio:
+        found.append("[initial] rotation_ratio")
+    return found
+
+
+def capacities(
+    context: Context, options: Dem, job: Callable[[list[float]], Any], checked: Callable[[Any], Any]
+) -> list[tuple[float, Any]]:
+    """For each sense the acceleration [g] that brings it down and the last run that fell; both are bisected at once.
+
+    job: runs under accelerations [m/s^2]; checked: the run, or Refused where it is none."""
     wanted = options.tilt_accuracy * GRAVITY
     total, rounds = 1.0 + float(np.log2(options.tilt_limit / wanted)), 0
-    bodies = [model.bodies()]
 
-    def falls(asked: list[float]) -> list[dem.Run | None]:
+    def falls(asked: list[float]) -> list[Any]:
         """The run where an acceleration [m/s^2] brings it down, else None."""
         nonlocal rounds
-        tasks = [Task(0, base, _pushed(a, base.end_time)) for a in asked]
-        runs = answered(context, "dem-tilt", Runs(bodies, tasks), "", tell=lambda n: None)
+        runs = answered(context, "dem-tilt", job(asked), "", tell=lambda n: None)
         rounds += 1
         context.progress(min(rounds, total), total, "tilt test")
-        return [run if dem_model.checked(run, model).reason in ("collapse", "left") else None for run in runs]
+        return [run if checked(run).reason in ("collapse", "left") else None for run in runs]
 
     low, high = [0.0, 0.0], [options.tilt_limit, options.tilt_limit]
     last = falls([sense * options.tilt_limit for sense in SENSES])

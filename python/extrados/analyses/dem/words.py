@@ -2,7 +2,7 @@
 
 from extrados.analyses.dem.measures import SLIDES
 from extrados.analyses.dem.model import Model
-from extrados.results.dem import Convergence, DemRun, DemTilt
+from extrados.results.dem import Convergence, DemRun, DemTilt, SolidDemRun, SolidDemTilt
 
 
 def solved(c: Convergence) -> str:
@@ -50,4 +50,36 @@ def tilt_answer(r: DemTilt) -> str:
         f"A constant horizontal acceleration brings it down at {collapse:.4f} g pushed to +x (a tilt of "
         f"{r.tilt_angle_deg:.2f} deg) and at {back:.4f} g pushed to -x; the least is {least:.4f} g, to {sense}. "
         f"Hinges as it goes to +x: {where}." + (f" {solved(r.convergence).capitalize()}." if r.convergence else "")
+    )
+
+
+def solid_answer(r: SolidDemRun, idle: bool) -> str:
+    if idle and r.outcome == "no-hinging":
+        return "It stands under its own weight; nothing moves it."
+    turn = max(r.peak_rotation_rad.items(), key=lambda item: item[1], default=("", 0.0))
+    audit = (
+        f"energy ledger closed to {100 * r.energy_residual_ratio:.2g} %, damping {100 * r.damping_ratio_rotation:.3g} % of critical "
+        f"at rotational and {100 * r.damping_ratio_edge:.3g} % at edge impact"
+    )
+    if r.outcome == "collapse":
+        who = f" ({r.stopped_by[0]} is the first to go)" if r.stopped_by else ""
+        first = f"It collapses{who} at {r.collapse_time_s:.2f} s"
+    elif r.outcome == "no-hinging":
+        first = f"No contact opens; greatest displacement {r.peak_displacement_m:.3g} m"
+    else:
+        fate = f"rocks and still moves at {r.stop_time_s:.2f} s" if r.still_moving else "rocks and stands"
+        first = f"It {fate}: greatest displacement {r.peak_displacement_m:.3g} m, {r.final_displacement_m:.3g} m of it left at the end"
+    return (
+        f"{first}; {turn[0]} turns by {1e3 * turn[1]:.3g} mrad at most, slip {1e3 * r.peak_slip_m:.2g} mm, {r.bounces} bounces; "
+        f"{r.blocks} stones, {r.contacts} contacts; {audit}."
+    )
+
+
+def solid_tilt_answer(r: SolidDemTilt) -> str:
+    where = ", ".join(r.opening_contacts[:6]) or "none"
+    least = min(r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)
+    return (
+        f"A constant horizontal acceleration brings it down at {r.collapse_acceleration_g:.4f} g pushed along {r.load_direction_deg:g} "
+        f"degrees in plan (a tilt of {r.tilt_angle_deg:.2f} deg) and at {r.collapse_acceleration_opposite_g:.4f} g the opposite way; "
+        f"the least is {least:.4f} g. Contacts that gape or slide as it goes: {where}."
     )

@@ -8,7 +8,15 @@ from extrados.analyses.context import Refused
 from extrados.analyses.shell.tables import Pushover, Settlement
 from extrados.analyses.sla.events import Curve
 from extrados.analyses.sla.kept import State
-from extrados.analyses.sla.model import POINTS_PER_THREAD, bands_of, crushing_of, hills_of, laws_of, softening_of
+from extrados.analyses.sla.model import (
+    POINTS_PER_THREAD,
+    bands_of,
+    crushing_of,
+    hills_of,
+    laws_of,
+    refusal,
+    softening_of,
+)
 from extrados.building.errors import BadGeometry
 from extrados.building.mesh.shells import ShellBar, ShellMesh, ShellPart
 from extrados.core import sla as core
@@ -105,7 +113,7 @@ def build(mesh: ShellMesh, options: Pushover) -> ShellModel:
     try:
         return _build(mesh, options)
     except BadGeometry as error:
-        raise Refused(str(error)) from None
+        raise refusal(error) from None
 
 
 def _build(mesh: ShellMesh, options: Pushover) -> ShellModel:
@@ -222,11 +230,11 @@ def _tie(mesh: ShellMesh, options: Pushover, along: np.ndarray, held: set) -> li
         raise BadGeometry("drives: a prescribed displacement goes along x or y: direction is 0, 90, 180 or 270")
     axis = int(np.abs(along).argmax())
     tie: dict[int, float] = {}
-    for k, drive in enumerate(options.drives, 1):
-        for node in _place(mesh, drive, f"drives {k}").tolist():
+    for k, drive in enumerate(options.drives):
+        for node in _place(mesh, drive, f"drives[{k}]").tolist():
             share = drive.ratio * float(along[axis])
             if tie.setdefault(node, share) != share:
-                raise BadGeometry(f"drives {k}: a node of wall '{drive.wall}' is driven with another ratio already")
+                raise BadGeometry(f"drives[{k}]: a node of wall '{drive.wall}' is driven with another ratio already")
     if clash := [n for n in tie if (n, axis) in held]:
         raise BadGeometry(f"drives: node {clash[0] + 1} is held")
     return [(n, axis, share) for n, share in sorted(tie.items())]
@@ -259,9 +267,9 @@ def _grounds(
     asked: dict[Ground, str] = (
         {} if mesh.walls else {Ground(f, way): "" for f in range(len(mesh.feet)) for way in ("out", "down")}
     )
-    every = [(f"settlements {k}", part) for k, part in enumerate(options.settlements, 1)]
-    for number, stage in enumerate(options.stages, 1):
-        every += [(f"stages {number}, settlements {k}", part) for k, part in enumerate(stage.settlements, 1)]
+    every = [(f"settlements[{k}]", part) for k, part in enumerate(options.settlements)]
+    for number, stage in enumerate(options.stages):
+        every += [(f"stages[{number}].settlements[{k}]", part) for k, part in enumerate(stage.settlements)]
     for what, part in every:
         x = None if part.x is None else (part.x[0], part.x[1])
         for foot in _feet_of(mesh, part, what):

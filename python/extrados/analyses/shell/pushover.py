@@ -11,6 +11,7 @@ from extrados.analyses.batches import Chain
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
+from extrados.analyses.shell.needs import pier_strength
 from extrados.analyses.shell.sections import Section, cracks, drifts, place_axes, point_places, sections
 from extrados.analyses.shell.stages import run_stages
 from extrados.analyses.shell.tables import Pushover, Variant
@@ -301,17 +302,8 @@ def _frame(
 ) -> list[dict[str, Any]]:
     """What the formulas of codes say of the piers; all of them as a table."""
     plan, rules = context.building.structure, options.frame
-    assert rules is not None
-    if not isinstance(plan, Plan):
-        raise Refused("frame: piers are of a building of walls on a plan", ("analysis", "frame"))
-    if options.drives:
-        raise Refused("frame: how the push goes to the storeys is not known of drives", ("analysis", "frame"))
-    strength = rules.compressive_strength or context.building.material.compressive_strength
-    if strength is None:
-        raise Refused(
-            "frame: the formulas of piers need compressive_strength (f_m), there or in [material]",
-            ("analysis", "frame"),
-        )
+    strength = pier_strength(context.building, options)
+    assert rules is not None and isinstance(plan, Plan)
     found, rows = capacities(model, plan, rules, strength, elastic["under"])
     result.tables["frame"] = TableData(
         {name: [row[name] for row in rows] for name in rows[0]},

@@ -62,7 +62,7 @@ def run_stages(
                 }
             )  # fmt: skip
             told = lambda done, total, text, name=name: progress(done, total, f"stage {name}, {text}")  # noqa: E731
-            stop = _stop(model, staged, stage, before, f"stages {k + 1}")
+            stop = _stop(model, staged, stage, before, k)
             curve = run_reference_loads(core_model, staged, own, 1, told, False, chain([k, damage, moved]), stop)
             curve.name, curve.before, curve.damage_start, curve.unit = name, before, damage, staged.unit
             curve.acceleration = staged.acceleration
@@ -143,7 +143,7 @@ def _of_ground(staged: ShellModel) -> core.Monitor:
     )
 
 
-def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, what: str) -> core.Stop:
+def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, number: int) -> core.Stop:
     """When a stage ends."""
     if staged.driven:
         return core.Stop(load=1.0, compliance=model.mechanism_ratio)
@@ -152,15 +152,19 @@ def _stop(model: ShellModel, staged: ShellModel, stage: PushStage, now: float, w
         load = (stage.base_shear - staged.already) / staged.unit
         if not load > 0.0:
             raise Refused(
-                f"{what}.base_shear: the base shear in this sense is {staged.already:.4g} N at the start already, not below "
-                f"{stage.base_shear:.4g} N; the sense that comes down to it is the other"
+                f"stages[{number}].base_shear: the base shear in this sense is {staged.already:.4g} N at the start already, not below "
+                f"{stage.base_shear:.4g} N; the sense that comes down to it is the other",
+                ("analysis", "stages", number, "base_shear"),
             )
     if stage.target_displacement is not None:
         # The control displacement counts in the sense of the stage
         target = stage.target_displacement
         side = int(np.sign(target - now))
         if side == 0:
-            raise Refused(f"{what}.target_displacement: the control displacement is {now:g} m at the start already")
+            raise Refused(
+                f"stages[{number}].target_displacement: the control displacement is {now:g} m at the start already",
+                ("analysis", "stages", number, "target_displacement"),
+            )
     return core.Stop(
         load=load, fraction=stage.stop_fraction or -1.0, compliance=model.mechanism_ratio, target=target, side=side,
         already=staged.already / staged.unit,

@@ -12,7 +12,7 @@ from extrados.results.rocking import COLLAPSE, NO_HINGING
 #: Numbers that come in pieces, from the first again at each call
 Pieces = Callable[[], Iterator[np.ndarray]]
 #: Of many numbers so many are sorted to find their median, and so many bins lead to them
-FEW, BINS = 500_000, 65_536
+FEW, BINS = 100_000, 65_536
 
 
 def wilson(

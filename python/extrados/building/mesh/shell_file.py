@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, Key
 from extrados.building.mesh.file import open_mesh
 from extrados.building.mesh.options import LARGEST_MESH
 from extrados.building.mesh.shells import Foot, ShellMesh, ShellOptions, ShellPart, nodal_areas
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from extrados.building.building import Building
 
+#: Where a deck says what its groups are
+GROUPS = ("structure", "groups")
 KINDS = {"triangle": "T3", "quad": "Q4"}
 PASSED_OVER = ("line", "line3", "vertex")
 #: Cell data that number groups, of the formats that have no names: gmsh, medit, VTK
@@ -60,17 +62,17 @@ def read_shell(structure: MeshFile, building: "Building", options: ShellOptions)
     for g, group in enumerate(structure.groups):
         what = f"{file}, group '{group.name}'"
         if group.name not in known:
-            raise BadGeometry(f"{what}: there is none in the file; there are {there}")
+            raise BadGeometry(f"{what}: there is none in the file; there are {there}", (*GROUPS, g, "name"))
         cells_of, nodes = known[group.name]
         own = {b: rows for b, rows in cells_of.items() if b in shells}
-        _check(group, what, bool(own))
+        _check(group, what, bool(own), (*GROUPS, g))
         for b, rows in own.items():
             owner[b][rows] = g
             if group.thickness is not None:
                 thickness[b][rows] = group.thickness
             if group.material is not None:
                 if group.material not in names:
-                    raise BadGeometry(f"{what}: there is no [materials.{group.material}]")
+                    raise BadGeometry(f"{what}: there is no [materials.{group.material}]", (*GROUPS, g, "material"))
                 material[b][rows] = 1 + names.index(group.material)
             linear[b][rows] |= group.linear or group.membrane
             bends[b][rows] &= not group.membrane
@@ -132,14 +134,17 @@ def _groups(mesh: "meshio.Mesh") -> dict[str, tuple[dict[int, np.ndarray], np.nd
     return found
 
 
-def _check(group: MeshGroup, what: str, elements: bool) -> None:
+def _check(group: MeshGroup, what: str, elements: bool, key: Key) -> None:
     """BadGeometry where a group of lines or points is told what only elements have, or nothing is said."""
     told = [key for key in ("thickness", "material", "linear", "membrane", "pressure") if getattr(group, key)]
     if told and not elements:
-        raise BadGeometry(f"{what}: {told[0]} is of elements, and the group has none; it takes support and force")
+        raise BadGeometry(
+            f"{what}: {told[0]} is of elements, and the group has none; it takes support and force", (*key, told[0])
+        )
     if not (told or group.support or group.force):
         raise BadGeometry(
-            f"{what}: nothing is said of it: expected thickness, material, linear, membrane, support, pressure or force"
+            f"{what}: nothing is said of it: expected thickness, material, linear, membrane, support, pressure or force",
+            key,
         )
 
 

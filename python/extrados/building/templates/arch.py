@@ -121,7 +121,7 @@ class Arch(Structure):
 
     def assembly(self, density: float, folder: Path) -> ArchAssembly:
         if self.skew:
-            raise NoView("a skew arch is no plane section; `tilt` looks at its solids")
+            raise NoView("a skew arch is no plane section; `tilt` and `dem` look at its solids")
         return self._section(density)
 
     def solids(self, building: "Building") -> "SolidAssembly":

@@ -194,7 +194,9 @@ class Blocks(Structure):
             drawing = read_dxf(file, self.unit, self.layers, meaning, self.join_tolerance, fine)
             return drawing, None
         if sort in SOLID:
-            raise NoView(f"{self.file} holds solids, which are no plane section; `tilt` looks at them in space")
+            raise NoView(
+                f"{self.file} holds solids, which are no plane section; `tilt` and `dem` look at them in space"
+            )
         if sort != ".json":
             raise BadGeometry(f"{self.file}: expected a .json, .dxf, .obj or .stl file")
         if self.layers is not None or self.layer:

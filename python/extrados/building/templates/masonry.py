@@ -101,7 +101,7 @@ class Column(Structure):
 
     def assembly(self, density: float, folder: Path) -> Assembly:
         if self.section == "round":
-            raise NoView("a column of round drums is no plane section; `tilt` looks at its solids")
+            raise NoView("a column of round drums is no plane section; `tilt` and `dem` look at its solids")
         if self.dowels is not None:
             raise NoView("dowels are known in space alone: ask `tilt` with a direction, or leave them out")
         return make_column(self.width, self._heights, self.top_width, density, self.depth)

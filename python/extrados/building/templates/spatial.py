@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from extrados.building.structure import Structure
 
-NO_SECTION = "it is no plane section; `tilt` looks at its solids"
+NO_SECTION = "it is no plane section; `tilt` and `dem` look at its solids"
 
 
 class Spatial(Structure):

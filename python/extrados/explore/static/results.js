@@ -173,6 +173,7 @@ export function resultsPanel(app, wide) {
       if (body.lines?.length) svg.append(s("g", {}, body.lines.map((l, i) => s("text", { class: `line-label ${l.name}`, x: 10, y: 16 + 15 * i, text: `— ${l.label}` }))));
     }
     function solids(a, body) {
+      if (body.over_time) { const n = a.pose.shape[1] * 6; view.move(carried(a, a.pose.subarray(n * it.k, n * (it.k + 1)), 1)); return; }
       if (!body.walls) { view.move(carried(a, a.pose, it.time)); return; }
       const n = a.vertex.length, off = n * it.k, factor = Number(scale.value), place = new Float32Array(n), faces = a.face_start.length - 1;
       for (let i = 0; i < n; i += 1) place[i] = a.vertex[i] + factor * a.state_moved[off + i];

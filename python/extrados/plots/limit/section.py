@@ -15,6 +15,7 @@ MOST_FLOW = 3.0  # points: width of the greatest force between stones
 HATCH = "#cfc6b2"
 FILL, PAVED = "#f3ead6", "#b9b4aa"
 TIE, LOAD = "#2b5d8a", "#333333"
+MOST_ARROWS = 9  # of a load that is spread
 MOST_TIES_TOLD = 12  # ties whose forces are written beside them
 CHAIN_COLOURS = (style.THRUST, style.HINGE, style.GROUND, "#8a5a00", "#6a3d8f", "#444444")
 
@@ -76,21 +77,28 @@ def earth(ax: Axes, run: Stored, name: str) -> None:
 
 
 def resting(ax: Axes, run: Stored, name: str, blocks: list[np.ndarray]) -> None:
-    """Loads at rest as arrows, as long as they are great, each with its force; nothing without them."""
+    """Loads at rest as arrows, as long as they are great, each with its force; of a load that is spread evenly a few, each for its
+    share, under a line. Nothing without loads."""
     if "load_point" not in run.arrays[name]:
         return
     points, forces, number = (run.array(name, f"load_{what}") for what in ("point", "force", "number"))
-    length = 0.1 * float(np.ptp(np.concatenate(blocks), axis=0).max()) / float(np.hypot(*forces.T).max())
+    drawn = []
     for k in np.unique(number):
-        here = number == k
-        for point, force in zip(points[here], forces[here], strict=True):
+        here = np.flatnonzero(number == k)
+        few = here[np.linspace(0, len(here) - 1, min(len(here), MOST_ARROWS)).round().astype(int)]
+        drawn.append((points[few], forces[here].sum(axis=0)))
+    greatest = max(float(np.hypot(*whole)) / len(heads) for heads, whole in drawn)
+    length = 0.1 * float(np.ptp(np.concatenate(blocks), axis=0).max()) / greatest
+    for heads, whole in drawn:
+        tails = heads - length * whole / len(heads)
+        for head, tail in zip(heads, tails, strict=True):
             ax.annotate(
-                "", point, point - length * force, zorder=6,
+                "", head, tail, zorder=6,
                 arrowprops={"arrowstyle": "-|>", "color": LOAD, "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0},
             )  # fmt: skip
-        tails = points[here] - length * forces[here]
+        ax.plot(*tails.T, color=LOAD, linewidth=0.8, zorder=6)
         ax.update_datalim(tails)
-        style.letters(ax, tails[[len(tails) // 2]], [f"{np.hypot(*forces[here].sum(axis=0)) / 1e3:.3g} kN"], LOAD)
+        style.letters(ax, tails[[len(tails) // 2]], [f"{np.hypot(*whole) / 1e3:.3g} kN"], LOAD)
     ax.plot([], [], color=LOAD, marker=">", markersize=4, label="load at rest")
 
 

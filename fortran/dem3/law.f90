@@ -1,0 +1,345 @@
+!> The force at the points of a contact: a spring that knows no tension, Coulomb friction on a shear spring in the
+!> plane of the contact, and dashpots in parallel with both, taken implicitly: the law of the plane room with a cone
+!> (dem/law.f90).
+!>
+!> With the normal n from body 1 to body 2, the gap g (negative where bodies overlap), the velocity u of body 2 relative
+!> to body 1 at the point and the area a that it carries:
+!>
+!>    N  = -k_n a g
+!>    S += -k_s a u_t dt,   |S| <= mu N            S turns with the contact
+!>    D  = -beta k a u                              in both directions
+!>
+!> on body 2, the opposite on body 1. Dry joints: no cohesion, no tension. The dashpots are implicit as in the plane:
+!> D = -beta k a u* / (1 + beta k a dt w), with u* the velocity after the step without it and w that of a unit impulse.
+module dem3_law
+   use common_kinds, only : wp
+   use dem3_bodies, only : body, body_set, cross
+   use dem3_patch, only : feature, measure, meet, patch
+   implicit none
+   private
+   public :: joint_law, contact_point, contact_pair, act, find_points, elastic_energy, drop_points
+
+   type :: joint_law
+      real(wp) :: normal_stiffness = 0.0_wp    !! [Pa/m]
+      real(wp) :: shear_stiffness = 0.0_wp     !! [Pa/m]
+      real(wp) :: friction = 0.0_wp            !! coefficient
+      real(wp) :: damping = 0.0_wp             !! stiffness-proportional, beta [s]
+   end type joint_law
+
+   type :: contact_point
+      type(feature) :: what
+      logical :: closed = .false.
+      real(wp) :: spring_n = 0.0_wp, dash_n = 0.0_wp       !! compression positive [N]
+      real(wp) :: spring_s(3) = 0.0_wp, dash_s(3) = 0.0_wp !! on the second body [N]
+      real(wp) :: force(3) = 0.0_wp                        !! all of it, in the step before [N]
+      real(wp) :: dash(3) = 0.0_wp                         !! of the dashpots [N]
+   end type contact_point
+
+   !> Two parts of different bodies that are near each other
+   type :: contact_pair
+      integer :: part(2) = 0
+      integer :: law = 1
+      integer :: points = 0
+      integer :: reference = 0                 !! whose face the last polygon lay on
+      integer :: marks(2) = -1                 !! of the bodies, as they were last compared; -1: never
+      real(wp) :: place(3) = 0.0_wp            !! of the second body in the frame of the first, as the points were found
+      real(wp) :: turn(3, 3) = 0.0_wp
+      real(wp) :: friction_loss = 0.0_wp       !! [J]
+      real(wp) :: damping_loss = 0.0_wp        !! [J]
+      real(wp) :: support_work = 0.0_wp        !! [J]
+      logical :: lacks_memory = .false.        !! there was no room for its points: the run must end
+      type(contact_point), allocatable :: point(:)
+   end type contact_pair
+
+   !> Points nearer to one found anew than this share of the root of its area are the same
+   real(wp), parameter :: same = 0.5_wp
+   !> and carry on as they are where they are of the same features and their area is the same but for this share
+   real(wp), parameter :: still_same = 0.1_wp
+
+contains
+
+   !> Where a pair touches, looked at anew if its bodies have moved relative to each other by more than `far`; what goes
+   !> on keeps its springs. What the springs of all gain or lose by that is booked nowhere: it shows in the ledger.
+   pure subroutine find_points(set, far, margin, pair)
+      type(body_set), intent(in) :: set
+      real(wp), intent(in) :: far               !! [m]
+      real(wp), intent(in) :: margin            !! [m]
+      type(contact_pair), intent(inout) :: pair
+      type(contact_point), allocatable :: before(:)
+      type(patch) :: found
+      real(wp) :: place(3), turn(3, 3)
+      integer :: i, old, failed
+      logical, allocatable :: taken(:)
+
+      associate (a => set%item(set%parts(pair%part(1))%owner), b => set%item(set%parts(pair%part(2))%owner))
+         place = matmul(b%x - a%x, a%turn)
+         turn = matmul(transpose(a%turn), b%turn)
+         if (pair%marks(1) >= 0) then
+            pair%marks = [a%marks, b%marks]
+            if (norm2(place - pair%place) + min(a%radius, b%radius) * norm2(turn - pair%turn) < far) return
+         end if
+         pair%marks = [a%marks, b%marks]
+      end associate
+      pair%place = place
+      pair%turn = turn
+      call meet(set, pair%part(1), pair%part(2), margin, pair%reference, found)
+      if (found%reference > 0) pair%reference = found%reference
+      if (found%points == 0 .and. pair%points == 0) return
+      pair%points = 0
+      if (allocated(pair%point)) then
+         call move_alloc(pair%point, before)
+      else
+         allocate (before(0), stat=failed)
+         pair%lacks_memory = pair%lacks_memory .or. failed /= 0
+         if (failed /= 0) return
+      end if
+      allocate (taken(size(before)), pair%point(found%points), stat=failed)
+      pair%lacks_memory = pair%lacks_memory .or. failed /= 0
+      if (failed /= 0) return
+      taken = .false.
+      do i = 1, found%points
+         old = partner(found%point(i), before, taken)
+         pair%point(i)%what = found%point(i)
+         if (old == 0) cycle
+         taken(old) = .true.
+         associate (point => pair%point(i), one => before(old))
+            point = one
+            if (equal(one%what, found%point(i))) cycle
+            point%what = found%point(i)
+         end associate
+      end do
+      pair%points = found%points
+   end subroutine find_points
+
+   !> Whether two points are the same corner over the same plane, or of the same edges
+   pure function equal(one, two) result(same_ones)
+      type(feature), intent(in) :: one
+      type(feature), intent(in) :: two
+      logical :: same_ones
+      same_ones = one%kind == two%kind .and. .not. any(abs(one%own - two%own) > 0.0_wp) &
+         .and. .not. any(abs(one%normal - two%normal) > 0.0_wp) .and. .not. any(abs(one%along - two%along) > 0.0_wp) &
+         .and. .not. any(abs(one%other - two%other) > 0.0_wp) &
+         .and. abs(one%area - two%area) < still_same * two%area
+   end function equal
+
+   !> All points of a pair are no more: what their springs held is lost with them
+   pure subroutine drop_points(law, pair)
+      type(joint_law), intent(in) :: law
+      type(contact_pair), intent(inout) :: pair
+      pair%friction_loss = pair%friction_loss + elastic_energy(law, pair)
+      pair%points = 0
+   end subroutine drop_points
+
+   !> The closed point of before that a new one is; 0 where there is none
+   pure function partner(what, before, taken) result(old)
+      type(feature), intent(in) :: what
+      type(contact_point), intent(in) :: before(:)
+      logical, intent(in) :: taken(:)
+      integer :: old
+      integer :: k
+      real(wp) :: away, nearest
+      old = 0
+      nearest = huge(1.0_wp)
+      do k = 1, size(before)
+         if (taken(k)) cycle
+         away = norm2(what%at - before(k)%what%at)
+         if (away > same * sqrt(max(what%area, before(k)%what%area)) .or. away >= nearest) cycle
+         nearest = away
+         old = k
+      end do
+   end function partner
+
+   !> Forces of a pair at its present overlap, added to both bodies; predicted velocities follow
+   pure subroutine act(law, kick, drift, a, b, pair)
+      type(joint_law), intent(in) :: law
+      real(wp), intent(in) :: kick              !! length of the velocity step [s]
+      real(wp), intent(in) :: drift             !! length of the position step before [s]
+      type(body), intent(inout) :: a
+      type(body), intent(inout) :: b
+      type(contact_pair), intent(inout) :: pair
+      real(wp) :: normal(3), gap, at(3), arm_a(3), arm_b(3), u(3), force(3), dash(3)
+      integer :: i
+
+      do i = 1, pair%points
+         associate (point => pair%point(i))
+            call measure(point%what, a, b, normal, gap, at)
+            if (gap >= 0.0_wp .and. .not. point%closed) cycle
+            arm_a = at - a%x
+            arm_b = at - b%x
+            ! Velocity over the position step before: it has moved the springs.
+            u = b%v - a%v + cross(b%spin, arm_b) - cross(a%spin, arm_a)
+            if (gap < 0.0_wp) then
+               point%closed = .true.
+               call press(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, pair%friction_loss, force, dash)
+               if (.not. a%fixed) a%touched = .true.
+               if (.not. b%fixed) b%touched = .true.
+            else   ! it opens: what its shear spring held is lost
+               pair%friction_loss = pair%friction_loss + 0.5_wp * dot_product(point%spring_s, point%spring_s) &
+                  / (law%shear_stiffness * point%what%area)
+               point%closed = .false.
+               point%spring_n = 0.0_wp
+               point%spring_s = 0.0_wp
+               point%dash_n = 0.0_wp
+               point%dash_s = 0.0_wp
+               force = 0.0_wp
+               dash = 0.0_wp
+            end if
+            pair%damping_loss = pair%damping_loss - 0.5_wp * drift * dot_product(point%dash + dash, u)
+            if (a%fixed) pair%support_work = pair%support_work &
+               + 0.5_wp * drift * dot_product(force + point%force, a%v + cross(a%spin, arm_a))
+            if (b%fixed) pair%support_work = pair%support_work &
+               - 0.5_wp * drift * dot_product(force + point%force, b%v + cross(b%spin, arm_b))
+            call give(a, -force, -kick * (force - point%force), arm_a)
+            call give(b, force, kick * (force - point%force), arm_b)
+            point%force = force
+            point%dash = dash
+         end associate
+      end do
+   end subroutine act
+
+   !> Force of a closed point: springs, the normal dashpot, then friction on the shear spring and its dashpot
+   pure subroutine press(law, kick, drift, normal, gap, u, arm_a, arm_b, a, b, point, friction_loss, force, dash)
+      type(joint_law), intent(in) :: law
+      real(wp), intent(in) :: kick              !! [s]
+      real(wp), intent(in) :: drift             !! [s]
+      real(wp), intent(in) :: normal(3)
+      real(wp), intent(in) :: gap               !! [m]
+      real(wp), intent(in) :: u(3)              !! relative velocity over the position step before [m/s]
+      real(wp), intent(in) :: arm_a(3)          !! from the centroids [m]
+      real(wp), intent(in) :: arm_b(3)
+      type(body), intent(in) :: a
+      type(body), intent(in) :: b
+      type(contact_point), intent(inout) :: point
+      real(wp), intent(inout) :: friction_loss  !! [J]
+      real(wp), intent(out) :: force(3)         !! on the second body [N]
+      real(wp), intent(out) :: dash(3)          !! the dashpots' part of it
+      real(wp) :: slip(3), predicted(3), star(3), trial(3), held(3), new(3), change(3), answer(3, 3)
+      real(wp) :: stiff_n, stiff_s, viscous, w, along(3), bound, length, push_n, spring_n, dash_n
+
+      stiff_n = law%normal_stiffness * point%what%area
+      stiff_s = law%shear_stiffness * point%what%area
+      slip = u - dot_product(u, normal) * normal
+      ! The shear spring turns into the present plane and keeps its force.
+      held = point%spring_s - dot_product(point%spring_s, normal) * normal
+      length = norm2(held)
+      if (length > 0.0_wp) held = held * (norm2(point%spring_s) / length)
+      trial = held - (stiff_s * drift) * slip
+      spring_n = -stiff_n * gap
+      answer = answers(arm_a, arm_b, a, b)
+      predicted = b%p - a%p + cross(b%pspin, arm_b) - cross(a%pspin, arm_a)
+      ! Normal dashpot: the predicted velocity holds the old force of this point, of the others what is decided by now.
+      bound = law%friction * max(spring_n + point%dash_n, 0.0_wp)
+      new = bounded(trial + point%dash_s, bound)
+      change = (spring_n + point%dash_n) * normal + new - point%force
+      star = predicted + kick * matmul(answer, change)
+      w = dot_product(normal, matmul(answer, normal))
+      viscous = law%damping * stiff_n
+      dash_n = -viscous * (dot_product(star, normal) - kick * w * point%dash_n) / (1.0_wp + viscous * kick * w)
+      push_n = max(spring_n + dash_n, 0.0_wp)
+      ! Shear, now that the normal force is known.
+      bound = law%friction * push_n
+      if (dot_product(trial, trial) >= bound**2) then
+         new = bounded(trial, bound)
+         ! Mean force over the step times the slip.
+         friction_loss = friction_loss + 0.5_wp * dot_product(trial - new, held + new) / stiff_s
+         point%spring_s = new
+         point%dash_s = 0.0_wp
+      else
+         change = push_n * normal + trial + point%dash_s - point%force
+         star = predicted + kick * matmul(answer, change)
+         star = star - dot_product(star, normal) * normal
+         along = star
+         length = norm2(along)
+         held = 0.0_wp
+         if (length > 0.0_wp) then
+            along = along / length
+            w = dot_product(along, matmul(answer, along))
+            viscous = law%damping * stiff_s
+            held = -viscous * (star - kick * w * point%dash_s) / (1.0_wp + viscous * kick * w)
+         end if
+         point%dash_s = bounded(trial + held, bound) - trial
+         point%spring_s = trial
+      end if
+      point%spring_n = spring_n
+      point%dash_n = push_n - spring_n
+      dash = point%dash_n * normal + point%dash_s
+      force = push_n * normal + point%spring_s + point%dash_s
+   end subroutine press
+
+   !> A vector no longer than a bound
+   pure function bounded(vector, bound) result(short)
+      real(wp), intent(in) :: vector(3)
+      real(wp), intent(in) :: bound
+      real(wp) :: short(3)
+      real(wp) :: length
+      length = norm2(vector)
+      short = vector
+      if (length > bound) short = vector * (bound / length)
+   end function bounded
+
+   !> Relative velocity at a point by a unit impulse on body 2 and its opposite on body 1 [1/kg]
+   pure function answers(arm_a, arm_b, a, b) result(w)
+      real(wp), intent(in) :: arm_a(3)          !! [m]
+      real(wp), intent(in) :: arm_b(3)
+      type(body), intent(in) :: a
+      type(body), intent(in) :: b
+      real(wp) :: w(3, 3)
+      integer :: k
+      w = 0.0_wp
+      do k = 1, 3
+         w(k, k) = a%inverse_mass + b%inverse_mass
+      end do
+      if (.not. a%fixed) call add_turning(arm_a, a%inverse, w)
+      if (.not. b%fixed) call add_turning(arm_b, b%inverse, w)
+   end function answers
+
+   !> -[r] J [r], with J the inverse inertia
+   pure subroutine add_turning(r, inverse, w)
+      real(wp), intent(in) :: r(3)
+      real(wp), intent(in) :: inverse(3, 3)
+      real(wp), intent(inout) :: w(3, 3)
+      real(wp) :: m(3, 3)
+      integer :: k
+      do k = 1, 3                               ! rows of [r] J: r x the columns of J
+         m(:, k) = cross(r, inverse(:, k))
+      end do
+      do k = 1, 3                               ! times -[r] from the right: r x the rows
+         w(k, :) = w(k, :) + cross(r, m(k, :))
+      end do
+   end subroutine add_turning
+
+   !> Add a force to a body, and its change to the body's predicted velocity
+   pure subroutine give(b, force, impulse, arm)
+      type(body), intent(inout) :: b
+      real(wp), intent(in) :: force(3)          !! [N]
+      real(wp), intent(in) :: impulse(3)        !! change of the force times the step [N s]
+      real(wp), intent(in) :: arm(3)            !! [m]
+      if (b%fixed) return
+      b%force = b%force + force
+      b%moment = b%moment + cross(arm, force)
+      b%p = b%p + b%inverse_mass * impulse
+      b%pspin = b%pspin + matmul(b%inverse, cross(arm, impulse))
+   end subroutine give
+
+   !> Energy in the springs of a point [J]
+   pure function energy_of(law, point) result(energy)
+      type(joint_law), intent(in) :: law
+      type(contact_point), intent(in) :: point
+      real(wp) :: energy
+      energy = 0.5_wp * (point%spring_n**2 / law%normal_stiffness &
+         + dot_product(point%spring_s, point%spring_s) / law%shear_stiffness) / point%what%area
+   end function energy_of
+
+   !> Energy in the springs of a pair [J]
+   pure function elastic_energy(law, pair) result(energy)
+      type(joint_law), intent(in) :: law
+      type(contact_pair), intent(in) :: pair
+      real(wp) :: energy
+      integer :: k
+      energy = 0.0_wp
+      do k = 1, pair%points
+         if (pair%point(k)%closed) energy = energy + energy_of(law, pair%point(k))
+      end do
+   end function elastic_energy
+
+end module dem3_law

@@ -1,0 +1,571 @@
+!> A model of discrete elements in space, advanced by leap-frog steps: contact search, forces, motion, energy.
+module dem3_model
+   use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
+   use dem_loading, only : loading, mean_acceleration
+   use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
+   use dem3_law, only : act, contact_pair, drop_points, elastic_energy, find_points, joint_law
+   use dem3_patch, only : measure
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
+   implicit none
+   private
+   public :: solid_model, set_distances, search, colour, advance, critical_step, energy_terms, energy_now, &
+      energy_residual
+
+   type :: solid_model
+      type(body_set) :: set
+      type(contact_pair), allocatable :: pair(:)
+      integer :: pairs = 0
+      integer, allocatable :: sweep(:)                !! the pairs by colours
+      integer, allocatable :: colour_first(:)         !! first of each colour in the sweep; then what has none
+      integer :: colours = 0
+      type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
+      integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
+      type(loading) :: load                           !! its gravity is not used: that here is along z
+      real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
+      real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
+      real(wp) :: t = 0.0_wp                          !! time of the next forces [s]
+      real(wp) :: step = 0.0_wp                       !! [s]
+      real(wp) :: drift = 0.0_wp                      !! position step that led here; 0 at the start [s]
+      real(wp) :: kick = 0.0_wp                       !! velocity step taken last [s]
+      real(wp) :: pull(3) = 0.0_wp                    !! body force of the last step [m/s^2]
+      real(wp) :: pull_before(3) = 0.0_wp
+      real(wp) :: skin = 0.0_wp                       !! parts nearer than this are pairs [m]
+      real(wp) :: reach = 0.0_wp                      !! a body that has moved farther makes them stale [m]
+      real(wp) :: margin = 0.0_wp                     !! features nearer than this are points of a pair [m]
+      real(wp) :: far = 0.0_wp                        !! bodies that have moved farther apart find them anew [m]
+      real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
+      real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
+      real(wp) :: support_work = 0.0_wp               !! of them [J]
+      integer :: segment = 0                          !! of the ground motion
+      integer :: steps = 0
+      logical :: shaking = .false.                    !! false while settling: the ground rests
+      logical :: stale = .false.                      !! somebody moved far enough to look for contacts again
+   end type solid_model
+
+   type :: energy_terms
+      real(wp) :: kinetic = 0.0_wp        !! [J], at the time of the forces
+      real(wp) :: leapfrog = 0.0_wp       !! [J], the conserved form
+      real(wp) :: potential = 0.0_wp      !! of gravity, 0 at rest [J]
+      real(wp) :: elastic = 0.0_wp        !! in the springs [J]
+      real(wp) :: friction = 0.0_wp       !! lost by sliding [J]
+      real(wp) :: damping = 0.0_wp        !! lost in dashpots [J]
+      real(wp) :: work = 0.0_wp           !! done by the ground and the supports [J]
+   end type energy_terms
+
+contains
+
+   !> Pairs of parts of different bodies whose boxes come nearer than the skin, by their numbers; contacts go on
+   subroutine search(model, status)
+      type(solid_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      type(contact_pair), allocatable :: found(:)
+      real(wp), allocatable :: low(:, :), high(:, :)
+      integer, allocatable :: order(:)
+      integer :: i, j, k, n, count, failed, room, axis, old
+
+      do k = 1, size(model%set%parts)
+         call place(model%set, k)
+      end do
+      n = size(model%set%parts)
+      allocate (low(3, n), high(3, n), order(n), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      do i = 1, n
+         associate (one => model%set%parts(i))
+            low(:, i) = minval(model%set%here(:, one%vertex_first:one%vertex_last), dim=2)
+            high(:, i) = maxval(model%set%here(:, one%vertex_first:one%vertex_last), dim=2)
+         end associate
+      end do
+      axis = maxloc(maxval(high, dim=2) - minval(low, dim=2), dim=1)
+      call sorted(low(axis, :), order)
+      do room = 1, 2   ! count, then fill
+         count = 0
+         do k = 1, n
+            i = order(k)
+            do j = k + 1, n
+               if (low(axis, order(j)) > high(axis, i) + model%skin) exit
+               associate (other => order(j))
+                  if (model%set%parts(i)%owner == model%set%parts(other)%owner) cycle
+                  if (model%set%item(model%set%parts(i)%owner)%fixed &
+                     .and. model%set%item(model%set%parts(other)%owner)%fixed) cycle
+                  if (any(low(:, i) > high(:, other) + model%skin)) cycle
+                  if (any(low(:, other) > high(:, i) + model%skin)) cycle
+                  count = count + 1
+                  if (room == 2) found(count)%part = [min(i, other), max(i, other)]
+               end associate
+            end do
+         end do
+         if (room == 2) exit
+         allocate (found(count), stat=failed)
+         status = merge(status_ok, status_out_of_memory, failed == 0)
+         if (failed /= 0) return
+      end do
+      call by_number(found)
+      old = 1
+      do k = 1, count
+         do while (old <= model%pairs)
+            if (.not. before(model%pair(old)%part, found(k)%part)) exit
+            call forget(model, old)
+            old = old + 1
+         end do
+         if (old <= model%pairs) then
+            if (all(model%pair(old)%part == found(k)%part)) then
+               found(k) = model%pair(old)
+               old = old + 1
+               cycle
+            end if
+         end if
+         found(k)%law = law_between(model, model%set%parts(found(k)%part(1))%owner, &
+            model%set%parts(found(k)%part(2))%owner)
+      end do
+      do old = old, model%pairs
+         call forget(model, old)
+      end do
+      call move_alloc(found, model%pair)
+      model%pairs = count
+      do k = 1, size(model%set%item)
+         model%set%item(k)%seen = model%set%item(k)%x
+         model%set%item(k)%seen_turn = model%set%item(k)%turn
+      end do
+      model%stale = .false.
+      call colour(model, status)
+   end subroutine search
+
+   !> A pair goes: what it lost is kept
+   subroutine forget(model, number)
+      type(solid_model), intent(inout) :: model
+      integer, intent(in) :: number
+      associate (pair => model%pair(number))
+         call drop_points(model%law(pair%law), pair)
+         model%lost = model%lost + [pair%friction_loss, pair%damping_loss]
+         model%support_work = model%support_work + pair%support_work
+      end associate
+   end subroutine forget
+
+   !> How near is near, from the size of the smallest part
+   subroutine set_distances(model)
+      type(solid_model), intent(inout) :: model
+      model%wander = 0.001_wp * model%set%size
+      model%far = 0.001_wp * model%set%size
+      model%margin = 0.01_wp * model%set%size     ! more than far and twice wander
+      model%reach = 0.02_wp * model%set%size
+      model%skin = 0.08_wp * model%set%size       ! more than the margin, twice reach and twice wander
+   end subroutine set_distances
+
+   !> Colours of the pairs: two of one colour have no mobile body in common, so that they may act at once
+   subroutine colour(model, status)
+      type(solid_model), intent(inout) :: model
+      integer(c_int), intent(out) :: status
+      integer, parameter :: most = 62
+      integer(c_int64_t) :: used(size(model%set%item)), bits
+      integer, allocatable :: of(:)
+      integer :: count(most + 1), k, c, side, who, failed
+      if (allocated(model%sweep)) deallocate (model%sweep)
+      if (allocated(model%colour_first)) deallocate (model%colour_first)
+      allocate (model%sweep(model%pairs), of(model%pairs), model%colour_first(most + 2), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      used = 0
+      count = 0
+      do k = 1, model%pairs
+         bits = 0
+         do side = 1, 2
+            who = model%set%parts(model%pair(k)%part(side))%owner
+            if (.not. model%set%item(who)%fixed) bits = ior(bits, used(who))
+         end do
+         c = 0
+         do while (c < most .and. btest(bits, c))
+            c = c + 1
+         end do
+         of(k) = c + 1
+         count(c + 1) = count(c + 1) + 1
+         if (c == most) cycle
+         do side = 1, 2
+            who = model%set%parts(model%pair(k)%part(side))%owner
+            used(who) = ibset(used(who), c)
+         end do
+      end do
+      model%colour_first(1) = 1
+      model%colours = 0
+      do c = 1, most + 1
+         model%colour_first(c + 1) = model%colour_first(c) + count(c)
+         if (c <= most .and. count(c) > 0) model%colours = c
+      end do
+      count = model%colour_first(1:most + 1)
+      do k = 1, model%pairs
+         model%sweep(count(of(k))) = k
+         count(of(k)) = count(of(k)) + 1
+      end do
+   end subroutine colour
+
+   !> The law of a pair of bodies
+   pure function law_between(model, one, two) result(law)
+      type(solid_model), intent(in) :: model
+      integer, intent(in) :: one
+      integer, intent(in) :: two
+      integer :: law
+      integer :: low, high, middle, wanted(2)
+      law = 1
+      if (.not. allocated(model%law_of)) return
+      wanted = [min(one, two), max(one, two)]
+      low = 1
+      high = size(model%law_of, 2)
+      do while (low <= high)
+         middle = (low + high) / 2
+         if (all(model%law_of(1:2, middle) == wanted)) then
+            law = model%law_of(3, middle)
+            return
+         end if
+         if (before(model%law_of(1:2, middle), wanted)) then
+            low = middle + 1
+         else
+            high = middle - 1
+         end if
+      end do
+   end function law_between
+
+   !> Whether a pair of numbers comes before another
+   pure function before(one, two) result(earlier)
+      integer, intent(in) :: one(2)
+      integer, intent(in) :: two(2)
+      logical :: earlier
+      earlier = one(1) < two(1) .or. (one(1) == two(1) .and. one(2) < two(2))
+   end function before
+
+   !> Order of values, by merging
+   pure subroutine sorted(value, order)
+      real(wp), intent(in) :: value(:)
+      integer, intent(out) :: order(:)
+      integer :: work(size(value)), width, n, i, a, b, k, last_a, last_b
+      n = size(value)
+      order = [(i, i = 1, n)]
+      width = 1
+      do while (width < n)
+         do i = 1, n, 2 * width
+            a = i
+            last_a = min(i + width - 1, n)
+            b = last_a + 1
+            last_b = min(i + 2 * width - 1, n)
+            do k = i, last_b
+               if (b > last_b) then
+                  work(k) = order(a)
+                  a = a + 1
+               else if (a > last_a) then
+                  work(k) = order(b)
+                  b = b + 1
+               else if (value(order(a)) <= value(order(b))) then
+                  work(k) = order(a)
+                  a = a + 1
+               else
+                  work(k) = order(b)
+                  b = b + 1
+               end if
+            end do
+         end do
+         order = work
+         width = 2 * width
+      end do
+   end subroutine sorted
+
+   !> Pairs by their numbers
+   pure subroutine by_number(found)
+      type(contact_pair), intent(inout) :: found(:)
+      real(wp) :: value(size(found))
+      integer :: order(size(found)), parts(2, size(found)), k
+      do k = 1, size(found)
+         parts(:, k) = found(k)%part
+         value(k) = real(found(k)%part(1), wp) * 1.0e7_wp + found(k)%part(2)
+      end do
+      call sorted(value, order)
+      do k = 1, size(found)
+         found(k)%part = parts(:, order(k))
+      end do
+   end subroutine by_number
+
+   !> Up to `count` steps; returns early where near pairs must be searched again
+   subroutine advance(model, count, threads)
+      type(solid_model), intent(inout) :: model
+      integer, intent(in) :: count
+      integer, intent(in) :: threads
+      integer :: n, k, c
+
+      if (threads > 1) then
+         call advance_threads(model, count, threads)
+         return
+      end if
+      do n = 1, count
+         call prepare(model)
+         do k = 1, size(model%set%item)
+            call predict(model, model%set%item(k))
+         end do
+         do c = 1, model%pairs
+            call touch(model, model%pair(model%sweep(c)))
+         end do
+         do k = 1, size(model%set%item)
+            call move(model, model%set%item(k), model%stale)
+         end do
+         call finish(model)
+         if (model%stale) return
+      end do
+   end subroutine advance
+
+   !> The same steps shared among threads: pairs of one colour touch no common mobile body
+   subroutine advance_threads(model, count, threads)
+      type(solid_model), intent(inout) :: model
+      integer, intent(in) :: count
+      integer, intent(in) :: threads
+      integer :: n, k, c
+      logical :: stale
+
+      stale = .false.
+      !$omp parallel default(none) num_threads(threads) shared(model, count, stale) private(n, k, c)
+      do n = 1, count
+         !$omp single
+         call prepare(model)
+         stale = .false.
+         !$omp end single
+         !$omp do schedule(static)
+         do k = 1, size(model%set%item)
+            call predict(model, model%set%item(k))
+         end do
+         !$omp end do
+         do c = 1, model%colours
+            !$omp do schedule(static)
+            do k = model%colour_first(c), model%colour_first(c + 1) - 1
+               call touch(model, model%pair(model%sweep(k)))
+            end do
+            !$omp end do
+         end do
+         !$omp single
+         do k = model%colour_first(model%colours + 1), model%pairs
+            call touch(model, model%pair(model%sweep(k)))
+         end do
+         !$omp end single
+         !$omp do schedule(static) reduction(.or. : stale)
+         do k = 1, size(model%set%item)
+            call move(model, model%set%item(k), stale)
+         end do
+         !$omp end do
+         !$omp single
+         model%stale = stale
+         call finish(model)
+         !$omp end single
+         if (model%stale) exit
+      end do
+      !$omp end parallel
+   end subroutine advance_threads
+
+   !> Geometry, where it must be looked at anew, and law of one pair
+   pure subroutine touch(model, pair)
+      type(solid_model), intent(inout) :: model
+      type(contact_pair), intent(inout) :: pair
+      associate (a => model%set%item(model%set%parts(pair%part(1))%owner), &
+                 b => model%set%item(model%set%parts(pair%part(2))%owner))
+         if (pair%marks(1) /= a%marks .or. pair%marks(2) /= b%marks) then
+            call find_points(model%set, model%far, model%margin, pair)
+         end if
+         if (pair%points > 0) call act(model%law(pair%law), model%kick, model%drift, a, b, pair)
+      end associate
+   end subroutine touch
+
+   !> Body force and velocity of the ground in this step
+   subroutine prepare(model)
+      type(solid_model), intent(inout) :: model
+      real(wp) :: ground(2), half
+      ! At the very start half a velocity step leads from the initial velocity to the half step.
+      half = 0.5_wp * model%step
+      model%kick = 0.5_wp * model%drift + half
+      model%pull_before = model%pull
+      model%pull = model%gravity
+      if (.not. model%shaking) return
+      call mean_acceleration(model%load%ground, model%segment, model%t - 0.5_wp * model%drift, model%t + half, ground)
+      model%pull = model%pull - ground(1) * model%way - [0.0_wp, 0.0_wp, ground(2)]
+   end subroutine prepare
+
+   !> Velocity that follows from the forces of the last step; clears the forces
+   pure subroutine predict(model, b)
+      type(solid_model), intent(in) :: model
+      type(body), intent(inout) :: b
+      if (b%fixed) return
+      b%spin = spin_of(b, b%swing)
+      b%p = b%v + model%kick * (b%force * b%inverse_mass + model%pull)
+      b%pspin = spin_of(b, b%swing + model%kick * b%moment)
+      ! Work of the ground's part of the body force; gravity has a potential.
+      b%work = b%work + 0.5_wp * model%drift * b%mass &
+         * dot_product(model%pull + model%pull_before - 2.0_wp * model%gravity, b%v)
+      b%force = 0.0_wp
+      b%moment = 0.0_wp
+      b%touched = .false.
+   end subroutine predict
+
+   !> Velocity and place after the step
+   pure subroutine move(model, b, stale)
+      type(solid_model), intent(in) :: model
+      type(body), intent(inout) :: b
+      logical, intent(inout) :: stale
+      if (b%fixed) return
+      b%v = b%v + model%kick * (b%force * b%inverse_mass + model%pull)
+      b%swing = b%swing + model%kick * b%moment
+      b%x = b%x + model%step * b%v
+      call turn_freely(b, model%step)
+      if (.not. b%touched) then
+         b%airborne = b%airborne + model%step
+         if (b%touching) b%bounces = b%bounces + 1
+      end if
+      b%touching = b%touched
+      if (norm2(b%x - b%marked) + b%radius * norm2(b%turn - b%marked_turn) < model%wander) return
+      b%marks = b%marks + 1
+      b%marked = b%x
+      b%marked_turn = b%turn
+      if (norm2(b%x - b%seen) + b%radius * norm2(b%turn - b%seen_turn) > model%reach) stale = .true.
+   end subroutine move
+
+   subroutine finish(model)
+      type(solid_model), intent(inout) :: model
+      model%drift = model%step
+      model%t = model%t + model%step
+      model%steps = model%steps + 1
+   end subroutine finish
+
+   !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 above the greatest eigenvalue of
+   !> any body on its springs, twice as stiff where the neighbour moves too [s]
+   subroutine critical_step(model, step, status)
+      type(solid_model), intent(inout) :: model
+      real(wp), intent(out) :: step          !! [s]
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: stiffness(:, :, :)
+      real(wp) :: greatest, share, normal(3), gap, at(3), area
+      integer :: k, i, side, who, failed
+      step = 0.0_wp
+      allocate (stiffness(6, 6, size(model%set%item)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      stiffness = 0.0_wp
+      do k = 1, model%pairs
+         associate (pair => model%pair(k), parts => model%set%parts)
+            call find_points(model%set, model%far, model%margin, pair)
+            share = merge(1.0_wp, 2.0_wp, model%set%item(parts(pair%part(1))%owner)%fixed &
+               .or. model%set%item(parts(pair%part(2))%owner)%fixed)
+            do i = 1, pair%points
+               call measure(pair%point(i)%what, model%set%item(parts(pair%part(1))%owner), &
+                  model%set%item(parts(pair%part(2))%owner), normal, gap, at)
+               do side = 1, 2
+                  who = parts(pair%part(side))%owner
+                  call stiffen(model%law(pair%law), share * pair%point(i)%what%area, normal, at, model%set%item(who), &
+                     stiffness(:, :, who))
+               end do
+            end do
+         end associate
+      end do
+      do k = 1, size(model%set%parts)   ! what touches nothing yet will land, on its largest face at the worst
+         who = model%set%parts(k)%owner
+         associate (b => model%set%item(who), one => model%set%parts(k))
+            if (b%fixed .or. any(abs(stiffness(:, :, who)) > 0.0_wp)) cycle
+            area = maxval(model%set%area(one%face_first:one%face_last))
+            call stiffen(model%law(1), 2.0_wp * area, [0.0_wp, 0.0_wp, 1.0_wp], b%x + b%radius * b%turn(:, 1), b, &
+               stiffness(:, :, who))
+         end associate
+      end do
+      greatest = 0.0_wp
+      do k = 1, size(model%set%item)
+         if (.not. model%set%item(k)%fixed) greatest = max(greatest, above_eigenvalues(stiffness(:, :, k)))
+      end do
+      step = 2.0_wp / sqrt(max(greatest, tiny(1.0_wp)))
+   end subroutine critical_step
+
+   !> Add the springs at a point to the 6 x 6 stiffness of a body, scaled by its masses, in its own axes
+   pure subroutine stiffen(law, area, normal, at, b, stiffness)
+      type(joint_law), intent(in) :: law
+      real(wp), intent(in) :: area           !! [m^2]
+      real(wp), intent(in) :: normal(3)
+      real(wp), intent(in) :: at(3)          !! [m]
+      type(body), intent(in) :: b
+      real(wp), intent(inout) :: stiffness(6, 6)
+      real(wp) :: velocity(3, 6), along(6), arm(3), unit(3)
+      integer :: k, i, j
+      if (b%fixed) return
+      arm = matmul(at - b%x, b%turn)
+      along(1:3) = matmul(normal, b%turn)
+      do k = 1, 3
+         unit = 0.0_wp
+         unit(k) = 1.0_wp
+         velocity(:, k) = unit * sqrt(b%inverse_mass)
+         velocity(:, k + 3) = cross(unit, arm) / sqrt(b%inertia(k))
+      end do
+      along = matmul(along(1:3), velocity)
+      do j = 1, 6
+         do i = 1, 6
+            stiffness(i, j) = stiffness(i, j) &
+               + area * (law%shear_stiffness * dot_product(velocity(:, i), velocity(:, j)) &
+               + (law%normal_stiffness - law%shear_stiffness) * along(i) * along(j))
+         end do
+      end do
+   end subroutine stiffen
+
+   !> A bound of the eigenvalues of a symmetric matrix, at most 6 % above the greatest: the 32nd root of the sum of
+   !> their 32nd powers
+   pure function above_eigenvalues(matrix) result(bound)
+      real(wp), intent(in) :: matrix(6, 6)
+      real(wp) :: bound
+      real(wp) :: power(6, 6), size, scale
+      integer :: k
+      bound = 0.0_wp
+      size = maxval(abs(matrix))
+      if (.not. size > 0.0_wp) return
+      power = matrix / size
+      scale = 0.0_wp                         ! logarithm of what was taken out
+      do k = 1, 4
+         power = matmul(power, power)
+         bound = maxval(abs(power))
+         power = power / bound
+         scale = 2.0_wp * scale + log(bound)
+      end do
+      ! |A^16| = root of the sum of the 32nd powers.
+      bound = size * exp((scale + log(norm2(power))) / 16.0_wp)
+   end function above_eigenvalues
+
+   !> Energy that came from nowhere since the start [J]
+   pure function energy_residual(energy, start) result(r)
+      type(energy_terms), intent(in) :: energy
+      type(energy_terms), intent(in) :: start
+      real(wp) :: r
+      r = (energy%leapfrog - start%leapfrog) + (energy%potential - start%potential) + (energy%elastic - start%elastic) &
+         + (energy%friction - start%friction) + (energy%damping - start%damping) - (energy%work - start%work)
+   end function energy_residual
+
+   !> Ledger at the time of the last forces: leap-frog keeps m v(n-1/2) v(n+1/2) / 2 plus the energy of linear springs
+   pure function energy_now(model) result(now)
+      type(solid_model), intent(in) :: model
+      type(energy_terms) :: now
+      real(wp) :: v(3), swing(3), span
+      type(body) :: b
+      integer :: k
+      span = max(model%kick, model%step)
+      do k = 1, size(model%set%item)
+         if (model%set%item(k)%fixed) cycle
+         b = model%set%item(k)
+         v = b%v - span * (b%force * b%inverse_mass + model%pull)
+         swing = b%swing - span * b%moment
+         ! The attitude of the forces: a free turn back.
+         call turn_freely(b, -model%drift)
+         now%leapfrog = now%leapfrog + 0.5_wp * (b%mass * dot_product(b%v, v) + dot_product(b%swing, spin_of(b, swing)))
+         now%kinetic = now%kinetic + 0.125_wp * (b%mass * dot_product(b%v + v, b%v + v) &
+            + dot_product(b%swing + swing, spin_of(b, b%swing + swing)))
+         now%potential = now%potential - b%mass * dot_product(model%gravity, b%x - model%drift * b%v - b%rest)
+         now%work = now%work + b%work
+      end do
+      now%friction = model%lost(1)
+      now%damping = model%lost(2)
+      now%work = now%work + model%support_work
+      do k = 1, model%pairs
+         associate (pair => model%pair(k))
+            now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
+            now%friction = now%friction + pair%friction_loss
+            now%damping = now%damping + pair%damping_loss
+            now%work = now%work + pair%support_work
+         end associate
+      end do
+   end function energy_now
+
+end module dem3_model

@@ -1,0 +1,110 @@
+"""What is read off a run of blocks in space: turns, openings and slip of contacts, the outcome, pictures."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from extrados.analyses.dem.measures import MOST_TRACKED, OPEN
+from extrados.analyses.dem.solid_model import SolidModel
+from extrados.building.geometry.solids.contacts import GROUND
+from extrados.core import dem3
+from extrados.results.dem import APART, CLOSED, ROCKS
+
+
+@dataclass(frozen=True)
+class SolidsSeen:
+    """What is read off a run.
+
+    turn (time, block, 3): rotation vectors from the settled attitude [rad]; opening (time, contact): of the corner that
+    gapes most [m]; slip (time, contact): along the contact at its most closed corner [m]; state (time, contact): CLOSED,
+    ROCKS where some corner is open, APART where all are; far (time): the farthest displacement of any block [m]; ground
+    (time): its acceleration along the direction [m/s^2].
+    """
+
+    turn: np.ndarray
+    opening: np.ndarray
+    slip: np.ndarray
+    state: np.ndarray
+    far: np.ndarray
+    tracked: list[int]
+    ground: np.ndarray
+
+    @property
+    def angle(self) -> np.ndarray:
+        """How far each block has turned (time, block) [rad]."""
+        return np.linalg.norm(self.turn, axis=2)
+
+    @property
+    def sliding(self) -> float:
+        """Greatest slip of contacts that still touch [m]."""
+        return float(np.where(self.state == APART, 0.0, self.slip).max(initial=0.0))
+
+
+def look(model: SolidModel, run: dem3.Run, names: list[str], ground: np.ndarray) -> SolidsSeen:
+    """Everything that is read off a run; `names` of the blocks to be followed, none: those that turn most."""
+    turn = turns(model, run)
+    opening, slip, state = contacts(model, run)
+    angle = np.linalg.norm(turn, axis=2).max(axis=0, initial=0.0)
+    index = {name: k for k, name in enumerate(model.assembly.block_names)}
+    most = np.argsort(-angle, kind="stable")[:MOST_TRACKED]
+    tracked = [index[name] for name in names] if names else sorted(most.tolist())
+    return SolidsSeen(turn, opening, slip, state, displacements(model, run).max(axis=1, initial=0.0), tracked, ground)
+
+
+def turns(model: SolidModel, run: dem3.Run) -> np.ndarray:
+    """Rotation vectors (time, block, 3) [rad] of the blocks from their settled attitudes."""
+    there = run.turn[:, : model.count] @ np.swapaxes(run.settled_turn[: model.count], 1, 2)
+    return Rotation.from_matrix(there.reshape(-1, 3, 3)).as_rotvec().reshape(len(run.time), model.count, 3)
+
+
+def displacements(model: SolidModel, run: dem3.Run) -> np.ndarray:
+    """How far the centroid of each block is from its settled place (time, block) [m]."""
+    return np.linalg.norm(run.place[:, : model.count] - run.settled[: model.count], axis=2)
+
+
+def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Opening, slip (time, contact) [m] and state of the contacts, from the settled state."""
+    one = model.assembly
+    shape = (len(run.time), len(one.a))
+    opening, slip, state = np.zeros(shape), np.zeros(shape), np.full(shape, CLOSED)
+    for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
+        corners = one.polygon[j]
+        moved, normal = _carried(run, a, corners, one.normal[j])
+        if b == GROUND:
+            other, back = np.broadcast_to(corners, moved.shape), np.broadcast_to(one.normal[j], normal.shape)
+        else:
+            other, back = _carried(run, b, corners, one.normal[j])
+        mean = normal + back
+        mean /= np.linalg.norm(mean, axis=1)[:, None]
+        apart = moved - other
+        gap = np.einsum("tkx,tx->tk", apart, mean)
+        along = np.linalg.norm(apart - gap[..., None] * mean[:, None], axis=2)
+        nearest = gap.argmin(axis=1)
+        opening[:, j] = np.maximum(gap.max(axis=1, initial=0.0), 0.0)
+        slip[:, j] = along[np.arange(len(along)), nearest]
+        small, width = OPEN * np.sqrt(one.area[j]), np.sqrt(one.area[j])
+        gone = (gap > small).all(axis=1) | (slip[:, j] > 0.5 * width)
+        state[:, j] = np.where(gone, APART, np.where((gap > small).any(axis=1), ROCKS, CLOSED))
+    return opening, slip, state
+
+
+def _carried(run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body from its settled state."""
+    turn = run.turn[:, body] @ run.settled_turn[body].T
+    arm = points - run.settled[body]
+    return run.place[:, None, body] + np.einsum("txy,ky->tkx", turn, arm), turn @ normal
+
+
+def outcome(run: dem3.Run, state: np.ndarray, farthest: float, limit: float) -> str:
+    """no-hinging, recovery or collapse: a block moved farther than the limit [m] at some time."""
+    if run.reason in ("collapse", "left") or farthest > limit:
+        return "collapse"
+    return "recovery" if (state != CLOSED).any() else "no-hinging"
+
+
+def poses(model: SolidModel, run: dem3.Run) -> np.ndarray:
+    """Shifts [m] and rotation vectors [rad] of the blocks (time, block, 6) from where they were drawn."""
+    vectors = Rotation.from_matrix(run.turn[:, : model.count].reshape(-1, 3, 3)).as_rotvec()
+    shift = run.place[:, : model.count] - model.assembly.centroid
+    return np.concatenate([shift, vectors.reshape(*shift.shape)], axis=2)

@@ -1,0 +1,205 @@
+"""A deck's blocks in space as a model of discrete elements: bodies, supports, joint types, damping, settlement."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.dem import impact_rules
+from extrados.analyses.dem.tables import Dem
+from extrados.building.building import Building
+from extrados.building.errors import Key
+from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.building.geometry.solids.contacts import GROUND
+from extrados.building.geometry.solids.supports import Supports, supports_of
+from extrados.core import dem3
+
+FACING = -0.3  # cosine between faces of a stone that look away from each other
+
+
+@dataclass(frozen=True)
+class SolidValues:
+    """Properties of all contacts of an assembly (nj), SI, the damping constant beta [s] and the frequencies of impact."""
+
+    stiffness: np.ndarray
+    shear_stiffness: np.ndarray
+    friction: np.ndarray
+    beta: float
+    impact: impact_rules.Impact
+
+    def ratios(self) -> dict[str, float]:
+        """Least fraction of critical damping over the contacts at each frequency of impact."""
+        return {
+            name: float(impact_rules.damping_ratio(self.beta, self.impact.of(name)).min())
+            for name in ("rotation", "corner", "edge")
+        }
+
+
+@dataclass(frozen=True)
+class SolidModel:
+    """Blocks in space with what they stand on. Bodies 0..count-1 are the blocks, the rest supports."""
+
+    assembly: SolidAssembly
+    supports: Supports
+    values: SolidValues
+
+    @property
+    def count(self) -> int:
+        """Mobile bodies."""
+        return len(self.assembly.mass)
+
+    @property
+    def size(self) -> float:
+        """Greatest extent of the structure [m]."""
+        return self.assembly.size
+
+    @property
+    def body_names(self) -> list[str]:
+        """Names of the mobile bodies, then of the supports."""
+        return [*self.assembly.block_names, *(f"support {k + 1}" for k in range(len(self.supports.bodies)))]
+
+    def bodies(self) -> dem3.Solids:
+        """Bodies and laws for the core; contacts that form later take the median of the joints."""
+        one, v = self.assembly, self.values
+        below = self.supports.bodies
+        parts = [*one.parts, *below]
+        laws = [
+            _law(float(np.median(v.stiffness)), float(np.median(v.shear_stiffness)), float(np.median(v.friction)), v)
+        ]
+        numbers: dict[dem3.Law, int] = {}
+        joints: dict[tuple[int, int], int] = {}
+        weight: dict[tuple[int, int], list[int]] = {}
+        for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
+            other = self.count + int(self.supports.of_joint[j]) if b == GROUND else b
+            weight.setdefault((min(a, other), max(a, other)), []).append(j)
+        for pair, shared in weight.items():
+            area = one.area[shared]
+            law = _law(
+                *(float(np.average(x[shared], weights=area)) for x in (v.stiffness, v.shear_stiffness, v.friction)), v
+            )
+            if law not in numbers:
+                numbers[law] = len(laws)
+                laws.append(law)
+            joints[pair] = numbers[law]
+        middle = [p.vertices.mean(axis=0) for p in below]
+        count = len(below)
+        return dem3.Solids(
+            np.concatenate([one.centroid, np.reshape(middle, (-1, 3))]), np.concatenate([one.mass, np.zeros(count)]),
+            np.concatenate([one.inertia, np.tile(np.eye(3), (count, 1, 1))]), [p.vertices for p in parts],
+            [p.faces for p in parts], [*one.owner.tolist(), *range(self.count, self.count + count)], laws, joints,
+        )  # fmt: skip
+
+
+def _law(stiffness: float, shear: float, friction: float, values: SolidValues) -> dem3.Law:
+    return dem3.Law(*(float(f"{x:.12g}") for x in (stiffness, shear, friction)), values.beta)
+
+
+def make_solid_model(building: Building, options: Dem) -> SolidModel:
+    """The model of a building's blocks in space."""
+    assembly = building.solids()
+    return SolidModel(assembly, supports_of(assembly, options.floor), solid_values(building, assembly))
+
+
+def refusals(building: Building, options: Dem) -> list[tuple[str, Key]]:
+    """What discrete elements in space do not reckon with, and the key that asks for it."""
+    given, joints = options.model_fields_set, building.joints
+    asked: list[tuple[str, bool, Key]] = [
+        ('solver = "nonsmooth"', options.rigid, ("analysis", "solver")),
+        ("mass_damping", options.mass_damping > 0.0, ("analysis", "mass_damping")),
+        ('merge = "three-bars"', options.merge != "none", ("analysis", "merge")),
+        ('base = "moving"', options.base == "moving", ("analysis", "base")),
+        *((key, key in given, ("analysis", key)) for key in ("vary_damping", "vary_stiffness", "vary_friction")),
+        ("find_friction", options.find_friction, ("analysis", "find_friction")),
+        ("[[initial.movements]]", bool(building.initial.movements), ("initial", "movements")),
+        ("[initial] rotation_ratio", bool(building.initial.rotation_ratio), ("initial", "rotation_ratio")),
+        ("stiffness of supports", building.supports.stiffness is not None, ("supports", "stiffness")),
+        ("worn corners", joints.worn_corners > 0.0, ("joints", "worn_corners")),
+        ('stiffness_rule = "thesis", which is of a section', joints.stiffness_rule == "thesis", ("joints", "stiffness_rule")),
+        ('damping = "restitution"', joints.damping == "restitution" and joints.beta is None, ("joints", "damping")),
+    ]  # fmt: skip
+    return [(f"dem of solids does not reckon with {what}: leave it out", key) for what, there, key in asked if there]
+
+
+def refuse_stones(building: Building, assembly: SolidAssembly) -> None:
+    """Refused where the blocks have mortar, dowels or fill, which the elements in space do not know."""
+    for name in ("cohesion", "tension"):
+        if np.nanmax(building.joint_property(name, assembly), initial=0.0) > 0.0:
+            raise Refused(f"joints.{name}: dem of solids knows dry joints alone", ("joints", name))
+    if assembly.keys is not None:
+        raise Refused("dowels: dem of solids does not reckon with them; leave them out", ("structure", "dowels"))
+    if len(assembly.fill):
+        raise Refused(
+            "fill: dem of solids does not reckon with what rests on the stones; leave it out", ("structure", "fill")
+        )
+
+
+def solid_values(building: Building, assembly: SolidAssembly) -> SolidValues:
+    """Properties of all contacts by the rules and exceptions of [joints]."""
+    joints = building.joints
+    given = building.joint_property("normal_stiffness", assembly)
+    elastic = building.material.young / _lengths(assembly)
+    stiffness = np.where(np.isnan(given), elastic, given)
+    impact = _impact(assembly, stiffness)
+    beta = joints.beta
+    if beta is None:
+        beta = impact_rules.damping_constant(float(impact.of(joints.damping).max()), joints.damping_ratio)
+    shear = (
+        np.full_like(stiffness, joints.shear_stiffness) if joints.shear_stiffness else stiffness * joints.shear_ratio
+    )
+    return SolidValues(stiffness, shear, building.joint_property("friction", assembly), beta, impact)
+
+
+def _sides(assembly: SolidAssembly) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Blocks on both sides of the contacts, with the normals into them."""
+    return [(assembly.a, assembly.normal), (assembly.b, -assembly.normal)]
+
+
+def _lengths(assembly: SolidAssembly) -> np.ndarray:
+    """Length of stone that each contact stands for (nj) [m]: of each block half, or all of it where no contact faces it."""
+    total = np.zeros(len(assembly.a))
+    points: dict[int, np.ndarray] = {}
+    for k in range(len(assembly.mass)):
+        points[k] = np.concatenate([assembly.parts[p].vertices for p in np.flatnonzero(assembly.owner == k)])
+    of_block: dict[int, list[tuple[int, np.ndarray]]] = {}
+    for block, inward in _sides(assembly):
+        for j in np.flatnonzero(block != GROUND).tolist():
+            of_block.setdefault(int(block[j]), []).append((j, inward[j]))
+    for block, faces in of_block.items():
+        normals = np.array([n for _, n in faces])
+        for j, inward in faces:
+            total[j] += float(np.ptp(points[block] @ inward)) * (0.5 if (normals @ inward < FACING).any() else 1.0)
+    return total
+
+
+def _impact(assembly: SolidAssembly, stiffness: np.ndarray) -> impact_rules.Impact:
+    """Frequencies of impact at all contacts, as if each were a rectangle of its area and of its extents along its principal
+    axes: of a section drawn out those of the plane. The rotation is that about the side for which it is fastest."""
+    first, second = _principal(assembly)
+    mobility = np.zeros(len(stiffness))
+    turning = np.zeros((2, len(stiffness)))
+    extent = np.zeros((2, len(stiffness)))
+    for j, polygon in enumerate(assembly.polygon):
+        for k, (along, across) in enumerate(((first[j], second[j]), (second[j], first[j]))):
+            reach = polygon @ along
+            extent[k, j] = np.ptp(reach)
+            ends = [polygon[reach.argmin()], polygon[reach.argmax()]]
+            for block in (assembly.a[j], assembly.b[j]):
+                if block == GROUND:
+                    continue
+                arms = [np.linalg.norm(np.cross(assembly.centroid[block] - end, across)) ** 2 for end in ends]
+                about = across @ assembly.inertia[block] @ across
+                turning[k, j] += 1.0 / (about + assembly.mass[block] * min(arms))
+                if k == 0:
+                    mobility[j] += 1.0 / assembly.mass[block]
+    spring = 0.5 * stiffness * assembly.area
+    rotation = np.sqrt((spring * extent**2 * turning).max(axis=0))
+    return impact_rules.Impact(np.sqrt(spring * mobility), np.sqrt(2.0 * spring * mobility), rotation)
+
+
+def _principal(assembly: SolidAssembly) -> tuple[np.ndarray, np.ndarray]:
+    """Unit vectors (nj, 3) along the greatest and the least extent of each contact's corners."""
+    first = np.empty_like(assembly.normal)
+    for j, polygon in enumerate(assembly.polygon):
+        arm = polygon - polygon.mean(axis=0)
+        first[j] = np.linalg.eigh(arm.T @ arm)[1][:, -1]
+    return first, np.cross(assembly.normal, first)

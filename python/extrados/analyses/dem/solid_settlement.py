@@ -1,0 +1,47 @@
+"""How far blocks in space that stand settle under their own weight: what their contacts give, and no more."""
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.linalg import splu
+
+from extrados.analyses.dem.settlement import FARTHEST, TIMES
+from extrados.analyses.dem.solid_model import SolidModel
+from extrados.building.geometry.solids.contacts import GROUND
+from extrados.schema.constants import GRAVITY
+
+
+def corner_areas(polygon: np.ndarray) -> np.ndarray:
+    """What of a polygon (k, 3) each corner carries (k) [m^2]: that which lies nearer to it, seen from its middle."""
+    arm = polygon - polygon.mean(axis=0)
+    piece = 0.25 * np.linalg.norm(np.cross(arm, np.roll(arm, -1, axis=0)), axis=1)
+    return piece + np.roll(piece, 1)
+
+
+def farthest_settlement(model: SolidModel) -> float:
+    """The displacement of a block beyond which it falls instead of settling [m]: a multiple of that under the own weight
+    with all contacts held closed, as in the plane (`settlement.py`)."""
+    one, v = model.assembly, model.values
+    joint, corner = one.corner_joint, one.corner
+    area = np.concatenate([corner_areas(p) for p in one.polygon])
+    blocks, rows, spring = model.count, [], []
+    frames = (one.normal, *one.tangents)
+    for axes, stiffness in zip(frames, (v.stiffness, v.shear_stiffness, v.shear_stiffness), strict=True):
+        matrix = sparse.csr_array((len(joint), 6 * blocks))
+        for block, sense in ((one.a[joint], 1.0), (one.b[joint], -1.0)):
+            on = np.flatnonzero(block != GROUND)
+            arm = corner[on] - one.centroid[block[on]]
+            values = sense * np.concatenate([axes[joint[on]], np.cross(arm, axes[joint[on]])], axis=1)
+            where = (np.repeat(on, 6), (6 * block[on][:, None] + np.arange(6)).ravel())
+            matrix = matrix + sparse.csr_array((values.ravel(), where), shape=matrix.shape)
+        rows.append(matrix)
+        spring.append(area * stiffness[joint])
+    apart, stiff = sparse.vstack(rows, format="csr"), np.concatenate(spring)
+    weight = np.zeros((blocks, 6))
+    weight[:, 2] = -GRAVITY * one.mass
+    most = FARTHEST * model.size
+    try:
+        moved = splu((apart.T @ sparse.diags_array(stiff) @ apart).tocsc()).solve(weight.ravel()).reshape(blocks, 6)
+    except RuntimeError:  # exactly singular
+        return most
+    far = float(np.linalg.norm(moved[:, :3], axis=1).max())
+    return min(TIMES * far, most) if np.isfinite(far) else most

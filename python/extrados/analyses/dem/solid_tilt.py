@@ -1,0 +1,78 @@
+"""dem of blocks in space as a tilt test: the constant acceleration along a direction that brings them down, and back."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from extrados.analyses.context import Context
+from extrados.analyses.dem import measures, solid_measures
+from extrados.analyses.dem import model as dem_model
+from extrados.analyses.dem.runs import SolidRuns, SolidTask
+from extrados.analyses.dem.solid_model import SolidModel
+from extrados.analyses.dem.solid_motion import core_options, run_arrays
+from extrados.analyses.dem.tables import Dem
+from extrados.analyses.dem.tilt import RAMP, capacities, pushed, unused
+from extrados.analyses.dem.words import solid_tilt_answer
+from extrados.core import dem3
+from extrados.results import dem as out
+from extrados.results.model import Array, Result
+
+
+def run(context: Context, options: Dem, model: SolidModel) -> Result:
+    """Brought in slowly, held, bisected, in both senses."""
+    if without := unused(context, options):
+        context.warnings.append(f"plays no part in a tilt test: {', '.join(without)}")
+    base = replace(
+        core_options(context, options, model), end_time=RAMP + dem_model.settle_time(model), stop_at_rest=False,
+        output_step=0.05, collapse=options.collapse_displacement or 0.05 * model.size,
+    )  # fmt: skip
+    bodies = model.bodies()
+    (collapse, last), (back, back_run) = capacities(
+        context, options, lambda asked: SolidRuns(bodies, [SolidTask(base, pushed(a, base.end_time)) for a in asked]),
+        lambda run: dem_model.checked(run, model),
+    )  # fmt: skip
+    r = out.SolidDemTilt(
+        test="tilt",
+        outcome="collapse",
+        collapse_acceleration_g=collapse,
+        collapse_acceleration_opposite_g=back,
+        tilt_angle_deg=float(np.degrees(np.arctan(collapse))),
+        tilt_angle_opposite_deg=float(np.degrees(np.arctan(back))),
+        load_direction_deg=options.direction or 0.0,
+        blocks=model.count,
+        contacts=len(model.assembly.a),
+        opening_contacts=_openings(model, last),
+        opening_contacts_opposite=_openings(model, back_run),
+        energy_residual_ratio=max(last.residual, back_run.residual),
+        time_step_s=last.step,
+        steps=last.steps,
+        solver="compliant",
+        beta_s=model.values.beta,
+    )
+    result = Result("dem")
+    result.results = r
+    opening, slip, state = solid_measures.contacts(model, last)
+    result.arrays = {
+        **run_arrays(model, last, last.time[[_begun(model, last), -1]]),
+        "state": Array(state.astype(np.int8), ("time", "contact"), "", "0 closed, 1 open at some corners, 2 apart"),
+        "opening": Array(opening, ("time", "contact"), "m", "gap at the corner of each contact that gapes most"),
+        "slip": Array(slip, ("time", "contact"), "m", "slip at its most closed corner"),
+    }
+    result.answer = solid_tilt_answer(r)
+    return result
+
+
+def _begun(model: SolidModel, run: dem3.Run) -> int:
+    """The output where it begins to go."""
+    far = solid_measures.displacements(model, run).max(axis=1)
+    return min(int(np.searchsorted(far, 0.005 * model.size)), len(run.time) - 1)
+
+
+def _openings(model: SolidModel, run: dem3.Run) -> list[str]:
+    """Names of the contacts that gape or slide as it begins to go, the widest first."""
+    at = _begun(model, run)
+    opening, slip, _ = solid_measures.contacts(model, run)
+    width = np.sqrt(model.assembly.area)
+    amiss = np.maximum(opening[at] / (measures.OPEN * width), slip[at] / (measures.SLIDES * width))
+    order = np.argsort(-amiss, kind="stable")
+    return [model.assembly.joint_names[j] for j in order[amiss[order] > 1.0][:20].tolist()]

@@ -1,0 +1,37 @@
+"""What the push of a building needs of a deck: walls and feet that it names, and of its piers' formulas a strength."""
+
+from collections.abc import Iterator
+
+from extrados.analyses.context import Context, Refused
+from extrados.analyses.needs import Need
+from extrados.analyses.shell.tables import Pushover
+from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
+
+
+def needs(context: Context, options: Pushover) -> Iterator[Need]:
+    """Steps that raise where the deck is wrong, see `analyses.needs`."""
+    building = context.building
+    yield lambda: _places(building, options)
+    if options.frame is not None:
+        yield lambda: pier_strength(building, options)
+
+
+def _places(building: Building, options: Pushover) -> None:
+    """The mesh, and its nodes at all places of drives, settlements and stages; no pattern has to be solved for that."""
+    from extrados.analyses.shell.model import build
+
+    build(building.shell(options.mesh), options.model_copy(update={"pattern": "mass"}))
+
+
+def pier_strength(building: Building, options: Pushover) -> float:
+    """f_m of the formulas of piers [Pa]; Refused where the deck says none, or has no piers."""
+    key = ("analysis", "frame")
+    if not isinstance(building.structure, Plan):
+        raise Refused("frame: piers are of a building of walls on a plan", key)
+    if options.drives:
+        raise Refused("frame: how the push goes to the storeys is not known of drives", key)
+    strength = (options.frame and options.frame.compressive_strength) or building.material.compressive_strength
+    if strength is None:
+        raise Refused("frame: the formulas of piers need compressive_strength (f_m), there or in [material]", key)
+    return strength

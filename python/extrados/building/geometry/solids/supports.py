@@ -1,0 +1,62 @@
+"""What solids stand on as they move: footings under the contacts to the ground, or a level floor that a deck names."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.building.geometry.rigid import DRESSED, FOOTING
+from extrados.building.geometry.solids.assembly import SolidAssembly
+from extrados.building.geometry.solids.contacts import GROUND
+from extrados.building.geometry.solids.polyhedra import Polyhedron, box, hull, overlap_depth
+
+DEEP = 0.25  # of the size: how deep footings and floors reach down
+WIDE = 12.0  # sizes of the structure to which a floor reaches on all sides
+LEVEL = 1e-6  # of the size: soles that are nearer to a floor lie on it
+
+
+@dataclass(frozen=True)
+class Supports:
+    """Fixed bodies, and for each contact of the assembly the one that bears it, -1 where it is not on the ground."""
+
+    bodies: list[Polyhedron]
+    of_joint: np.ndarray
+
+
+def supports_of(assembly: SolidAssembly, floor: float | None = None) -> Supports:
+    """A footing under each contact to the ground, a quarter wider than it on all sides where no stone stands there; what lies
+    on a floor at a height [m] has that instead."""
+    found: list[Polyhedron] = []
+    of_joint = np.full(len(assembly.a), -1)
+    deep = DEEP * assembly.size
+    if floor is not None:
+        points = np.concatenate([p.vertices for p in assembly.parts])
+        middle = 0.5 * (points.min(axis=0) + points.max(axis=0))[:2]
+        reach = WIDE * assembly.size
+        found.append(box([*(middle - reach), floor - deep], [*(middle + reach), floor]))
+    for j in np.flatnonzero(assembly.b == GROUND).tolist():
+        polygon, up = assembly.polygon[j], assembly.normal[j]
+        if floor is not None and np.abs(polygon[:, 2] - floor).max() < LEVEL * assembly.size:
+            of_joint[j] = 0
+            continue
+        of_joint[j] = len(found)
+        found.append(_footing(assembly, polygon, up, deep if up[2] > 1.0 - 1e-9 else 0.5 * _width(polygon)))
+    return Supports(found, of_joint)
+
+
+def _footing(assembly: SolidAssembly, polygon: np.ndarray, up: np.ndarray, deep: float) -> Polyhedron:
+    middle = polygon.mean(axis=0)
+    for share in (FOOTING, 0.0):
+        top = middle + (1.0 + 2.0 * share) * (polygon - middle)
+        body = hull(np.concatenate([top, top - deep * up]))
+        if all(
+            overlap_depth(body, part) < DRESSED * _width(part.vertices)
+            for part in assembly.parts
+            if (part.low < body.high).all() and (part.high > body.low).all()
+        ):
+            break
+    return body
+
+
+def _width(points: np.ndarray) -> float:
+    """Greatest extent of points [m]."""
+    return float(np.ptp(points, axis=0).max())

@@ -1,0 +1,250 @@
+"""Discrete elements in space: free rotation, rest, friction in any direction, the plane solver, limit analysis, the ledger."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
+
+from extrados.building.geometry.solids.assembly import Stone, assemble, mass_properties
+from extrados.building.geometry.solids.polyhedra import Polyhedron, box, prism
+from extrados.core import dem, dem3
+from extrados.core.dem3 import Law, Options, Solids
+from extrados.core.errors import CoreError
+from extrados.core.ground import Ground, as_motion_set
+from extrados.limit.solids import Programme, SolidLimit
+from extrados.schema.constants import GRAVITY
+
+DENSITY = 2000.0
+FLOOR = box((-20, -20, -1), (20, 20, 0))
+
+
+def solids(parts: list[Polyhedron], law: Law, *, floor: bool = True) -> Solids:
+    """Bodies of a part each, on a floor whose top is level 0."""
+    found = [mass_properties([p], DENSITY) for p in parts]
+    mass, centre, inertia = ([row[k] for row in found] for k in range(3))
+    if floor:
+        parts = [*parts, FLOOR]
+        mass, centre, inertia = [*mass, 0.0], [*centre, np.array([0, 0, -0.5])], [*inertia, np.eye(3)]
+    return Solids(
+        np.array(centre), np.array(mass), np.array(inertia), [p.vertices for p in parts], [p.faces for p in parts],
+        list(range(len(parts))), [law],
+    )  # fmt: skip
+
+
+def test_a_free_body_turns_as_euler_says() -> None:
+    """About its middle axis, where free rotation tumbles; against the equations of a rigid body by another integrator."""
+    body = box((0, 0, 0), (0.3, 0.5, 0.9)).moved(Rotation.from_rotvec([0.4, -0.2, 0.7]).as_matrix())
+    inertia = mass_properties([body], DENSITY)[2]
+    spin = np.array([0.3, 4.0, 0.2])
+    still = Options(end_time=2.0, step=2e-4, output_step=0.5, gravity=(0, 0, 0))
+    run = dem3.run(solids([body], Law(1e3, 1e3, 0.5), floor=False), still, rate=np.array([[0, 0, 0, *spin]]))
+    assert run.reason == "end"
+    swing = inertia @ spin
+
+    def euler(_: float, state: np.ndarray) -> np.ndarray:
+        turn = state.reshape(3, 3)
+        x, y, z = turn @ np.linalg.solve(inertia, turn.T @ swing)
+        return (np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]) @ turn).ravel()
+
+    exact = solve_ivp(euler, (0.0, 2.0), np.eye(3).ravel(), rtol=1e-11, atol=1e-12, t_eval=run.time)
+    assert run.turn[:, 0] == pytest.approx(exact.y.T.reshape(-1, 3, 3), abs=2e-6)
+    for turn, rate in zip(run.turn[:, 0], run.rate[:, 0], strict=True):
+        assert (turn @ inertia @ turn.T) @ rate[3:] == pytest.approx(swing, rel=1e-6)
+
+
+def test_a_block_settles_as_far_as_its_joint_gives() -> None:
+    run = dem3.run(solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4)), Options(end_time=0.2))
+    assert run.reason == "end" and 2.0 - run.place[-1, 0, 2] == pytest.approx(DENSITY * GRAVITY * 4.0 / 1e9, rel=1e-5)
+    assert run.residual < 1e-9
+
+
+@pytest.mark.parametrize("direction", [0.0, 33.0, 120.0, 251.0])
+def test_sliding_down_a_slope_in_any_direction(direction: float) -> None:
+    """Coulomb's cone: straight down the slope, at g (sin - mu cos), whichever way the block lies."""
+    slope, mu, turn = np.radians(25.0), 0.3, np.radians(direction)
+    gravity = GRAVITY * np.array([np.sin(slope) * np.cos(turn), np.sin(slope) * np.sin(turn), -np.cos(slope)])
+    model = solids([box((-1, -1, 0), (1, 1, 0.2))], Law(1e9, 1e9, mu, 1e-4))
+    run = dem3.run(model, Options(end_time=1.0, gravity=tuple(gravity), output_step=0.5), rate=np.zeros((2, 6)))
+    gone = run.place[-1, 0, :2] - run.place[0, 0, :2]
+    exact = 0.5 * GRAVITY * (np.sin(slope) - mu * np.cos(slope)) * run.time[-1] ** 2
+    assert gone == pytest.approx(exact * np.array([np.cos(turn), np.sin(turn)]), abs=1e-5 * exact)
+    assert run.turn[-1, 0] == pytest.approx(np.eye(3), abs=1e-6) and run.residual < 1e-9
+    held = dem3.run(replace(model, laws=[Law(1e9, 1e9, 0.5, 1e-4)]), Options(end_time=0.5, gravity=tuple(gravity)))
+    assert np.abs(held.place[-1, 0] - held.place[0, 0]).max() < 1e-7  # tan 25 = .466 < .5
+
+
+K, MU, BETA, WIDE, HIGH = 1e9, 0.7, 2e-4, 1.0, 4.0
+
+
+def shaken(seconds: float) -> Ground:
+    """The thesis' rocking block, Fig. 7-1: .5 g cos 10.88 t."""
+    t = np.arange(0.0, seconds + 1e-9, 1e-3)
+    return Ground(samples=(0.5 * GRAVITY * np.cos(10.88 * t))[None], step=1e-3)
+
+
+def rocking(
+    seconds: float, way: tuple[float, float, float] = (1.0, 0.0, 0.0), **options: Any
+) -> tuple[np.ndarray, dem3.Run]:
+    """Rotation towards the way of the ground over time, and the run."""
+    half = np.array([0.5 * WIDE, 0.5, 0.0]) if way[0] else np.array([0.5, 0.5 * WIDE, 0.0])
+    given = Options(**{"end_time": seconds, "step": 5e-5, "way": way, **options})
+    run = dem3.run(solids([box(-half, half + np.array([0, 0, HIGH]))], Law(K, K, MU, BETA)), given, shaken(seconds))
+    up = run.turn[:, 0, :, 2]
+    return np.arctan2(up @ np.array(way), up[:, 2]), run
+
+
+def test_a_plane_problem_is_that_of_the_plane_solver() -> None:
+    """Two impacts: the same history within what the springs give; nothing leaves the plane."""
+    outline = np.array([[-0.5 * WIDE, 0], [0.5 * WIDE, 0], [0.5 * WIDE, HIGH], [-0.5 * WIDE, HIGH]])
+    floor = np.array([[-20, -1], [20, -1], [20, 0], [-20, 0.0]])
+    mass = DENSITY * WIDE * HIGH
+    bodies = dem.Bodies(
+        np.array([[0, 0.5 * HIGH], [0, -0.5]]), np.array([mass, 0.0]),
+        np.array([mass * (WIDE**2 + HIGH**2) / 12.0, 0.0]), [outline, floor], [0, 1], [np.ones(4, dtype=bool)] * 2, 1.0,
+        [dem.Law(K, K, MU, damping=BETA)],
+    )  # fmt: skip
+    for step in (2e-4, 5e-5):
+        plane = -dem.run(bodies, dem.Options(end_time=1.5, step=step), shaken(1.5)).place[:, 0, 2]
+        space, run = rocking(1.5, step=step)
+        assert np.abs(plane - space).max() < 1.5e-3 * np.abs(plane).max()
+        assert np.abs(run.place[:, 0, 1]).max() < 1e-6 and np.abs(run.turn[:, 0, 1, 0]).max() < 1e-6
+        assert run.residual < 1e-4
+
+
+def test_both_planes_rock_alike() -> None:
+    along, _ = rocking(0.8)
+    across, _ = rocking(0.8, (0.0, 1.0, 0.0))
+    assert across == pytest.approx(along, abs=1e-7)
+
+
+def test_no_bit_depends_on_threads_pauses_or_a_state_taken_back(monkeypatch) -> None:
+    """A wall of six stones in two courses that rocks and slides; a state of another run is refused."""
+    parts = [box((x, 0, z), (x + 0.5, 0.3, z + 0.25)) for z in (0.0, 0.25) for x in (0.0, 0.5, 1.0)]
+    model, options = (
+        solids(parts, Law(1e9, 1e9, 0.5, 1e-4)),
+        Options(end_time=0.02, output_step=0.005, way=(0.6, 0.8, 0.0)),
+    )
+    once = dem3.run(model, options, shaken(1.0), scale=3.0)
+    assert once.reason == "end" and np.abs(once.place[-1] - once.place[0]).max() > 1e-5
+    monkeypatch.setattr(dem3, "FIRST_PAUSE", 5)
+    kept = []
+    with dem3.Model(model, replace(options, threads=2)) as other, as_motion_set([shaken(1.0)]) as motions:
+        paused = other.run(motions, scale=3.0, watch=lambda reached: kept.append(other.state()))
+    with dem3.Model(model, options) as other, as_motion_set([shaken(1.0)]) as motions:
+        resumed = other.run(motions, scale=3.0, state=kept[len(kept) // 2])
+        for wrong in (kept[0][:-9], np.where(np.arange(len(kept[0])) == 40, 7, kept[0])):
+            with pytest.raises(ValueError, match="damaged"):
+                other.run(motions, state=wrong)
+    with dem3.Model(solids(parts[:3], Law(1e9, 1e9, 0.5)), options) as other, as_motion_set([shaken(1.0)]) as motions:
+        with pytest.raises(ValueError, match="another model"):
+            other.run(motions, state=kept[0])
+    for run in (paused, resumed):
+        for name in ("place", "turn", "rate", "settled"):
+            assert (getattr(run, name) == getattr(once, name)).all()
+        assert run.steps == once.steps and run.residual == once.residual
+
+
+def test_one_contact_keeps_exact_energy() -> None:
+    """A block that falls on its four springs without damping: weight, spring and motion change into each other, and it
+    comes back to where it fell from. A dashpot takes away what the ledger says."""
+    block = box((0, 0, 0), (1, 1, 1)).moved(np.eye(3), np.array([0.0, 0.0, 0.01]))
+    for step, off in ((4e-4, 1e-2), (1e-4, 1e-3)):
+        run = dem3.run(
+            solids([block], Law(1e7, 1e7, 0.0)),
+            Options(end_time=0.3, step=step, output_step=step),
+            rate=np.zeros((2, 6)),
+        )
+        fall = np.ptp(run.place[:, 0, 2])
+        assert fall == pytest.approx(0.01 + (r := 2000 * GRAVITY / 1e7) + np.sqrt(r**2 + 0.02 * r), rel=1e-3)
+        assert run.residual < off
+        assert run.energy["elastic"].max() == pytest.approx(2000.0 * GRAVITY * fall, rel=1e-3)
+    damped = dem3.run(
+        solids([block], Law(1e7, 1e7, 0.0, 2e-3)), Options(end_time=0.5, step=1e-4), rate=np.zeros((2, 6))
+    )
+    lost = damped.energy["damping"][-1]
+    assert lost > 0.3 * 2000.0 * GRAVITY * 0.01 and damped.residual < 1e-3
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("direction", [20.0, 75.0])
+def test_a_column_falls_where_limit_analysis_says(direction: float) -> None:
+    """Three drums of twelve sides under a constant push along a direction: they stand at .99 of it and fall at 1.01."""
+    angle = 2.0 * np.pi * np.arange(12) / 12
+    ring = 0.4 * np.column_stack([np.cos(angle), np.sin(angle)])
+    parts = [prism(ring, k * 1.0, k + 1.0) for k in range(3)]
+    limit = SolidLimit(assemble([Stone(f"drum {k}", [p], DENSITY) for k, p in enumerate(parts)]), 0.7).push(direction)
+    assert isinstance(limit, Programme)
+    turn = np.radians(direction)
+    found = []
+    for share in (0.99, 1.01):
+        push = share * limit.gamma * GRAVITY
+        gravity = (push * np.cos(turn), push * np.sin(turn), -GRAVITY)
+        run = dem3.run(
+            solids(parts, Law(1e11, 1e11, 0.7, 1e-5)),
+            Options(end_time=2.0, gravity=gravity, settle_steps=0, collapse=0.05, output_step=0.1), rate=np.zeros((4, 6)),
+        )  # fmt: skip
+        found.append((run.reason, float(np.linalg.norm(run.place[-1, 2] - run.place[0, 2]))))
+    assert run.residual < 1e-3  # of the fall; where it stands next to no energy goes round
+    assert found[0][0] == "end" and found[0][1] < 5e-3
+    assert found[1][0] == "collapse"
+
+
+def test_a_wobbling_cylinder_keeps_its_energy_and_its_swing_about_the_vertical() -> None:
+    """Set down on its rim and turning, without friction: gravity and the floor have no moment about the vertical."""
+    angle = 2.0 * np.pi * np.arange(48) / 48
+    drum = prism(0.5 * np.column_stack([np.cos(angle), np.sin(angle)]), 0.0, 2.0)
+    tilt = Rotation.from_rotvec([0.0, 0.12, 0.0]).as_matrix()
+    tilted = drum.moved(tilt)
+    tilted = tilted.moved(np.eye(3), np.array([0, 0, -tilted.low[2]]))
+    inertia = mass_properties([tilted], DENSITY)[2]
+    spin = np.array([0.0, 0.0, 0.8])
+    run = dem3.run(
+        solids([tilted], Law(1e9, 1e9, 0.0)), Options(end_time=1.5, output_step=0.05, fraction=0.1),
+        rate=np.array([[0, 0, 0, *spin], [0.0] * 6]),
+    )  # fmt: skip
+    assert run.reason == "end" and run.residual < 2e-3
+    swing = [
+        ((turn @ inertia @ turn.T) @ rate[3:])[2] for turn, rate in zip(run.turn[:, 0], run.rate[:, 0], strict=True)
+    ]
+    assert swing == pytest.approx([(inertia @ spin)[2]] * len(swing), rel=1e-6)
+    # it turned about the vertical by much, and did not fall
+    low = np.arctan2(run.turn[:, 0, 1, 2], run.turn[:, 0, 0, 2])
+    assert np.ptp(np.unwrap(low)) > 0.5 and run.turn[:, 0, 2, 2].min() > 0.9
+
+
+def test_bars_that_cross_rest_on_each_other_by_their_edges() -> None:
+    """Two bars on edge, one across the other: no face bears the upper one."""
+    side = np.array([[0.0, -0.1], [0.1, 0.0], [0.0, 0.1], [-0.1, 0.0]])
+    lower = prism(side, -1.0, 1.0).moved(Rotation.from_rotvec([0, np.pi / 2, 0]).as_matrix())
+    upper = prism(side, -1.0, 1.0).moved(Rotation.from_rotvec([np.pi / 2, 0, 0]).as_matrix(), np.array([0, 0, 0.2]))
+    model = solids([upper, lower], Law(1e10, 1e10, 0.5, 1e-4), floor=False)
+    model = replace(model, mass=np.array([model.mass[0], 0.0]))
+    run = dem3.run(model, Options(end_time=0.05, output_step=0.01), rate=np.zeros((2, 6)))
+    assert abs(run.place[-1, 0, 2] - 0.2) < 1e-3  # in free fall it would be 12 mm lower
+    apart = replace(
+        model,
+        centroid=model.centroid + np.array([[0, 0, 0.05], [0, 0, 0]]),
+        vertices=[model.vertices[0] + [0, 0, 0.05], model.vertices[1]],
+    )
+    free = dem3.run(apart, Options(end_time=0.05, output_step=0.01), rate=np.zeros((2, 6)))
+    assert free.place[-1, 0, 2] - free.place[0, 0, 2] == pytest.approx(-0.5 * GRAVITY * free.time[-1] ** 2, rel=1e-3)
+
+
+def test_wrong_models_are_refused() -> None:
+    good = solids([box((0, 0, 0), (1, 1, 1))], Law(1e9, 1e9, 0.6))
+    options = Options(end_time=0.1)
+    with pytest.raises(ValueError, match="stiffnesses"):
+        Law(0.0, 1e9, 0.6)
+    with pytest.raises(ValueError, match="law that is not there"):
+        dem3.run(replace(good, joints={(0, 1): 3}), options)
+    with pytest.raises(IndexError, match="joints names 7"):
+        dem3.run(replace(good, joints={(0, 7): 0}), options)
+    with pytest.raises(IndexError, match="owner names 5"):
+        dem3.run(replace(good, owner=[0, 5]), options)
+    with pytest.raises(ValueError, match="not finite"):
+        dem3.run(replace(good, vertices=[good.vertices[0] * np.nan, good.vertices[1]]), options)
+    with pytest.raises(CoreError, match="outside its range"):
+        dem3.run(replace(good, faces=[((0, 1, 99), *good.faces[0][1:]), good.faces[1]]), options)

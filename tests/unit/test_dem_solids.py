@@ -1,0 +1,131 @@
+"""dem of blocks in space from a deck: runs, tilt against limit analysis, what falls, files of solids, refusals."""
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+import extrados
+from extrados.building.geometry.solids.assembly import Stone, assemble
+from extrados.building.geometry.solids.polyhedra import box
+from extrados.building.geometry.solids.supports import supports_of
+
+COLUMN = """
+[structure]
+kind = "column"
+section = "round"
+sides = 8
+width = 1.0
+height = 2.0
+drums = 2
+[joints]
+normal_stiffness = 1e9
+"""
+PULSE = """
+[motion]
+kind = "sine-pulse"
+amplitude = "0.6 g"
+period = 0.6
+"""
+OBJ = "\n".join(f"v {x} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
+CUBE = "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n"
+
+
+def answered(tmp_path, text: str, **options: Any) -> Any:
+    deck = tmp_path / "deck.toml"
+    deck.write_text(text)
+    return extrados.run(deck, **options).results[0]
+
+
+def test_a_column_rocks_in_the_direction_of_the_motion(tmp_path) -> None:
+    """Along and against: mirrored; and the wholes of it are told and stored."""
+    there, back = (
+        answered(tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.8\ndirection = {d}\n')
+        for d in (90.0, -90.0)
+    )
+    assert there.status == "ok" and there.results.outcome == "recovery" and there.results.energy_residual_ratio < 1e-2
+    shift, other = (r.arrays["shift"].data for r in (there, back))
+    assert np.abs(shift[..., 1]).max() > 0.02
+    assert shift[..., 1] == pytest.approx(-other[..., 1], abs=5e-3 * np.abs(shift).max())
+    assert np.abs(shift[..., 0]).max() < 0.01 * np.abs(shift[..., 1]).max()
+    assert there.results.peak_displacement_m == pytest.approx(np.linalg.norm(shift, axis=2).max())
+    assert there.arrays["state"].data.max() == 1 and list(there.results.peak_rotation_rad) == ["drum 1", "drum 2"]
+    assert "dem.glb" in there.files and "It rocks" in there.answer
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize(
+    ("structure", "direction"),
+    [
+        ('kind = "column"\nsection = "round"\nsides = 12\nwidth = 1.0\nheight = 4.0\ndrums = 2', 40.0),
+        ('kind = "wall"\nunit_length = 1.0\nunit_height = 0.5\nthickness = 0.3\nheight = 1.0\nlegs = [{ length = 2.0 }]', 90.0),
+        ('kind = "arch"\nradius = 5.0\nthickness = 1.0\nembrace = 150.0\nvoussoirs = 7', 0.0),
+    ],
+)  # fmt: skip
+def test_tilt_is_that_of_limit_analysis(tmp_path, structure: str, direction: float) -> None:
+    """Within 1 % on stiff joints: a column, a wall out of its plane, an arch with depth."""
+    text = (
+        f"[structure]\n{structure}\n[joints]\nnormal_stiffness = 1e11\n"
+        f'[[analysis]]\nkind = "tilt"\ndirection = {direction}\nrose = 4\n'
+        f'[[analysis]]\nkind = "dem"\ntest = "tilt"\ndirection = {direction}\ntilt_limit = "0.8 g"\ntilt_accuracy = 5e-4\n'
+    )
+    deck = tmp_path / "deck.toml"
+    deck.write_text(text)
+    limit, elements = (r.results for r in extrados.run(deck).results)
+    for key in ("collapse_acceleration_g", "collapse_acceleration_opposite_g"):
+        assert getattr(elements, key) == pytest.approx(getattr(limit, key), rel=0.01)
+    assert elements.opening_contacts
+
+
+def test_solids_of_a_file_stand_or_fall(tmp_path) -> None:
+    """A cube from an OBJ stands; one whose middle lies outside its base falls, and limit analysis says why."""
+    (tmp_path / "stones.obj").write_text(f"o cube\n{OBJ}\n{CUBE}")
+    text = '[structure]\nkind = "blocks"\nfile = "stones.obj"\nunit = "m"\n[joints]\nnormal_stiffness = 1e8\n[[analysis]]\nkind = "dem"\n'
+    stands = answered(tmp_path, text)
+    assert stands.status == "ok" and stands.results.outcome == "no-hinging"
+    assert stands.answer.startswith("It stands under its own weight; nothing moves it.")
+    leaning = "\n".join(f"v {x + 1.1 * z} {y} {z}" for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1)))
+    (tmp_path / "stones.obj").write_text(f"o slab\n{leaning}\n{CUBE}")
+    falls = answered(tmp_path, text)
+    assert falls.status == "refused" and "does not stand under its own weight: slab falls" in falls.reason
+    assert "limit analysis agrees" in falls.reason
+
+
+@pytest.mark.parametrize(
+    ("more", "of_dem", "told"),
+    [
+        ("", 'solver = "nonsmooth"', 'solver = "nonsmooth"'),
+        ("", "mass_damping = 1.0", "mass_damping"),
+        ("", "vary_damping = [0.5]", "vary_damping"),
+        ("[initial]\nrotation_ratio = 0.5\n", "", "rotation_ratio"),
+        ("cohesion = 1e5\n", "", "joints.cohesion: dem of solids knows dry joints alone"),
+        ("worn_corners = 0.01\n", "", "worn corners"),
+        ("", 'track = ["drum 9"]', "names no block 'drum 9'"),
+    ],
+)
+def test_what_solids_do_not_know_is_refused_by_name(tmp_path, more: str, of_dem: str, told: str) -> None:
+    found = answered(tmp_path, f'{COLUMN}{more}[[analysis]]\nkind = "dem"\n{of_dem}\n')
+    assert found.status == "refused" and told in found.reason
+
+
+def test_footings_are_no_floor() -> None:
+    """A quarter wider on all sides, no wider where a stone stands there; a floor that is named replaces those on it."""
+    stones = [Stone("a", [box((0, 0, 0), (1, 1, 1))], 2000.0), Stone("b", [box((3, 0, 0), (4, 1, 1))], 2000.0)]
+    assembly = assemble(stones)
+    found = supports_of(assembly)
+    assert found.of_joint.tolist() == [0, 1]
+    assert found.bodies[0].low == pytest.approx([-0.25, -0.25, -1.0]) and found.bodies[0].high[:2] == pytest.approx(
+        [1.25, 1.25]
+    )
+    named = supports_of(assembly, floor=0.0)
+    assert named.of_joint.tolist() == [0, 0] and len(named.bodies) == 1
+
+
+def test_stored_results_are_typed(tmp_path) -> None:
+    found = answered(
+        tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.1\nvtk = true\n', out=tmp_path / "out"
+    )
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert summary["analyses"][0]["results"]["contacts"] == found.results.contacts == 2
+    assert (tmp_path / "out" / "dem.pvd").exists() and (tmp_path / "out" / "dem.glb").exists()
