@@ -122,6 +122,16 @@ def test_footings_are_no_floor() -> None:
     assert named.of_joint.tolist() == [0, 0] and len(named.bodies) == 1
 
 
+def test_a_section_drawn_out_stands_on_its_springings(tmp_path) -> None:
+    """An arch asked for with a direction: its contacts with the ground may have the ground on either side."""
+    arch = 'kind = "arch"\nradius = 5.0\nthickness = 1.0\nembrace = 150.0\nvoussoirs = 5'
+    found = answered(
+        tmp_path,
+        f'[structure]\n{arch}\n[joints]\nnormal_stiffness = 1e9\n[[analysis]]\nkind = "dem"\ndirection = 0.0\nend_time = 0.05\n',
+    )
+    assert found.status == "ok" and found.results.outcome == "no-hinging" and found.results.contacts == 6
+
+
 def test_stored_results_are_typed(tmp_path) -> None:
     found = answered(
         tmp_path, f'{COLUMN}{PULSE}[[analysis]]\nkind = "dem"\nend_time = 0.1\nvtk = true\n', out=tmp_path / "out"

@@ -70,11 +70,7 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
     opening, slip, state = np.zeros(shape), np.zeros(shape), np.full(shape, CLOSED)
     for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
         corners = one.polygon[j]
-        moved, normal = _carried(run, a, corners, one.normal[j])
-        if b == GROUND:
-            other, back = np.broadcast_to(corners, moved.shape), np.broadcast_to(one.normal[j], normal.shape)
-        else:
-            other, back = _carried(run, b, corners, one.normal[j])
+        (moved, normal), (other, back) = (_carried(run, k, corners, one.normal[j]) for k in (a, b))
         mean = normal + back
         mean /= np.linalg.norm(mean, axis=1)[:, None]
         apart = moved - other
@@ -90,7 +86,10 @@ def contacts(model: SolidModel, run: dem3.Run) -> tuple[np.ndarray, np.ndarray, 
 
 
 def _carried(run: dem3.Run, body: int, points: np.ndarray, normal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body from its settled state."""
+    """Points (time, k, 3) [m] and a normal (time, 3) carried along with a body from its settled state; the ground stays."""
+    if body == GROUND:
+        count = len(run.time)
+        return np.broadcast_to(points, (count, *points.shape)), np.broadcast_to(normal, (count, 3))
     turn = run.turn[:, body] @ run.settled_turn[body].T
     arm = points - run.settled[body]
     return run.place[:, None, body] + np.einsum("txy,ky->tkx", turn, arm), turn @ normal

@@ -70,8 +70,8 @@ class SolidModel:
         joints: dict[tuple[int, int], int] = {}
         weight: dict[tuple[int, int], list[int]] = {}
         for j, (a, b) in enumerate(zip(one.a.tolist(), one.b.tolist(), strict=True)):
-            other = self.count + int(self.supports.of_joint[j]) if b == GROUND else b
-            weight.setdefault((min(a, other), max(a, other)), []).append(j)
+            one_of, other = (self.count + int(self.supports.of_joint[j]) if k == GROUND else k for k in (a, b))
+            weight.setdefault((min(one_of, other), max(one_of, other)), []).append(j)
         for pair, shared in weight.items():
             area = one.area[shared]
             law = _law(

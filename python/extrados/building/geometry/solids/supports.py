@@ -33,8 +33,8 @@ def supports_of(assembly: SolidAssembly, floor: float | None = None) -> Supports
         middle = 0.5 * (points.min(axis=0) + points.max(axis=0))[:2]
         reach = WIDE * assembly.size
         found.append(box([*(middle - reach), floor - deep], [*(middle + reach), floor]))
-    for j in np.flatnonzero(assembly.b == GROUND).tolist():
-        polygon, up = assembly.polygon[j], assembly.normal[j]
+    for j in np.flatnonzero((assembly.a == GROUND) | (assembly.b == GROUND)).tolist():
+        polygon, up = assembly.polygon[j], assembly.normal[j] if assembly.b[j] == GROUND else -assembly.normal[j]
         if floor is not None and np.abs(polygon[:, 2] - floor).max() < LEVEL * assembly.size:
             of_joint[j] = 0
             continue
