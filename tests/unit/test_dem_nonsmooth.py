@@ -10,7 +10,7 @@ from interrupting import interrupted
 
 import extrados
 from extrados import _core
-from extrados.analyses.dem.runs import Runs, Task, run_of
+from extrados.analyses.dem.runs import Runs, Task
 from extrados.building.geometry.rigid import rigid_bodies
 from extrados.building.rockers.impact import inelastic_impact
 from extrados.building.rockers.mechanism import MechanismModel
@@ -207,7 +207,7 @@ def test_effort_is_kept_in_rows() -> None:
     job = Runs([block_on_floor(1.0, 4.0, law(2.0))], [Task(0, options(0.2), cosine(0.5 * G, 10.88))])
     found = job.one(0)
     rows = job.rows(found)
-    assert run_of({name: values[None] for name, values in rows.items()}).effort == found.effort
+    assert job.run_of({name: values[None] for name, values in rows.items()}).effort == found.effort
     assert found.effort.steps > 50
 
 
