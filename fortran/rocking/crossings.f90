@@ -68,8 +68,8 @@ contains
       s = root_between(step%cq, step%degree, level, 0.0_wp, last)
    end function crossing_fraction
 
-   !> Where a polynomial passes a level, to rounding: Newton's method from the root of the parabola with its slope at the
-   !> start and its values at both ends, by halves where it leaves the bracket or does not converge
+   !> Where a polynomial passes a level, to rounding: Newton's method from the root of the parabola with its slope at
+   !> the start and its values at both ends, by halves where it leaves the bracket or does not converge
    pure function root_between(c, degree, level, start, finish) result(s)
       real(wp), intent(in) :: c(0:)     !! coefficients of the powers
       integer, intent(in) :: degree
