@@ -255,6 +255,21 @@ def test_the_line_follows_a_drag_from_the_stones_and_its_thrust_is_a_handle(page
     assert page.locator("[data-handle=thrust]").get_attribute("aria-valuetext").startswith(f"{middle / 1e3:.4g}"[:4])
 
 
+def test_what_was_asked_for_last_is_seen_last(page: Any) -> None:
+    most = page.evaluate("window.extrados.scene.most_N")
+    page.evaluate("""most => {
+        const at = { joint: 24, share: 0.5 }; // the second waits for the answer to the first
+        window.extrados.show({ through: at }); window.extrados.show({ through: at }); window.extrados.choose(most);
+    }""", most)  # fmt: skip
+    until(page, "window.extrados.scene.chosen")
+    settled(page)
+    assert page.evaluate("window.extrados.scene.chosen?.thrust_N") == pytest.approx(most, rel=1e-9)
+    page.evaluate(
+        "window.extrados.show({ gamma: 0.05 }); window.extrados.show({ gamma: 0.1 }); window.extrados.show({ through: { joint: 24, share: 0.5 } })"
+    )
+    until(page, "window.extrados.scene.through && window.extrados.scene.gamma === 0.1")
+
+
 def test_what_stands_in_space_is_turned_and_pushed(page: Any) -> None:
     page.evaluate("window.extrados.open({ preset: 'solid/column' })")
     until(page, "window.extrados.scene?.seen?.of === 'solids'")

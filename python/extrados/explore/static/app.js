@@ -104,6 +104,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       const there = flying.get(lane);
       if (there?.busy) {
         if (there.next?.message.ends) message.ends = true;
+        if (message.do === "show") message = { ...there.next?.message, ...message }; // each key of a view is asked for by itself
         there.next = { message, when, reply };
         return;
       }
@@ -122,11 +123,11 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     if (there?.next) ask(there.next.message, there.next);
   }
   function change(changes, lane, more = {}, when = performance.now()) { ask({ do: "set", changes, lane, ...more }, { when }); }
+  /** Another view of the same building. One lane for all: what was asked for last is what is seen last. */
   function show(view, when) {
-    Object.assign(app.view, view);
-    if (view.through) app.view.thrust = null;
-    if (view.thrust !== undefined && view.thrust !== null) app.view.through = null;
-    ask({ do: "show", ...view, lane: `show:${Object.keys(view).join()}` }, { when: when ?? performance.now() });
+    const other = view.through ? { thrust: null } : (view.thrust ?? null) !== null ? { through: null } : {};
+    Object.assign(app.view, view, other);
+    ask({ do: "show", ...view, ...other, lane: "show" }, { when: when ?? performance.now() });
   }
   function edit(text) { ask({ do: "open", text, here: "same" }); }
   function open(source) { ask({ do: "open", ...source }); }
