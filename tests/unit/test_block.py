@@ -69,6 +69,35 @@ def test_rectangular_pulse(x: float, length: float) -> None:
     assert lowest_overturning(m, motion, 0.5 * (1.0 + x), 1.5 * x) == pytest.approx(x, abs=1e-4 * x)
 
 
+@pytest.mark.parametrize("ratio", [0.0, 0.2, 0.4])
+def test_pulses_on_a_block_that_starts_off_rest(ratio: float) -> None:
+    """x(0) = r alpha under a rectangular pulse of a g alpha, linear form: it passes alpha on its own after p t = ln(a/(a - 1 + r)).
+
+    The curve over durations and the durations at given amplitudes start from the same rotation; a pulse below uplift may do."""
+    import extrados
+
+    m = rectangle(linear=True)
+    p, alpha = float(m.frequency[0]), float(m.alpha[0])
+    lengths = np.array([0.4, 0.8, 2.0]) / p
+    x = np.array([1.5, 3.0] if ratio == 0.0 else [0.95, 1.5, 3.0])
+    run = extrados.run(
+        {
+            "structure": {"kind": "block", "width": 1.0, "height": 4.0},
+            "initial": {"rotation_ratio": ratio},
+            "analysis": {
+                "kind": "failure-domain", "pulse": "rectangular", "form": "linear", "durations": lengths.tolist(), "amplitudes": 20,
+                "accuracy": 1e-6, "at_amplitudes": [f"{a!r} g" for a in (x * alpha).tolist()],
+            },
+        },
+        threads=1,
+    )  # fmt: skip
+    found = run["failure-domain"]
+    grown = np.exp(p * lengths)
+    assert found.mode_I.amplitudes_g == pytest.approx((1.0 - ratio) * alpha * grown / (grown - 1.0), abs=2e-6)
+    assert found.at_amplitudes.mode_I_durations_s == found.at_amplitudes.mode_II_durations_s
+    assert found.at_amplitudes.mode_I_durations_s == pytest.approx(np.log(x / (x - 1.0 + ratio)) / p, abs=2e-6)
+
+
 @pytest.mark.parametrize(
     ("ratio", "half", "whole"),
     [(1, 1.3224, 1.4183), (2, 1.8007, 2.3499), (3, 2.2939, 3.6311), (4, 2.7908, 5.2390), (5, 3.2891, 7.1681), (8, 4.7871, 14.871), (10, 5.7865, 21.600)],
