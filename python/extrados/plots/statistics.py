@@ -63,6 +63,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             color=style.THRUST,
             label="collapse",
         )
+        ax.set_axisbelow(True)
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
         ax.set_xlabel("greatest rotation over the critical rotation")
         ax.set_ylabel("share of the motions [%]")
@@ -328,6 +329,7 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         )
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
+        right.set_title("share that falls, 95 % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [
