@@ -204,3 +204,17 @@ def test_assessment_is_held_against_the_run() -> None:
     assert any("replaced by a sine" in text for text in run.results[0].warnings)
     disagree = (r.verdict == "fails") != (r.run_outcome == "collapse")
     assert disagree == any("better witness" in text for text in run.results[0].warnings)
+
+
+@pytest.mark.parametrize(("amplitude", "outcome"), [("0.6 g", "collapse"), ("0.1 g", "recovery")])
+def test_impulses_beyond_the_criterion_are_told(amplitude: str, outcome: str) -> None:
+    """The criterion ends at 2.3 times the uplift acceleration, here 0.14 g: it says that a short sine of any strength is harmless."""
+    base = deck(0.10, 170.0, 0.08)
+    base |= {
+        "motion": {"kind": "sine-pulse", "amplitude": amplitude, "period": 0.15},
+        "analysis": [{"kind": "assessment"}],
+    }
+    run = extrados.run(base)
+    assert (run["assessment"].verdict, run["assessment"].run_outcome) == ("stands", outcome)
+    told = " ".join(run.results[0].warnings)
+    assert ("lies above" in told) == ("beyond the criterion" in told) == (outcome == "collapse")
