@@ -229,6 +229,16 @@ kind = "rocking"
 """
 
 
+def test_the_answer_names_the_rebound_that_it_rests_on() -> None:
+    """Before a wall the impact rule of the joints plays no part."""
+    for given, said in ((None, "rebound three impacts (method)"), (0.4, "rebound 0.4 (deck)")):
+        deck = tomllib.loads(DECK)
+        if given is not None:
+            deck["supports"]["rebound"] = given
+        (one,) = extrados.run(deck).results
+        assert said in one.answer and "restitution" not in one.answer
+
+
 def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     damper = "[[dampers]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\ndamping = 100.0\n"
     for kind in ("tilt", "dem", "assessment", "rocking-spectrum"):

@@ -31,10 +31,13 @@ class RockingTable(BuildingAnalysis):
     )
 
     def rests_on(self, building: Building) -> dict[str, str | None]:
-        """On a base that gives way the impact follows from it."""
+        """On a base that gives way the impact follows from it; a wall throws back what falls against it."""
         found = super().rests_on(building)
+        if building.supports.abutting_wall is not None:
+            found.pop("joints.restitution", None)
+            found["supports.rebound"] = "three impacts" if building.supports.rebound is None else None
         if self.soft_base and building.supports.stiffness is not None:
-            del found["joints.restitution"]
+            found.pop("joints.restitution", None)
             found |= {f"supports.{key}": None for key in ("stiffness", "foundation", "damping_ratio")}
         return found
 
