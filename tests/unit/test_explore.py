@@ -20,11 +20,12 @@ from websockets.sync.client import connect
 
 import extrados
 from extrados.explore import server
+from extrados.explore.desk import NEW_DECK
 from extrados.explore.document import Document, as_written
 from extrados.explore.film import BadFilm, film
 from extrados.explore.frames import Reply
 from extrados.explore.guard import Bucket
-from extrados.explore.session import NEW_DECK, Session
+from extrados.explore.session import Session
 from extrados.limit.states import blended
 from extrados.schema.places import CASES
 
