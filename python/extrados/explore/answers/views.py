@@ -24,7 +24,7 @@ def scene(desk: Desk) -> Reply:
     structure = desk.there().deck.structure
     if structure is None:
         why = "The deck has no [structure]: there is nothing to draw."
-        return Reply({"scene": {"empty": why}, "deck": desk.words()})
+        return _seen(desk, None, [], {"empty": why}, {})
     options, building, name = desk.analysis(LimitAnalysisTable, lambda: Tilt(kind="tilt"))
     try:
         assembly = building.blocks()
