@@ -111,6 +111,22 @@ def test_undo_and_redo(page: Any) -> None:
     assert settled(page) == second
 
 
+def test_one_step_back_undoes_all_of_a_slow_drag(page: Any) -> None:
+    first = settled(page)
+    box = page.locator("[data-handle=thickness] .hit").bounding_box()
+    x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x, y - 10)
+    middle = settled(page)
+    page.mouse.move(x, y - 20)
+    page.mouse.up()
+    last = settled(page)
+    assert len({first, middle, last}) == 3
+    page.keyboard.press("Control+z")
+    assert settled(page) == first
+
+
 def test_a_line_through_a_point_and_the_tilt(page: Any) -> None:
     box = page.locator(".stones").bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + 24)

@@ -28,7 +28,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   const waiting = new Map(); // number of a message -> what to do with its replies
   const flying = new Map(); // lane -> {busy, next}
   const unanswered = new Set(); // numbers of messages that change what is seen
-  let counter = 0, moved = true, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
+  let counter = 0, moved = true, held = false, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
 
   function on(event, listener) { (listeners[event] ??= []).push(listener); }
   function tell(event, ...rest) { for (const listener of listeners[event] ?? []) listener(...rest); }
@@ -193,7 +193,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
       if (words.scene && entry.when && ["drag", "show", "set"].includes(entry.message.do)) painted(entry, words.ms);
       if (words.rocking) painted(entry, words.ms, "rocking");
-      if (words.domain?.stride > 1) painted(entry, words.ms);
+      if (words.domain?.stride > 1 && !words.domain.part) painted(entry, words.ms);
     }
   };
   /** Do something once the next frame is on the screen. */
@@ -236,9 +236,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   function settled(words) {
     app.text = words.text; app.forms = words.forms; app.name = words.name;
     if (beside !== null) followed();
-    dirty = false;
     if (timer === null && !unanswered.size) moved = false;
-    remember();
+    if (!held) { dirty = false; remember(); } // one step back undoes all of a drag, also of a slow one
     tell("text");
   }
   /** Keep the present text in the history of undo. */
@@ -251,6 +250,8 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     title.title = app.name;
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
   }
+  root.addEventListener("pointerdown", () => { held = true; }, true);
+  for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => { if (held && dirty) rest(); held = false; }, true);
   function travel(way) {
     if (dirty) { // the last change is not in the history yet
       clearTimeout(timer);
