@@ -119,11 +119,14 @@ contains
       integer(c_int), intent(out) :: status
       integer, parameter :: batch = 8
       type(energy_terms) :: energy
-      real(wp) :: before
+      real(wp) :: before, step
       integer :: n, k
 
       status = status_ok
       model%shaking = .false.
+      ! A tiny step of the run must not keep from rest what stands.
+      step = model%step
+      model%step = max(step, options%fraction * record%critical)
       before = 0.0_wp
       n = 0
       do while (n < options%settle_steps)
@@ -152,6 +155,7 @@ contains
             return
          end if
       end do
+      model%step = min(model%step, step)   ! the step may have been cut as contacts formed
       record%settling = n
       if (n >= options%settle_steps .or. record%reason /= stop_end) then
          record%reason = stop_unsettled
@@ -196,6 +200,21 @@ contains
          number = k
       end do
    end function most_unbalanced
+
+   !> The mobile body of the greatest velocity
+   pure function fastest(model) result(number)
+      type(solid_model), intent(in) :: model
+      integer :: number
+      integer :: k
+      real(wp) :: most
+      number = 0
+      most = -1.0_wp
+      do k = 1, size(model%set%item)
+         if (model%set%item(k)%fixed .or. .not. norm2(model%set%item(k)%v) > most) cycle
+         most = norm2(model%set%item(k)%v)
+         number = k
+      end do
+   end function fastest
 
    !> Greatest unbalanced force over weight, and moment over weight times radius
    pure function unbalanced(model) result(ratio)
@@ -280,7 +299,10 @@ contains
          record%residual = max(record%residual, &
             abs(energy_residual(energy, record%start)) / max(record%round, record%start%elastic, tiny(1.0_wp)))
          if (due) call write_down(model, record, energy)
-         if (.not. record%residual <= options%residual_limit) record%reason = stop_blow_up
+         if (.not. record%residual <= options%residual_limit) then
+            record%reason = stop_blow_up
+            record%blamed = fastest(model)
+         end if
          if (record%reason == stop_end) call limits(model, options%collapse, options%domain, record)
          if (options%stop_at_rest .and. model%t > quiet) then
             record%calm_looks = merge(record%calm_looks + 1, 0, &

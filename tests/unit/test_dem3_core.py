@@ -61,6 +61,19 @@ def test_a_block_settles_as_far_as_its_joint_gives() -> None:
     assert run.residual < 1e-9
 
 
+def test_a_tiny_step_of_the_run_keeps_nothing_from_rest() -> None:
+    block = solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4))
+    run = dem3.run(block, Options(end_time=1e-5, step=1e-6, settle_steps=4000))
+    assert run.reason == "end" and run.settling_steps < 4000 and run.step == pytest.approx(1e-6)
+
+
+def test_an_energy_ledger_that_does_not_close_names_the_fastest_body() -> None:
+    pile = solids([box((0, 0, z), (1, 1, z + 1)) for z in (0, 1)], Law(1e8, 1e8, 0.6))
+    quick = np.array([[0, 0, 0, 0, 0, 0], [2.0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
+    run = dem3.run(pile, Options(end_time=1.0, residual_limit=1e-14), rate=quick)
+    assert run.reason == "blow-up" and run.blamed == [1] and run.stop_time < 1.0
+
+
 @pytest.mark.parametrize("direction", [0.0, 33.0, 120.0, 251.0])
 def test_sliding_down_a_slope_in_any_direction(direction: float) -> None:
     """Coulomb's cone: straight down the slope, at g (sin - mu cos), whichever way the block lies."""
