@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from extrados.building.geometry.solids.assembly import Stone, assemble, mass_properties
 from extrados.building.geometry.solids.polyhedra import Polyhedron, box, prism
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.core.dem3 import Law, Options, Solids
 from extrados.core.errors import CoreError
 from extrados.core.ground import Ground, as_motion_set
@@ -142,7 +142,7 @@ def test_no_bit_depends_on_threads_pauses_or_a_state_taken_back(monkeypatch) -> 
     )
     once = dem3.run(model, options, shaken(1.0), scale=3.0)
     assert once.reason == "end" and np.abs(once.place[-1] - once.place[0]).max() > 1e-5
-    monkeypatch.setattr(dem3, "FIRST_PAUSE", 5)
+    monkeypatch.setattr(dem_run, "FIRST_PAUSE", 5)
     kept = []
     with dem3.Model(model, replace(options, threads=2)) as other, as_motion_set([shaken(1.0)]) as motions:
         paused = other.run(motions, scale=3.0, watch=lambda reached: kept.append(other.state()))

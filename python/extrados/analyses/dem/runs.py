@@ -10,7 +10,7 @@ import numpy as np
 
 from extrados.analyses.batches import Chain, stacked, sweep
 from extrados.analyses.context import Context
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.core.calls import cancel_requested
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground, as_motion_set
@@ -63,7 +63,7 @@ class Runs:
         options = replace(task.options, threads=threads if many else 1)
         with (
             dem.Model(bodies, options, shift=task.shift, moves=task.moves) as model,
-            as_motion_set([task.ground or dem.STILL]) as motions,
+            as_motion_set([task.ground or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)
             found = model.run(motions, scale=task.scale, times=task.times, state=state, watch=told)
@@ -82,7 +82,7 @@ class Runs:
             "time": padded(found.time, length),
             "place": padded(found.place, length),
             "rate": padded(found.rate, length),
-            "energy": padded(np.stack([found.energy[name] for name in dem.ENERGIES], axis=-1), length),
+            "energy": padded(np.stack([found.energy[name] for name in dem_run.ENERGIES], axis=-1), length),
             "settled": found.settled,
             "bounces": found.bounces,
             "airborne": found.airborne,
@@ -100,7 +100,7 @@ class Runs:
             time=row["time"][:points],
             place=row["place"][:points],
             rate=row["rate"][:points],
-            energy={name: row["energy"][:points, i] for i, name in enumerate(dem.ENERGIES)},
+            energy={name: row["energy"][:points, i] for i, name in enumerate(dem_run.ENERGIES)},
             settled=row["settled"],
             bounces=row["bounces"],
             airborne=row["airborne"],
@@ -152,7 +152,7 @@ class SolidRuns:
         options = replace(task.options, threads=threads if len(self.bodies.mass) >= SOLIDS_FOR_THREADS else 1)
         with (
             dem3.Model(self.bodies, options) as model,
-            as_motion_set([task.ground or dem.STILL]) as motions,
+            as_motion_set([task.ground or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)
             return model.run(motions, times=task.times, state=state, watch=told)
@@ -160,7 +160,7 @@ class SolidRuns:
     def rows(self, found: dem3.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""
         length = max(len(task.times) for task in self.tasks)
-        energy = np.stack([found.energy[name] for name in dem3.ENERGIES], axis=-1)
+        energy = np.stack([found.energy[name] for name in dem_run.ENERGIES], axis=-1)
         histories = {"time": found.time, "place": found.place, "turn": found.turn, "rate": found.rate, "energy": energy}
         return {
             "reason": np.array(found.reason),
@@ -181,7 +181,7 @@ class SolidRuns:
         return dem3.Run(
             reason=str(row["reason"]),
             blamed=[int(b) for b in row["blamed"] if b >= 0],
-            energy={name: row["energy"][:points, i] for i, name in enumerate(dem3.ENERGIES)},
+            energy={name: row["energy"][:points, i] for i, name in enumerate(dem_run.ENERGIES)},
             **{name: row[name][:points] for name in ("time", "place", "turn", "rate")},
             **{name: row[name] for name in ("settled", "settled_turn", "bounces", "airborne")},
             **{name: float(row[name]) for name in NUMBERS},
