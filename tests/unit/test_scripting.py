@@ -12,7 +12,7 @@ import pytest
 
 import extrados
 from extrados import kinds, objects
-from extrados.decks.reader import make_deck, read_deck
+from extrados.decks.reader import PROPERTIES, make_deck, read_deck
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 DECKS = sorted(p for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml"))
@@ -40,7 +40,10 @@ def test_every_kind_has_an_object_with_its_keys() -> None:
             assert (maker.section, maker.kind) == (section, kind)
             assert set(inspect.signature(maker).parameters) == set(kinds.table(section, kind).model_fields) - {"kind"}
             assert maker.__doc__.count("\n") > 4
-    assert {"Arch", "Rocking", "Joints", "Tie", "deck", "sweep"} <= set(dir(extrados))
+    for name, model in PROPERTIES.items():
+        assert getattr(extrados, model.__name__).table is model, f"[{name}] has no object: another is called so"
+    assert len(objects.names()) == len(set(objects.names()))
+    assert {"Arch", "Rocking", "Joints", "Supports", "Tie", "deck", "sweep"} <= set(dir(extrados))
 
 
 def test_an_object_is_what_a_deck_says() -> None:

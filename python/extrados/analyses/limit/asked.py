@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.tables import Imperfections, Supports, Survey, Sweep
+from extrados.analyses.limit.tables import Imperfections, MovingSupports, Survey, Sweep
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.building.files import read
@@ -155,7 +155,7 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     return float(deviation)
 
 
-def refuse_still(building: Building, options: Supports) -> None:
+def refuse_still(building: Building, options: MovingSupports) -> None:
     """Refused where the deck moves nothing."""
     if building.initial.movements:
         movements_of(building)

@@ -42,7 +42,7 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
             from extrados.analyses.limit.trains import fitting_train
 
             yield lambda: fitting_train(building, options)
-        case tables.Supports():
+        case tables.MovingSupports():
             yield lambda: refuse_still(building, options)
 
 
