@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import Chain
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Context
 from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
 from extrados.analyses.shell.needs import pier_strength
@@ -364,10 +364,6 @@ def _varied(building: Building, variant: Variant) -> Building:
         materials={name: material(of) for name, of in building.materials.items()}, _views={},
     )  # fmt: skip
     if not isinstance(plan, Plan):
-        if variant.floors != 1.0 or variant.prestress != 1.0:
-            raise Refused(
-                f"variant '{variant.name}': a structure of kind '{plan.kind}' has no floors and no forces on walls"
-            )
         return changed.having(structure=plan.model_copy(update={"thickness": variant.thickness * plan.thickness}))
     walls = [
         wall.model_copy(
