@@ -139,6 +139,10 @@ WRONG = {
         "give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',
     ),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
+    "energy ratio of an arch": ("that of a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
+    "energy ratio of spectra": (
+        "square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
+    ),
     "spectra on a soft base": (
         "rigid ground", PULSE + '[supports]\nstiffness = "10 MPa/m" # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
     ),

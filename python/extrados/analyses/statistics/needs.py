@@ -14,7 +14,7 @@ def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Ne
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     yield from rocking.needs(context, options)
     if isinstance(options, tables.RockingSpectrum):
-        yield lambda: _refuse_base(context.building)
+        yield lambda: _refuse_of_spectra(context.building)
     if not isinstance(options, tables.Fragility):
         return
     yield lambda: _refuse_motions(context, options)
@@ -29,7 +29,11 @@ def needs(context: Context, options: rocking.tables.RockingTable) -> Iterator[Ne
         yield lambda: refuse_unknown(context.building, sorted(options.uncertain))
 
 
-def _refuse_base(building: Building) -> None:
+def _refuse_of_spectra(building: Building) -> None:
+    if building.joints.energy_ratio is not None:
+        raise Refused(
+            "spectra take restitution, of these blocks the square root of the energy ratio", ("joints", "energy_ratio")
+        )
     if building.supports.stiffness is not None:
         raise Refused(
             "spectra are those of structures on rigid ground; leave it out, or ask `rocking` of a block",
