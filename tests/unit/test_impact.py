@@ -203,3 +203,18 @@ def test_assessment_is_held_against_the_run() -> None:
     assert any("replaced by a sine" in text for text in run.results[0].warnings)
     disagree = (r.verdict == "fails") != (r.run_outcome == "collapse")
     assert disagree == any("better witness" in text for text in run.results[0].warnings)
+
+
+def test_another_rule_in_place_of_the_thesis_is_told() -> None:
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
+    tables = {"motion": motion, "joints": {"restitution": "thesis"}, "analysis": {"kind": "rocking"}}
+    pointed = {"kind": "pointed-arch", "span": 8.0, "radius": 5.0, "thickness": 0.8, "voussoirs": 10}
+    round_arch = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 157.5, "voussoirs": 9}
+    told = [
+        any(
+            '"energy-safe" stands in its place' in text
+            for text in extrados.run({"structure": s, **tables}).analyses[0]["warnings"]
+        )
+        for s in (pointed, round_arch)
+    ]
+    assert told == [True, False]
