@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import extrados
 from extrados.analyses.rocking.block import pose, toe_forces
 from extrados.building.rockers.block import BlockModel
 from extrados.building.templates.block import make_block
@@ -337,3 +338,14 @@ def test_column_is_taken_as_one_body() -> None:
     r = extrados.run({"structure": tapered, "motion": motion, "analysis": {"kind": "rocking"}})["rocking"]
     centre = 2.0 / 3.0 * (0.5 + 2 * 0.4) / (0.5 + 0.4)  # of a trapezium
     assert r["critical_rotation_rad"] == pytest.approx(np.arctan(0.25 / centre), rel=1e-9)
+
+
+def test_an_answer_names_the_energy_ratio_that_it_rests_on() -> None:
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
+    block = {"kind": "block", "width": 0.5, "height": 2.0}
+    run = extrados.run(
+        {"structure": block, "motion": motion, "joints": {"energy_ratio": 0.5}, "analysis": {"kind": "rocking"}}
+    )
+    rests = run.analysis("rocking")["assumptions"]
+    assert rests["joints.energy_ratio"]["value"] == 0.5 and rests["joints.energy_ratio"]["from"] == "deck"
+    assert "joints.restitution" not in rests and "energy ratio 0.5 (deck)" in run.analysis("rocking")["answer"]

@@ -218,3 +218,18 @@ def test_impulses_beyond_the_criterion_are_told(amplitude: str, outcome: str) ->
     assert (run["assessment"].verdict, run["assessment"].run_outcome) == ("stands", outcome)
     told = " ".join(run.results[0].warnings)
     assert ("lies above" in told) == ("beyond the criterion" in told) == (outcome == "collapse")
+
+
+def test_another_rule_in_place_of_the_thesis_is_told() -> None:
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
+    tables = {"motion": motion, "joints": {"restitution": "thesis"}, "analysis": {"kind": "rocking"}}
+    pointed = {"kind": "pointed-arch", "span": 8.0, "radius": 5.0, "thickness": 0.8, "voussoirs": 10}
+    round_arch = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 157.5, "voussoirs": 9}
+    told = [
+        any(
+            '"energy-safe" stands in its place' in text
+            for text in extrados.run({"structure": s, **tables}).analyses[0]["warnings"]
+        )
+        for s in (pointed, round_arch)
+    ]
+    assert told == [True, False]

@@ -342,9 +342,9 @@ class _Checker:
             wanted = f"at least {limits['min_length']}" if sort == "too_short" else f"at most {limits['max_length']}"
             self.complain(at, f"{_shown(problem.get('input'))}: expected {wanted}, found {limits['actual_length']}")
         else:
-            unit = _unit(model, place)
-            texts = dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems)
-            self.complain(at, f"{_shown(problem.get('input'))}: {', or '.join(texts)}{f' {unit}' if unit else ''}")
+            told = ", or ".join(dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems))
+            unit = _unit(model, place) if told[-1].isdigit() else ""  # of a bound
+            self.complain(at, f"{_shown(problem.get('input'))}: {told}{f' {unit}' if unit else ''}")
 
     def fits(self, analysis: Analysis, data: dict[str, Any], path: tuple) -> None:
         """Complain where the deck lacks what an analysis looks at."""

@@ -10,7 +10,6 @@ from extrados.analyses.codes.kinematics import Capacity, capacity
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.context import Context, Refused
-from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.core.errors import CoreError
 from extrados.limit.linkage import laden
@@ -31,6 +30,8 @@ def run(context: Context, options: LocalMechanism) -> Result:
     if options.mechanism == "building":
         found, curve, words = _of_building(context)
     else:
+        if options.mechanism == "corner" and material.compressive_strength is not None:
+            context.warnings.append("a corner turns about its outer edge, as if the stone did not crush there")
         body = overturning(options, material.density, material.compressive_strength)
         alpha0 = body.multiplier()
         weight, displacement = body.swaying
@@ -74,10 +75,8 @@ def run(context: Context, options: LocalMechanism) -> Result:
 
 def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarray], str]:
     """The weaker of both collapse mechanisms of the deck's stones, with its finite motion."""
-    structure = context.building.structure
-    if structure is None:
-        raise Refused('mechanism = "building" needs a [structure]')
-    stones: Assembly = context.building.blocks()
+    structure, stones = context.building.structure, context.building.blocks()
+    assert structure is not None
     model = MechanismModel(stones)
     side = int(np.argmin(model.uplift))
     mass, _, _ = laden(stones)
