@@ -457,8 +457,8 @@ contains
       call group%spread(e, sqrt(group%area(p) * abs(change)) * nodal(group, e, p, v), event, event%rank)
    end subroutine add_vector
 
-   !> Bring a strength to the tooth at which no more of it is left than of the other. Where one is past its first, so is the
-   !> other: the joint then opens and closes, and knows whether friction acts
+   !> Bring a strength to the tooth at which no more of it is left than of the other. Where one is past its first, so
+   !> is the other: the joint then opens and closes, and knows whether friction acts
    pure subroutine wear_with(teeth, table, tooth, its_table, its_tooth)
       type(tooth_tables), intent(in) :: teeth
       integer(c_int), intent(in) :: table, tooth        !! of the strength that fell

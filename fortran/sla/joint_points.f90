@@ -12,9 +12,9 @@
 !> is a force that follows the displacements, see sla_friction. Slip that turns back sticks.
 !>
 !> Cohesion and tension are one bond: the same part of both is left (Lourenco and Rots 1997). The split of a bond and a
-!> slider is that of Alfano and Sacco (2006), but that here friction helps from the start, as in Coulomb's law. The bond is
-!> a spring from zero slip, so its teeth are stretched by the slip s = mu |sigma| / ks that friction alone allowed before
-!> the first: c_i at the slip c_i / k_i + s. Were the spring to begin at s, the first slip would create energy.
+!> slider is that of Alfano and Sacco (2006), but that here friction helps from the start, as in Coulomb's law. The bond
+!> is a spring from zero slip, so its teeth are stretched by the slip s = mu |sigma| / ks that friction alone allowed
+!> before the first: c_i at the slip c_i / k_i + s. Were the spring to begin at s, the first slip would create energy.
 !>
 !> Cracked joints close again with their initial normal stiffness. What opens without strength, and what closes, does so
 !> at zero stress; a joint that closes slides on as it moved.
