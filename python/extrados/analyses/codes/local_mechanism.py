@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from extrados.analyses.codes.code_checks import spectrum_of
+from extrados.analyses.codes import ntc
+from extrados.analyses.codes.code_checks import demanded_spectrum
 from extrados.analyses.codes.code_rules import Line
 from extrados.analyses.codes.kinematics import Capacity, capacity
 from extrados.analyses.codes.mechanisms import overturning
@@ -18,8 +19,6 @@ from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
-#: d_u* over d_0*, and d_s* over d_u*
-ULTIMATE, SECANT = 0.4, 0.4
 #: ASCE 41 height over thickness up to which no out-of-plane check is asked, for S_X1 up to 0.24 g, up to 0.37 g, above
 SLENDER = {"one-story": (20, 16, 13), "first": (20, 18, 15), "top": (14, 14, 9), "other": (20, 16, 13)}
 STEPS = 61
@@ -45,11 +44,11 @@ def run(context: Context, options: LocalMechanism) -> Result:
     lines, more = _checks(context, options, found)
     a0 = found.acceleration / options.confidence_factor
     d0 = found.d0
-    period = None if d0 is None else _secant(a0, d0)
     r = out.LocalMechanism(
         mechanism=options.mechanism, multiplier=found.alpha0, participating_mass_kg=found.mass, participating_part=found.part,
         activation_acceleration_g=a0 / GRAVITY, zero_displacement_m=d0,
-        ultimate_displacement_m=None if d0 is None else ULTIMATE * d0, secant_period_s=period,
+        ultimate_displacement_m=None if d0 is None else ntc.SLV * d0, collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
+        equivalent_period_s=None if d0 is None else ntc.equivalent_period(a0, d0),
         swaying_weight_N=found.mass * GRAVITY / found.part,
         checks={x.rule: out.Check(capacity=x.capacity, demand=x.demand, unit=x.unit, verdict=x.verdict, source=x.source, note=x.note, code=x.code)
                 for x in lines}, **more,
@@ -95,54 +94,27 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
     return found, (turned * scale, np.abs(alpha)), f"the mechanism of the {structure.word}"
 
 
-def _secant(a0: float, d0: float) -> float:
-    """T_s = 2 pi sqrt(d_s*/a_s*), on the straight capacity curve."""
-    d_s = SECANT * ULTIMATE * d0
-    return float(2.0 * np.pi * np.sqrt(d_s / (a0 * (1.0 - d_s / d0))))
-
-
 def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple[list[Line], dict[str, float]]:
-    spectrum = spectrum_of(context, options.spectrum)
+    spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum)
     a_g = spectrum(0.0, 0.05) if spectrum is not None else None
     if options.peak_acceleration is not None:
         a_g = options.peak_acceleration
-    pga = None if a_g is None else a_g / GRAVITY
-    a0 = found.acceleration / options.confidence_factor
-    q = options.behaviour_factor
-    lines = [
-        Line("NTC linear (at the ground)", "a_g S", a0 / GRAVITY * q, pga, "g",
-             "NTC 2018, Circ. 7/2019 C8.7.1.2.1: a_0* >= a_g S/q (verify clause)", f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}, q {q:g}",
-             "NTC 2018"),
-    ]  # fmt: skip
-    more: dict[str, float] = {}
-    if found.d0 is not None:
-        period = _secant(a0, found.d0)
-        demand = None if spectrum is None else spectrum(period, 0.05) * (period / (2.0 * np.pi)) ** 2
-        floor = _floor(options, spectrum, period)
-        if floor is not None and demand is not None:
-            demand = max(demand, floor[1])
+    q, height = options.behaviour_factor, options.building_height
+    at_height = None
+    if spectrum is not None and options.base_height > 0.0 and height is not None:
+        at_height = ntc.floor(spectrum, options.base_height, height, options.storeys, options.building_period)
+    note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}, q {q:g}"
+    if height is not None:
+        note += f", z/H {options.base_height / height:.3g}"
+    lines = ntc.checks(found.acceleration / options.confidence_factor, found.d0, q, a_g, spectrum, note, at_height)
+    more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
+    if height is not None and options.base_height > 0.0 and a_g is not None:
+        part = a_g / GRAVITY * (3.0 * (1.0 + options.base_height / height) / 2.0 - 0.5)
         lines.append(
-            Line("NTC nonlinear", "displacement", ULTIMATE * found.d0, demand, "m",
-                 "Circ. 617/2009 C8A.4.2.2: d_u* = 0.4 d_0* >= S_De(T_s) (verify clause)", f"T_s {period:.3f} s", "NTC 2018")
+            Line("EN 1998-1 part of a building", "S_a", found.alpha0 * q, part, "g",
+                 "EN 1998-1:2004 4.3.5.2: S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5), T_a = 0; q_a = q (verify clause)",
+                 "rigid until it rocks", "EN 1998-1")
         )  # fmt: skip
-    if options.base_height > 0.0:
-        elevated = _floor(options, spectrum, 0.0)
-        acceleration = None if elevated is None else elevated[0] / GRAVITY
-        if acceleration is not None:
-            more["floor_acceleration_g"] = acceleration
-        # at a height both linear checks must hold: told as a code of its own
-        lines.append(
-            Line("NTC linear (at height z)", "S_e(T_1) psi gamma", a0 / GRAVITY * q, acceleration, "g",
-                 "Circ. 617/2009 C8A.4.2.3: a_0* >= S_e(T_1) psi(Z) gamma/q, psi = Z/H, gamma = 3 N/(2 N + 1) (verify clause)",
-                 f"z/H {options.base_height / (options.building_height or 1.0):.3g}", "NTC 2018 at height")
-        )  # fmt: skip
-        if pga is not None:
-            part = pga * (3.0 * (1.0 + options.base_height / (options.building_height or 1.0)) / 2.0 - 0.5)
-            lines.append(
-                Line("EN 1998-1 part of a building", "S_a", found.alpha0 * q, part, "g",
-                     "EN 1998-1:2004 4.3.5.2: S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5), T_a = 0; q_a = q (verify clause)",
-                     "rigid until it rocks", "EN 1998-1")
-            )  # fmt: skip
     if options.one_second_acceleration is not None and options.thickness and options.height:
         s_x1 = options.one_second_acceleration / GRAVITY
         limit = SLENDER[options.storey][0 if s_x1 <= 0.24 else 1 if s_x1 <= 0.37 else 2]
@@ -153,21 +125,6 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
     if options.mechanism in ("parapet", "wall", "gable") and options.thickness and options.height:
         lines.append(_nzsee(options, spectrum))
     return lines, more
-
-
-def _floor(
-    options: LocalMechanism, spectrum: Callable[[float, float], float] | None, period: float
-) -> tuple[float, float] | None:
-    """Acceleration S_e(T_1) psi gamma [m/s^2], and the displacement at the secant period [m], of a place above the ground."""
-    height = options.building_height
-    if spectrum is None or options.base_height <= 0.0 or height is None:
-        return None
-    first = options.building_period or 0.05 * height**0.75
-    psi, gamma = options.base_height / height, 3.0 * options.storeys / (2.0 * options.storeys + 1.0)
-    acceleration = spectrum(first, 0.05) * psi * gamma
-    ratio = period / first
-    de = spectrum(first, 0.05) * (first / (2.0 * np.pi)) ** 2
-    return acceleration, de * psi * gamma * ratio**2 / np.sqrt((1.0 - ratio) ** 2 + 0.02 * ratio)
 
 
 def _nzsee(options: LocalMechanism, spectrum: Callable[[float, float], float] | None) -> Line:
