@@ -187,3 +187,56 @@ def test_the_spectrum_of_the_motion_where_a_deck_has_no_code() -> None:
     assert coded.peak_ground_acceleration_g == pytest.approx(0.18), "that of a code goes first"
     (told,) = mechanism(mechanism="wall", height=2.0, thickness=0.4, motion_spectrum=True).analyses
     assert told["status"] == "refused" and "[motion]" in told["reason"]
+
+
+def test_ties_and_a_wall_hold_the_buildings_own_mechanism() -> None:
+    """b/h and the moment of both ties at what they bear, as tilt says; the displacement counts on the weight alone."""
+    facade: dict = {
+        "structure": {"kind": "block", "width": 0.6, "height": 8.0},
+        "ties": [
+            {"start": [-0.3, z], "start_stone": "block", "ground": [-5.3, z], "stiffness": "8 MN/m", "yield_force": f"{force} kN"}
+            for z, force in ((3.8, 6), (7.4, 4))
+        ],
+    }  # fmt: skip
+    asked = {"kind": "local-mechanism", "mechanism": "building", "peak_acceleration": "0.2 g"}
+    weight = 2000.0 * GRAVITY * 0.6 * 8.0
+    held = 0.075 + (6e3 * 3.8 + 4e3 * 7.4) / (weight * 4.0)
+    free = extrados.run({**facade, "analysis": asked})["local-mechanism"]
+    assert free.multiplier == pytest.approx(0.075, rel=1e-6), "ties do not hold it back from the cross walls"
+    against = {**facade, "supports": {"abutting_wall": "left", "rebound": 0.4}}
+    found = extrados.run({**against, "analysis": asked})["local-mechanism"]
+    assert found.multiplier == pytest.approx(held, rel=1e-6)
+    assert found.zero_displacement_m == pytest.approx(4.0 * np.arctan(0.075), rel=1e-6)
+    alone = 0.075 * GRAVITY / 1.35
+    assert found.equivalent_period_s == pytest.approx(
+        1.68 * np.pi * np.sqrt(0.4 * found.zero_displacement_m / (0.6 * alone)), rel=1e-6
+    )
+    facade["ties"][0].pop("yield_force")
+    (told,) = extrados.run(
+        {**facade, "supports": {"abutting_wall": "left", "rebound": 0.4}, "analysis": asked}
+    ).analyses
+    assert told["status"] == "refused" and "never yields" in told["reason"]
+
+
+def test_a_mechanism_that_slides_is_not_taken_as_one_that_turns() -> None:
+    block = {"structure": {"kind": "column", "width": 1.0, "height": 2.0, "drums": 1}}
+    asked = {"kind": "local-mechanism", "mechanism": "building", "peak_acceleration": "0.2 g"}
+    slides = extrados.run({**block, "joints": {"friction": 0.3}, "analysis": asked})
+    r = slides["local-mechanism"]
+    assert r.multiplier == pytest.approx(0.3, rel=1e-6) and r.participating_part == pytest.approx(1.0)
+    assert r.zero_displacement_m is None and "slide" in slides.analyses[0]["warnings"][0]
+    turns = extrados.run({**block, "joints": {"friction": 0.7}, "analysis": asked})
+    assert turns["local-mechanism"].multiplier == pytest.approx(0.5, rel=1e-6) and not turns.analyses[0]["warnings"]
+
+
+def test_ties_of_the_table_are_not_counted_on_to_collapse() -> None:
+    """Circ. 7/2019 C8.7.1.2.1.6: d_0 on a curve of the actions that are there until collapse."""
+    base = {"mechanism": "facade", "height": 6.0, "thickness": 0.6}
+    bare, tied = (
+        mechanism(**base, **more)["local-mechanism"] for more in ({}, {"ties": [{"height": 5.5, "force": 2e3}]})
+    )
+    assert tied.multiplier > bare.multiplier and tied.zero_displacement_m == pytest.approx(bare.zero_displacement_m)
+    pushed = mechanism(**base, floors=[{"height": 6.0, "thrust": 1e3}])["local-mechanism"]
+    assert pushed.zero_displacement_m < bare.zero_displacement_m
+    only = mechanism(**base, floors=[{"height": 6.0, "thrust": 8e3}], ties=[{"height": 6.0, "force": 9e3}])
+    assert only["local-mechanism"].zero_displacement_m is None and "without its ties" in only.analyses[0]["warnings"][0]

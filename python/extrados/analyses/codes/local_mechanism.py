@@ -11,9 +11,13 @@ from extrados.analyses.codes.kinematics import Capacity, capacity
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.common import limit_of
+from extrados.analyses.limit.tables import Tilt
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.rockers.restraints import Restraints, members_of
 from extrados.core.errors import CoreError
+from extrados.core.restraints import FREE
 from extrados.limit.linkage import laden
 from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
@@ -33,14 +37,18 @@ def run(context: Context, options: LocalMechanism) -> Result:
         body = overturning(options, material.density, material.compressive_strength)
         alpha0 = body.multiplier()
         weight, displacement = body.swaying
-        end = body.ultimate()
-        found = capacity(alpha0, weight, displacement, end)
+        end, alone = body.ultimate(), body.alone
+        found = capacity(alpha0, weight, displacement, alone.ultimate(), alone.multiplier())
         turned = np.linspace(0.0, end if end else 0.1, STEPS)
         scale = float(weight @ displacement**2) / float(weight @ displacement)
         curve = (turned * scale, np.array([body.multiplier(q) for q in turned]))
         words = f"the {options.mechanism}"
     if found.alpha0 <= 0.0:
         raise Refused(f"{words} does not stand at rest: its multiplier is {found.alpha0:.3g}")
+    if found.d0 is None and found.alone <= 0.0:
+        context.warnings.append(
+            "without its ties it would not stand at rest: the nonlinear check, which does not count on them, is left out"
+        )
     lines, more = _checks(context, options, found)
     a0 = found.acceleration / options.confidence_factor
     d0 = found.d0
@@ -48,7 +56,7 @@ def run(context: Context, options: LocalMechanism) -> Result:
         mechanism=options.mechanism, multiplier=found.alpha0, participating_mass_kg=found.mass, participating_part=found.part,
         activation_acceleration_g=a0 / GRAVITY, zero_displacement_m=d0,
         ultimate_displacement_m=None if d0 is None else ntc.SLV * d0, collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
-        equivalent_period_s=None if d0 is None else ntc.equivalent_period(a0, d0),
+        equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / options.confidence_factor, d0),
         swaying_weight_N=found.mass * GRAVITY / found.part,
         checks={x.rule: out.Check(capacity=x.capacity, demand=x.demand, unit=x.unit, verdict=x.verdict, source=x.source, note=x.note, code=x.code)
                 for x in lines}, **more,
@@ -72,26 +80,83 @@ def run(context: Context, options: LocalMechanism) -> Result:
 
 
 def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarray], str]:
-    """The weaker of both collapse mechanisms of the deck's stones, with its finite motion."""
-    structure = context.building.structure
-    if structure is None:
+    """The weaker of the collapse mechanisms of the deck's stones that no wall stops, with its finite motion."""
+    building = context.building
+    if building.structure is None:
         raise Refused('mechanism = "building" needs a [structure]')
-    stones: Assembly = context.building.blocks()
+    stones: Assembly = building.blocks()
     model = MechanismModel(stones)
-    side = int(np.argmin(model.uplift))
     mass, _, _ = laden(stones)
-    try:
-        table = model.tables[side]
-    except CoreError as error:
-        raise Refused(f"the mechanism cannot be carried through its motion: {error}") from None
-    field = model.fields[side][:, 0] * (1.0, -1.0)[side]
-    found = capacity(model.uplift[side], mass * GRAVITY, field, table.critical)
-    turned = np.linspace(0.0, table.critical, STEPS)
-    c = model.coefficients((1, -1)[side], turned)
-    alpha = c.gravity_moment / (c.drive * GRAVITY)
     weight = mass * GRAVITY
+    reach = tuple((float(t.numbers[2]), float(t.numbers[3])) for t in model.tables)
+    held = Restraints(members_of(building, stones, model.linkages), model.linkages, (reach[0], reach[1]))
+    wall = building.supports.abutting_wall
+    curves = {}
+    for side in (k for k, against in enumerate(("right", "left")) if wall != against):
+        try:
+            table = model.tables[side]
+        except CoreError as error:
+            raise Refused(f"the mechanism cannot be carried through its motion: {error}") from None
+        turned = np.linspace(0.0, table.critical, STEPS)
+        c = model.coefficients((1, -1)[side], turned)
+        drive = np.abs(c.drive) * GRAVITY
+        curves[side] = (turned, (np.abs(c.gravity_moment) + _held(held, side, turned)) / drive, table.critical)
+    side = min(curves, key=lambda k: float(curves[k][1][0]))
+    turned, alpha, critical = curves[side]
+    if held.members and len(stones.mass) > 1:
+        context.warnings.append(
+            "the mechanism is the one without ties, dampers and added hinges, which then hold it: an upper bound"
+        )
+    words = f"the mechanism of the {building.structure.word}"
+    slides = _sliding(context, tuple(curves), float(alpha[0]))
+    if slides is not None:
+        context.warnings.append(
+            f"its joints slide, at a friction of {building.joints.friction}, before it turns (multiplier {float(alpha[0]):.4g} without "
+            "sliding): the displacement that it bears is not known"
+        )
+        multiplier, field = slides
+        return (
+            capacity(multiplier, weight, field, None),
+            (np.zeros(1), np.array([multiplier])),
+            f"{words}, which slides,",
+        )
+    field = model.fields[side][:, 0] * (1.0, -1.0)[side]
+    found = capacity(float(alpha[0]), weight, field, critical, model.uplift[side])
     scale = abs(float(weight @ field**2) / float(weight @ field))
-    return found, (turned * scale, np.abs(alpha)), f"the mechanism of the {structure.word}"
+    return found, (turned * scale, alpha), words
+
+
+def _sliding(context: Context, sides: tuple[int, ...], turning: float) -> tuple[float, np.ndarray] | None:
+    """Multiplier of limit analysis with the deck's friction, and the sideways velocities of its mechanism; None where sliding
+    does not make it less than `turning`, that of the mechanism which turns."""
+    building = context.building
+    stones = building.blocks()
+    mass, place, _ = laden(stones)
+    limit = limit_of(building, Tilt(kind="tilt"))
+    found = []
+    for side in sides:
+        state, mechanism = limit.collapse((1, -1)[side])
+        move = mechanism.velocity
+        found.append((abs(state.gamma), move[:, 0] - move[:, 2] * (place - stones.centroid)[:, 1]))
+    multiplier, sideways = min(found, key=lambda one: one[0])
+    if multiplier > 0.99 * turning:
+        return None
+    return multiplier, sideways * np.sign(mass @ sideways)
+
+
+def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
+    """Moment [N m] at each rotation by which ties, slipping dampers and hinges hold it back, all at what they bear."""
+    if not held.members:
+        return np.zeros(len(rotation))
+    _, slope = held.paths(side, rotation)
+    moment = np.zeros(len(rotation))
+    for k, member in enumerate(held.members):
+        law = member.law
+        bound = np.where(slope[:, k] > 0.0, law.most, -law.least) if law.stiffness > 0.0 else np.zeros(len(rotation))
+        if (bound >= FREE).any():
+            raise Refused(f"{member.name} never yields: give the force that its anchorage bears", ("ties",))
+        moment += bound * np.abs(slope[:, k])
+    return moment
 
 
 def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple[list[Line], dict[str, float]]:
@@ -106,7 +171,8 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
     note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}, q {q:g}"
     if height is not None:
         note += f", z/H {options.base_height / height:.3g}"
-    lines = ntc.checks(found.acceleration / options.confidence_factor, found.d0, q, a_g, spectrum, note, at_height)
+    fc = options.confidence_factor
+    lines = ntc.checks(found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc)
     more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
     if height is not None and options.base_height > 0.0 and a_g is not None:
         part = a_g / GRAVITY * (3.0 * (1.0 + options.base_height / height) / 2.0 - 0.5)

@@ -70,11 +70,13 @@ def floor(ground: Spectrum, height: float, building: float, storeys: int, period
 
 
 def checks(
-    a0: float, d0: float | None, q: float, peak: float | None, spectrum: Spectrum | None, note: str, at_height: Floor | None = None
+    a0: float, d0: float | None, q: float, peak: float | None, spectrum: Spectrum | None, note: str, at_height: Floor | None = None,
+    alone: float | None = None,
 ) -> list[Line]:  # fmt: skip
     """The linear check with q and the nonlinear one, of which either suffices; at a height both ask the floor.
 
-    a0: alpha_0 g/(e* FC) [m/s^2]; d0 [m]: where the capacity vanishes, None where it does not; peak: a_g S [m/s^2].
+    a0: alpha_0 g/(e* FC) [m/s^2]; d0 [m]: where the capacity vanishes, None where it does not; peak: a_g S [m/s^2];
+    alone: a0 of the curve to d0 where it is another, without ties that may not last to collapse.
     """
     demand, where, quantity = peak, "at the ground", "a_g S"
     if at_height is not None:
@@ -86,7 +88,7 @@ def checks(
              "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z, at the ground a_g S; [C8.7.1.8], [C7.2.8]", note, "NTC 2018"),
     ]  # fmt: skip
     if d0 is not None:
-        period = equivalent_period(a0, d0)
+        period = equivalent_period(a0 if alone is None else alone, d0)
         asked = None
         if at_height is not None:
             asked = displacement(at_height, period, peak=B * at_height.first)
