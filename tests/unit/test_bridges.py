@@ -7,6 +7,7 @@ import pytest
 from scipy import sparse
 from scipy.optimize import linprog
 
+import extrados
 from extrados.analyses.context import Context
 from extrados.analyses.limit.moving_load import Places, _top
 from extrados.analyses.limit.tables import MovingLoad
@@ -21,6 +22,7 @@ from extrados.building.templates.arch import make_arch
 from extrados.building.templates.bridge import Bridge, Span, intrados, make_bridge
 from extrados.decks.reader import DeckError, make_deck
 from extrados.limit.fill import passive_pressure, pressed, under_load
+from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, tilt_loads
 from extrados.limit.programme import LimitAnalysis
 from extrados.results.model import Result
@@ -347,6 +349,39 @@ def test_rings_that_crush_are_no_linear_programme(monkeypatch: pytest.MonkeyPatc
 
     monkeypatch.setattr(limit, "optimise", asked)
     assert limit.stands(0.0) and limit.stands(gamma - 1e-5) and not limit.stands(gamma + 1e-5)
+
+
+def test_rings_that_crush_are_answered_from_another_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With the train at the fifth place the first start of the interior-point method ends short of a state."""
+    met = []
+    first = CollapseProblem.state
+
+    def state(problem: CollapseProblem, scatter: Any = None) -> Any:
+        found = first(problem, scatter)
+        met.append((scatter is None, found[1] < RESIDUAL))
+        return found
+
+    monkeypatch.setattr(CollapseProblem, "state", state)
+    data = {
+        "structure": {
+            "kind": "bridge", "depth": 6.0, "piers": [{"width": 2.0, "height": 4.0}], "abutments": {"width": 3.0, "height": 4.0},
+            "spans": [
+                {"shape": "segmental", "span": 10.0, "rise": 2.5, "thickness": 0.55, "rings": 2},
+                {"shape": "three-centred", "span": 8.0, "rise": 2.4, "thickness": 0.5},
+            ],
+            "backing": {"height": 1.0}, "surfacing": {"thickness": 0.12},
+            "fill": {"cover": 0.4, "density": 1900.0, "friction_angle": "32 deg", "passive": 0.5},
+        },
+        "material": {"density": 2300.0, "compressive_strength": 8e6},
+        "joints": {"friction": 0.6, "types": [{"joints": ["rings"], "friction": 0.4}]},
+        "analysis": {
+            "kind": "moving-load", "axles": [0.0, 1.2, 5.0], "axle_loads": [60e3, 60e3, 40e3], "count": 9,
+            "factors": {"live": 1.35, "dynamic": 1.4, "strength": 2.0},
+        },
+    }  # fmt: skip
+    (answer,) = extrados.run(data).analyses
+    assert answer["status"] == "ok"
+    assert (True, False) in met and (False, True) in met
 
 
 def test_a_load_at_rest_spreads_through_the_fill() -> None:

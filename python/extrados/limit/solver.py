@@ -18,6 +18,7 @@ FEASIBILITY = 1e-10
 BOUND = 1e5  # of the scaled unknowns; reached only where the structure cannot be moved at all
 FEW = 32  # unknowns: more are left to HiGHS
 MADE_UP = 1e-6  # of the value: what bounds may have of it by rounding
+STEPS, STEPS_EACH, STEPS_INSIDE = 10_000, 10, 500  # of the simplex and the interior-point method: some programmes cycle
 INFINITY = highspy.kHighsInf
 _NONE = np.empty(0)
 
@@ -137,6 +138,8 @@ class Programme:
 
 def _decided(solver: highspy.Highs) -> highspy.HighsModelStatus:
     """Status of the solve from the last basis; where that ends without a word, from scratch by other methods."""
+    size = solver.getNumRow() + solver.getNumCol()
+    solver.setOptionValue("simplex_iteration_limit", STEPS + STEPS_EACH * size)
     solver.run()
     status = solver.getModelStatus()
     if status in _DECIDED:
@@ -209,4 +212,5 @@ def _options(sparse_form: bool, more_than_pressing: bool) -> highspy.HighsOption
         options.simplex_scale_strategy = 0
     options.primal_feasibility_tolerance = options.dual_feasibility_tolerance = FEASIBILITY
     options.small_matrix_value = 1e-12
+    options.ipm_iteration_limit = STEPS_INSIDE
     return options
