@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import matplotlib
 import numpy as np
 import pytest
 from figure_faults import Watch, faults
@@ -24,9 +23,6 @@ SOME = (
 )
 
 
-@pytest.mark.skipif(
-    matplotlib.__version_info__ < (3, 10), reason="matplotlib 3.9 leaves no room for the last number of an axis"
-)
 @pytest.mark.parametrize("case", SOME)
 def test_figures_can_be_read(case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = extrados.run(CASES / f"{case}.toml")
