@@ -165,23 +165,14 @@ def test_fixed_cracks_do_not_meet_it() -> None:
 
 
 @pytest.mark.verify
+@pytest.mark.parametrize(("pattern", "seed"), [("structured", 1), ("random", 1), ("random", 2)])
 @pytest.mark.parametrize("depth", DEPTHS)
 @pytest.mark.parametrize("law", LAWS)
-def test_fine_teeth_meet_the_tail(law, depth) -> None:
-    """Teeth a quarter as wide, twelve squares over the ligament: within 5 % at the peak and all along the tail. What is off there
+def test_fine_teeth_meet_the_tail(law, depth, pattern, seed) -> None:
+    """Teeth a quarter as wide, 24 elements over the ligament: within 5 % at the peak and all along the tail. What is off there
     at the default p is the width of the teeth, which near a quarter of the peak is a large part of what is left."""
-    found = errors(depth, law, 12, ripple=0.0125)
+    found = errors(depth, law, 24, pattern, seed, ripple=0.0125)
     assert max(abs(e) for e in (found.peak, *found.tail, found.work)) < 0.05
-
-
-@pytest.mark.verify
-@pytest.mark.parametrize("depth", DEPTHS)
-@pytest.mark.parametrize("law", LAWS)
-def test_fine_teeth_meet_the_tail_in_random_triangles(law, depth) -> None:
-    """The same of 24 triangles over the ligament, two meshes."""
-    for seed in (1, 2):
-        found = errors(depth, law, 24, "random", seed, ripple=0.0125)
-        assert max(abs(e) for e in (found.peak, *found.tail, found.work)) < 0.05
 
 
 #: What default elements are held to, by elements over the ligament: peak, tail at 75 and at 50 % of the peak, at 25 %, work.
@@ -193,9 +184,9 @@ HELD = {
         24: (0.03, 0.03, 0.04, 0.12, 0.02),
     },
     "random": {
-        6: (0.17, 0.18, 0.26, 0.35, 0.13),
-        12: (0.07, 0.07, 0.13, 0.20, 0.04),
-        24: (0.06, 0.06, 0.09, 0.13, 0.03),
+        6: (0.12, 0.13, 0.20, 0.25, 0.09),
+        12: (0.07, 0.06, 0.09, 0.22, 0.04),
+        24: (0.06, 0.06, 0.13, 0.13, 0.03),
     },
 }
 
