@@ -240,12 +240,37 @@ def test_what_is_moved_by_default() -> None:
 def test_what_only_elements_know_is_tried_on_them() -> None:
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.25, "embrace": 150.0, "voussoirs": 6}
     data = deck(structure=arch, assess={"strategies": ["dem"], "vary": {"material.density": 0.1}})
-    probes = {p.changed: p for p in extrados.run(data)["assess"].probes}
-    assert {"joints 4 times as stiff", "joints 4 times as soft"} <= set(probes)
-    (moved,) = [p for text, p in probes.items() if "right support" in text]
-    assert moved.value is not None and moved.value > 2.0 * probes["joints 4 times as stiff"].value, (
-        "it opens as its support moves"
+    r = extrados.run(data)["assess"]
+    probes = {p.changed: p for p in r.probes}
+    assert {"joints 4 times as stiff", "joints 0.25 times as stiff"} <= set(probes)
+    rows = {m.key: m for m in r.sensitivity}
+    stiffness, support = rows["joints.normal_stiffness"], rows["initial.movements.dx"]
+    assert stiffness.high == pytest.approx(4.0 * stiffness.base) and stiffness.low == pytest.approx(
+        0.25 * stiffness.base
     )
+    assert stiffness.dem_high == pytest.approx(probes["joints 4 times as stiff"].value)
+    assert stiffness.dem_low > stiffness.dem_high and stiffness.dem_turns is None, "softer joints give more; none falls"
+    assert (support.low, support.base) == (-support.high, 0.0) and support.high > 0.0
+    assert support.dem_high > 2.0 * stiffness.dem_high, "it opens as its support moves"
+    assert rows["material.density"].dem_base is None
+
+
+def test_where_elements_turn_is_sought_between_what_stands_and_what_falls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Elements that fall by decree where joints are softer than half: found by halvings of the logarithm."""
+    probed = driver._Work._probe
+
+    def decreed(work: driver._Work, strategy: str, changed: str, kind: str, keys: dict, *rest, **more) -> Result | None:
+        found = probed(work, strategy, changed, kind, keys, *rest, **more)
+        if "as stiff" in changed and float(changed.split()[1]) < 0.5:
+            found = replace(found, results=found.results.model_copy(update={"outcome": "collapse"}))
+        return found
+
+    monkeypatch.setattr(driver._Work, "_probe", decreed)
+    arch = {"kind": "arch", "radius": 1.0, "thickness": 0.25, "embrace": 150.0, "voussoirs": 6}
+    r = extrados.run(deck(structure=arch, assess={"strategies": ["dem"], "vary": {"material.density": 0.1}}))["assess"]
+    row = next(m for m in r.sensitivity if m.key == "joints.normal_stiffness")
+    assert row.dem_turns == pytest.approx(0.5 * row.base, rel=0.1)
+    assert next(m for m in r.sensitivity if m.key == "initial.movements.dx").dem_turns is None
 
 
 def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> None:
