@@ -143,6 +143,32 @@ def test_of_a_set_the_84_percent_motion_is_taken() -> None:
     assert r.verdicts[0].strategy == "probability" and "12 motions" in r.verdicts[0].parameters
 
 
+def test_a_suite_of_records_is_a_hazard(tmp_path: Path) -> None:
+    """All records are rocked first; strategies of one motion take the one that turns it farther than 84 % of the others."""
+    time = np.arange(0.0, 4.0, 0.01)
+    for k, (peak, period) in enumerate(((1.5, 0.5), (3.5, 0.7), (5.0, 0.9), (2.5, 0.6))):
+        np.savetxt(
+            tmp_path / f"r{k}.csv", peak * np.sin(2.0 * np.pi * time / period) * (time < period), header="acceleration"
+        )
+    motion = {"kind": "suite", "pattern": "r*.csv", "unit": "m/s^2", "time_step": 0.01}
+    given = {"strategies": ["tilt", "rocking", "code-checks", "probability"], "budget": 5}
+    run = extrados.run(
+        make_deck({"structure": COLUMN, "motion": motion, "analysis": {"kind": "assess", **given}}, tmp_path)
+    )
+    r = run["assess"]
+    assert (r.hazard.motions, r.hazard.member) == (4, 3)
+    assert r.hazard.peak_ground_acceleration_g == pytest.approx(5.0 / GRAVITY, rel=0.01), (
+        "of the record that single runs take"
+    )
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["probability"].demand == 0.25, "one of four"
+    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "falls"
+    alone = extrados.run(
+        make_deck({"structure": COLUMN, "motion": {**motion, "member": 3}, "analysis": {"kind": "rocking"}}, tmp_path)
+    )
+    assert run["rocking"].as_json() == alone["rocking"].as_json()
+
+
 def test_the_code_spectrum_gives_the_peak() -> None:
     motion = Compatible(kind="compatible", code="EN1998-1", ground="B", acceleration="0.25 g")
     context = Context(replace(make_deck(deck()), motion=motion))
@@ -164,6 +190,21 @@ def test_excursions_above_a_level() -> None:
     count, longest = hazard.above(pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.2)
     assert count == 2 and longest == pytest.approx(1.2 / 3.0, abs=0.01)  # above a half from T/12 to 5 T/12
     assert hazard.above(pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.5) == (0, 0.0)
+
+
+def test_codes_are_asked_with_the_spectrum_of_the_motion_and_with_what_holds_the_building() -> None:
+    """Without a code's spectrum that of the motion; a block that ties hold goes by its local mechanism, which knows them."""
+    run = extrados.run(deck(ties=[TIE], assess={"strategies": ["code-checks"]}))
+    checks = run["local-mechanism"].checks
+    assert (
+        checks["NTC linear (at the ground)"].demand == pytest.approx(0.3, rel=1e-3)
+        and checks["NTC nonlinear"].demand is not None
+    )
+    (row,) = run["assess"].verdicts
+    assert row.outcome in ("stands", "falls") and "without" not in row.parameters and "motion itself" in row.parameters
+    free = extrados.run(deck(assess={"strategies": ["code-checks"]}))
+    assert free["code-checks"].checks["Ishiyama velocity"].demand is not None
+    assert free["assess"].verdicts[0].outcome in ("stands", "falls")
 
 
 # ----- the table and the statement (the rules: test_reasons.py)

@@ -67,6 +67,18 @@ def test_it_goes_on_where_it_was_stopped(folder: Path, tmp_path: Path, monkeypat
     assert len(rows) == 3 and not set(done) & set(again), "the building that was done is not computed anew"
 
 
+def test_a_cluster_gives_the_same_ranking(cluster, folder: Path, tmp_path: Path) -> None:
+    address, _ = cluster
+    apart = survey.assess_folder(folder, tmp_path / "a", scheduler=address, figures=False)
+    here = survey.assess_folder(folder, tmp_path / "b", figures=False)
+    assert [(r.building, r.overall, r.least_margin) for r in apart] == [
+        (r.building, r.overall, r.least_margin) for r in here
+    ]
+    assert (tmp_path / "a" / "ranking.csv").read_bytes() == (tmp_path / "b" / "ranking.csv").read_bytes()
+    for row in apart:
+        assert extrados.load(row.folder)["assess"].statement == row.statement, "written by a worker"
+
+
 def test_all_that_is_wrong_is_told_with_its_file(folder: Path) -> None:
     (folder / "bad.toml").write_text(COLUMN.format(-1.0))
     (folder / "worse.toml").write_text("structure = 3\n")
