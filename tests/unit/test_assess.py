@@ -102,12 +102,6 @@ def test_a_wrong_key_of_options_refuses_the_strategy_alone() -> None:
     assert rows["tilt"].status == "refused" and "fracture" in rows["tilt"].reason and rows["rocking"].status == "ok"
 
 
-def test_a_second_assess_is_refused() -> None:
-    data = deck()
-    (first, _) = extrados.run({**data, "analysis": data["analysis"] * 2}).analyses
-    assert first["status"] == "refused" and "one assess" in first["reason"]
-
-
 def test_the_clock_stops_what_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(driver, "STOPPED_AFTER", 0.0)
     r = extrados.run(deck(assess={"strategies": ["tilt", "dem"], "options": {"dem": {"time_step": 1e-6}}}))["assess"]

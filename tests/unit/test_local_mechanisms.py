@@ -78,6 +78,16 @@ def test_what_holds_and_what_pushes_moves_the_multiplier_the_right_way() -> None
     assert crushed["local-mechanism"].multiplier == pytest.approx((0.3 - setback) / 3.0)
 
 
+def test_a_corner_says_that_its_stone_does_not_crush() -> None:
+    corner = {"kind": "local-mechanism", "mechanism": "corner", "height": 6.0, "thickness": 0.5, "crack_angle": 30.0}
+    hard, soft = (
+        extrados.run({"material": material, "analysis": corner}).analyses[0]
+        for material in ({}, {"compressive_strength": 1e5})
+    )
+    assert soft["results"]["multiplier"] == hard["results"]["multiplier"]
+    assert not hard["warnings"] and any("did not crush" in text for text in soft["warnings"])
+
+
 def test_refusals_name_what_is_missing() -> None:
     (told,) = mechanism(mechanism="gable", height=3.0, thickness=0.4).analyses
     assert told["status"] == "refused" and "needs width" in told["reason"]

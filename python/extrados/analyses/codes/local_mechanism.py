@@ -34,6 +34,8 @@ def run(context: Context, options: LocalMechanism) -> Result:
     if options.mechanism == "building":
         found, curve, words = _of_building(context)
     else:
+        if options.mechanism == "corner" and material.compressive_strength is not None:
+            context.warnings.append("a corner turns about its outer edge, as if the stone did not crush there")
         body = overturning(options, material.density, material.compressive_strength)
         alpha0 = body.multiplier()
         weight, displacement = body.swaying
@@ -82,8 +84,7 @@ def run(context: Context, options: LocalMechanism) -> Result:
 def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarray], str]:
     """The weaker of the collapse mechanisms of the deck's stones that no wall stops, with its finite motion."""
     building = context.building
-    if building.structure is None:
-        raise Refused('mechanism = "building" needs a [structure]')
+    assert building.structure is not None
     stones: Assembly = building.blocks()
     model = MechanismModel(stones)
     mass, _, _ = laden(stones)
