@@ -137,6 +137,32 @@ def test_of_a_set_the_84_percent_motion_is_taken() -> None:
     assert r.verdicts[0].strategy == "probability" and "12 motions" in r.verdicts[0].parameters
 
 
+def test_a_suite_of_records_is_a_hazard(tmp_path: Path) -> None:
+    """All records are rocked first; strategies of one motion take the one that turns it farther than 84 % of the others."""
+    time = np.arange(0.0, 4.0, 0.01)
+    for k, (peak, period) in enumerate(((1.5, 0.5), (3.5, 0.7), (5.0, 0.9), (2.5, 0.6))):
+        np.savetxt(
+            tmp_path / f"r{k}.csv", peak * np.sin(2.0 * np.pi * time / period) * (time < period), header="acceleration"
+        )
+    motion = {"kind": "suite", "pattern": "r*.csv", "unit": "m/s^2", "time_step": 0.01}
+    given = {"strategies": ["tilt", "rocking", "code-checks", "probability"], "budget": 5}
+    run = extrados.run(
+        make_deck({"structure": COLUMN, "motion": motion, "analysis": {"kind": "assess", **given}}, tmp_path)
+    )
+    r = run["assess"]
+    assert (r.hazard.motions, r.hazard.member) == (4, 3)
+    assert r.hazard.peak_ground_acceleration_g == pytest.approx(5.0 / GRAVITY, rel=0.01), (
+        "of the record that single runs take"
+    )
+    rows = {v.strategy: v for v in r.verdicts}
+    assert rows["probability"].demand == 0.25, "one of four"
+    assert rows["tilt"].demand == pytest.approx(5.0 / GRAVITY, rel=0.01) and rows["rocking"].outcome == "falls"
+    alone = extrados.run(
+        make_deck({"structure": COLUMN, "motion": {**motion, "member": 3}, "analysis": {"kind": "rocking"}}, tmp_path)
+    )
+    assert run["rocking"].as_json() == alone["rocking"].as_json()
+
+
 def test_the_code_spectrum_gives_the_peak() -> None:
     motion = Compatible(kind="compatible", code="EN1998-1", ground="B", acceleration="0.25 g")
     context = Context(replace(make_deck(deck()), motion=motion))
@@ -158,6 +184,21 @@ def test_excursions_above_a_level() -> None:
     count, longest = hazard.above(pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.2)
     assert count == 2 and longest == pytest.approx(1.2 / 3.0, abs=0.01)  # above a half from T/12 to 5 T/12
     assert hazard.above(pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.5) == (0, 0.0)
+
+
+def test_codes_are_asked_with_the_spectrum_of_the_motion_and_with_what_holds_the_building() -> None:
+    """Without a code's spectrum that of the motion; a block that ties hold goes by its local mechanism, which knows them."""
+    run = extrados.run(deck(ties=[TIE], assess={"strategies": ["code-checks"]}))
+    checks = run["local-mechanism"].checks
+    assert (
+        checks["NTC linear (at the ground)"].demand == pytest.approx(0.3, rel=1e-3)
+        and checks["NTC nonlinear"].demand is not None
+    )
+    (row,) = run["assess"].verdicts
+    assert row.outcome in ("stands", "falls") and "without" not in row.parameters and "motion itself" in row.parameters
+    free = extrados.run(deck(assess={"strategies": ["code-checks"]}))
+    assert free["code-checks"].checks["Ishiyama velocity"].demand is not None
+    assert free["assess"].verdicts[0].outcome in ("stands", "falls")
 
 
 # ----- the table and the statement (the rules: test_reasons.py)
@@ -234,12 +275,37 @@ def test_what_is_moved_by_default() -> None:
 def test_what_only_elements_know_is_tried_on_them() -> None:
     arch = {"kind": "arch", "radius": 1.0, "thickness": 0.25, "embrace": 150.0, "voussoirs": 6}
     data = deck(structure=arch, assess={"strategies": ["dem"], "vary": {"material.density": 0.1}})
-    probes = {p.changed: p for p in extrados.run(data)["assess"].probes}
-    assert {"joints 4 times as stiff", "joints 4 times as soft"} <= set(probes)
-    (moved,) = [p for text, p in probes.items() if "right support" in text]
-    assert moved.value is not None and moved.value > 2.0 * probes["joints 4 times as stiff"].value, (
-        "it opens as its support moves"
+    r = extrados.run(data)["assess"]
+    probes = {p.changed: p for p in r.probes}
+    assert {"joints 4 times as stiff", "joints 0.25 times as stiff"} <= set(probes)
+    rows = {m.key: m for m in r.sensitivity}
+    stiffness, support = rows["joints.normal_stiffness"], rows["initial.movements.dx"]
+    assert stiffness.high == pytest.approx(4.0 * stiffness.base) and stiffness.low == pytest.approx(
+        0.25 * stiffness.base
     )
+    assert stiffness.dem_high == pytest.approx(probes["joints 4 times as stiff"].value)
+    assert stiffness.dem_low > stiffness.dem_high and stiffness.dem_turns is None, "softer joints give more; none falls"
+    assert (support.low, support.base) == (-support.high, 0.0) and support.high > 0.0
+    assert support.dem_high > 2.0 * stiffness.dem_high, "it opens as its support moves"
+    assert rows["material.density"].dem_base is None
+
+
+def test_where_elements_turn_is_sought_between_what_stands_and_what_falls(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Elements that fall by decree where joints are softer than half: found by halvings of the logarithm."""
+    probed = driver._Work._probe
+
+    def decreed(work: driver._Work, strategy: str, changed: str, kind: str, keys: dict, *rest, **more) -> Result | None:
+        found = probed(work, strategy, changed, kind, keys, *rest, **more)
+        if "as stiff" in changed and float(changed.split()[1]) < 0.5:
+            found = replace(found, results=found.results.model_copy(update={"outcome": "collapse"}))
+        return found
+
+    monkeypatch.setattr(driver._Work, "_probe", decreed)
+    arch = {"kind": "arch", "radius": 1.0, "thickness": 0.25, "embrace": 150.0, "voussoirs": 6}
+    r = extrados.run(deck(structure=arch, assess={"strategies": ["dem"], "vary": {"material.density": 0.1}}))["assess"]
+    row = next(m for m in r.sensitivity if m.key == "joints.normal_stiffness")
+    assert row.dem_turns == pytest.approx(0.5 * row.base, rel=0.1)
+    assert next(m for m in r.sensitivity if m.key == "initial.movements.dx").dem_turns is None
 
 
 def test_ctrl_c_keeps_what_was_asked_before(monkeypatch: pytest.MonkeyPatch) -> None:

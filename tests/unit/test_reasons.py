@@ -208,7 +208,10 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
         "drums",
         lambda: facts(DYNAMIC, {"rocking": rocking(), "dem": dem("collapse", 1.0)}, probes={"monolith": dem(moved=0.1)}),
         {
-            "as one body they fall too": lambda f: probed(f, monolith=dem("collapse", 1.0)),
+            "as one body they fall, and rocking stands": lambda f: probed(f, monolith=dem("collapse", 1.0)),
+            "apart they do as one body does": lambda f: having(
+                probed(f, monolith=dem("collapse", 1.0)), rocking=rocking("collapse", 2.0)
+            ),
             "nobody tried one body": lambda f: probed(f, monolith=None),
             "the run is one draw of many": lambda f: probed(f, dem_nudged=dem()),
         },

@@ -67,6 +67,31 @@ def test_it_goes_on_where_it_was_stopped(folder: Path, tmp_path: Path, monkeypat
     assert len(rows) == 3 and not set(done) & set(again), "the building that was done is not computed anew"
 
 
+def test_results_that_must_lie_beside_a_folder_are_those_of_the_ranking(folder: Path, tmp_path: Path) -> None:
+    """A folder that holds files of others is left alone, and the page of that building is not an earlier one's."""
+    out = tmp_path / "out"
+    survey.assess_folder(folder, out, figures=False)
+    (out / "w0.8" / "notes.txt").write_text("ours")
+    (folder / "w0.8.toml").write_text(COLUMN.format(0.9))
+    rows = survey.assess_folder(folder, out, figures=False)
+    (moved,) = [r for r in rows if r.building == "w0.8"]
+    assert moved.folder == out / "w0.8-2" and (out / "w0.8" / "notes.txt").read_text() == "ours"
+    assert extrados.load(moved.folder)["assess"].least_margin == pytest.approx(0.9 / 6 / 0.3)
+    assert "0.5" in (out / "ranking.csv").read_text() and moved.least_margin == pytest.approx(0.5)
+
+
+def test_a_cluster_gives_the_same_ranking(cluster, folder: Path, tmp_path: Path) -> None:
+    address, _ = cluster
+    apart = survey.assess_folder(folder, tmp_path / "a", scheduler=address, figures=False)
+    here = survey.assess_folder(folder, tmp_path / "b", figures=False)
+    assert [(r.building, r.overall, r.least_margin) for r in apart] == [
+        (r.building, r.overall, r.least_margin) for r in here
+    ]
+    assert (tmp_path / "a" / "ranking.csv").read_bytes() == (tmp_path / "b" / "ranking.csv").read_bytes()
+    for row in apart:
+        assert extrados.load(row.folder)["assess"].statement == row.statement, "written by a worker"
+
+
 def test_all_that_is_wrong_is_told_with_its_file(folder: Path) -> None:
     (folder / "bad.toml").write_text(COLUMN.format(-1.0))
     (folder / "worse.toml").write_text("structure = 3\n")

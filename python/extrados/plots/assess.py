@@ -160,41 +160,57 @@ def _hazard(run: Stored, r: Assess, name: str, folder: Path) -> tuple[str, str]:
     return saved, f"{r.hazard.told[:1].upper()}{r.hazard.told[1:]}.{told}"
 
 
+#: Panels of the tornado: names of the results, title, axis
+PANELS = (
+    ("tilt", "Margin of limit analysis", "factor on the hazard"),
+    ("rocking", "Margin of rocking", "factor on the hazard"),
+    ("dem", "Discrete elements", "movement over that of collapse"),
+)
+
+
 def _tornado(r: Assess, folder: Path, name: str) -> tuple[str, str] | None:
-    """Margins of limit analysis and rocking with each value moved down and up, the widest above."""
+    """Margins of limit analysis and rocking, and movements of elements, with each value moved down and up, the widest above."""
     rows = r.sensitivity or []
     if not rows:
         return None
-    panels = [("tilt", "limit analysis"), ("rocking", "rocking")]
-    panels = [p for p in panels if any(getattr(row, f"{p[0]}_low") is not None for row in rows)]
+    panels = [p for p in PANELS if any(getattr(row, f"{p[0]}_low") is not None for row in rows)]
     if not panels:
         return None
-    with style.figure(7.4, 1.7 + 0.42 * len(rows), columns=len(panels), sharey=True) as (fig, axes):
-        for ax, (strategy, label) in zip(axes, panels, strict=True):
+    with style.figure(2.2 + 2.6 * len(panels), 1.7 + 0.42 * len(rows), columns=len(panels), sharey=True) as (fig, axes):
+        for ax, (strategy, title, axis) in zip(axes, panels, strict=True):
             here = next((v for row in rows if (v := getattr(row, f"{strategy}_base")) is not None), None)
             for k, row in enumerate(rows):
                 low, high = getattr(row, f"{strategy}_low"), getattr(row, f"{strategy}_high")
-                for value, colour in ((low, "#d98200"), (high, style.HINGE)):
+                # where both ends lie to one side, each has half of the bar's height
+                apart = None not in (low, high, here) and (low - here) * (high - here) > 0.0
+                for value, colour, up in ((low, "#d98200", -1.0), (high, style.HINGE, 1.0)):
                     if value is not None and here is not None:
-                        ax.plot([here, value], [k, k], color=colour, linewidth=8.0, solid_capstyle="butt")
+                        ax.plot(
+                            [here, value], [k + 0.13 * up * apart] * 2, color=colour, linewidth=5.0 if apart else 8.0, solid_capstyle="butt"
+                        )  # fmt: skip
             ax.plot([], [], color="#d98200", linewidth=8.0, label="value below")
             ax.plot([], [], color=style.HINGE, linewidth=8.0, label="value above")
             if here is not None:
                 ax.axvline(here, color=style.EDGE, linewidth=0.8)
             ax.axvline(1.0, color=style.THRUST, linewidth=1.0, linestyle="--", label="the verdict turns")
-            ax.set_title(f"Margin of {label}")
-            ax.set_xlabel("factor on the hazard")
+            ax.set_title(title)
+            ax.set_xlabel(axis)
             ax.grid(axis="y", visible=False)
         units = [f" {row.unit}" if row.unit else "" for row in rows]
-        labels = [
-            f"{row.key.split('.', 1)[1]}\n{row.low:.4g} to {row.high:.4g}{u}"
-            for row, u in zip(rows, units, strict=True)
-        ]
+        labels = [f"{_short(row.key)}\n{row.low:.4g} to {row.high:.4g}{u}" for row, u in zip(rows, units, strict=True)]
         axes[0].set_yticks(range(len(rows)), labels, fontsize=7.5)
         axes[0].set_ylim(len(rows) - 0.4, -0.6)
         style.legend_below(fig, axes[0])
         saved = style.save(fig, folder, f"{name}-sensitivity")
     turned = [f"{row.key} {value:.3g}{f' {row.unit}' if row.unit else ''} ({label})" for row in rows
-              for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns)) if value is not None]  # fmt: skip
+              for label, value in (("limit analysis", row.tilt_turns), ("rocking", row.rocking_turns),
+                                   ("discrete elements", row.dem_turns)) if value is not None]  # fmt: skip
     told = f" Verdicts turn at: {'; '.join(turned)}." if turned else " No value tried turns a verdict."
+    if any(row.dem_base is not None for row in rows):
+        told += " Elements tell how far their stones move, over what counts as collapse."
     return saved, f"Margins with one value of the deck moved, all else as it is.{told}"
+
+
+def _short(key: str) -> str:
+    """A key of the deck as the tornado calls it."""
+    return "right support moves" if key == "initial.movements.dx" else key.split(".", 1)[1]

@@ -177,9 +177,13 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
     most = max(float(width[shown].max()), 1e-12)
     total = start[-1] - gap
     length = 0.6 * np.sqrt(np.median(_areas(node, _walls(run, name))))
-    tall = min(2.6, 9.0 * level[-1] / total + 0.9)
-    with style.canvas(10.0, tall * len(shown) + 0.8) as fig:
-        axes = fig.subplots(len(shown), 1, squeeze=False).ravel()
+    # states of walls that are higher than long stand beside each other, with room for their words
+    narrow = total < 1.5 * level[-1]
+    tall = 3.6 if narrow else min(2.6, 9.0 * level[-1] / total + 0.9)
+    room = 0.02 * total
+    grid = (1, len(shown)) if narrow else (len(shown), 1)
+    with style.canvas(3.6 * len(shown) + 1.4 if narrow else 10.0, tall * grid[0] + 0.8) as fig:
+        axes = fig.subplots(*grid, squeeze=False).ravel()
         for ax, k in zip(axes, shown, strict=True):
             for wall, connect in _walls(run, name):
                 if wall < 0:
@@ -208,13 +212,16 @@ def _unfolded(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
                 ax.add_patch(_frame(start[w], walls[w, 4], level[-1]))
             for height in level[1:-1]:
                 ax.axhline(height, color="#b9c4cf", linewidth=0.6, linestyle=":")
-            ax.set_xlim(-0.02 * total, 1.02 * total)
+            ax.set_xlim(-room, total + room, auto=narrow)
             ax.set_ylim(-0.02 * level[-1], 1.14 * level[-1])
-            ax.set_aspect("equal")
+            ax.set_aspect("equal", adjustable="datalim" if narrow else "box")
             ax.grid(False)
             ax.set_ylabel("height [m]")
+            if narrow:
+                ax.set_xlabel("along the walls [m]")
             ax.set_title(f"event {event[k]}, base shear {load[k] / 1e3:.4g} kN")
-        axes[-1].set_xlabel("along the walls, each from its start [m]")
+        if not narrow:
+            axes[-1].set_xlabel("along the walls, each from its start [m]")
         fig.colorbar(drawn, ax=list(axes), label="crack width [mm]", shrink=0.7, pad=0.01)
         return style.save(fig, folder, f"{name}{_suffix(prefix)}-walls"), (
             "Cracks on the walls, laid side by side, at the greatest base shear and at the end: of each point the widest "

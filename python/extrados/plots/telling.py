@@ -107,10 +107,20 @@ def _assessed(run: Stored, name: str) -> list[Block]:
         rows = [
             (m.key, f"{cell(m.base)} {m.unit}".strip(), f"{m.low:.4g} to {m.high:.4g}", _both(m.tilt_low, m.tilt_high), cell(m.tilt_turns, ""),
              _both(m.rocking_low, m.rocking_high), cell(m.rocking_turns, ""))
-            for m in r.sensitivity
+            for m in r.sensitivity if m.dem_base is None
         ]  # fmt: skip
         head = ("key", "value", "moved", "margin of limit analysis", "turns at", "margin of rocking", "turns at")
         found.append(Table(head, rows, (2.2, 1.1, 1.3, 1.3, 0.9, 1.3, 0.9)))
+        shaken = [
+            (m.key, f"{cell(m.base)} {m.unit}", f"{m.low:.3g} to {m.high:.3g}", cell(m.dem_base), _both(m.dem_low, m.dem_high), cell(m.dem_turns, ""))
+            for m in r.sensitivity if m.dem_base is not None
+        ]  # fmt: skip
+        if shaken:
+            found.append(
+                Words("What only discrete elements know, by how far their stones move over what counts as collapse:")
+            )
+            head = ("key", "value", "moved", "as it is", "moved so", "turns at")
+            found.append(Table(head, shaken, (2.2, 1.2, 1.6, 1.0, 1.6, 1.0)))
     if r.probes:
         found.append(Heading("Further runs", 2))
         rows = [(p.strategy, p.changed, OUTCOMES[p.outcome], cell(p.value, "")) for p in r.probes]

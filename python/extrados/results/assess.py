@@ -65,7 +65,8 @@ class Probe(ResultModel):
 
 
 class TurningValue(ResultModel):
-    """One value of the deck moved, all else as it is: margins of limit analysis and of rocking."""
+    """One value of the deck moved, all else as it is: margins of limit analysis and of rocking; of what only discrete elements
+    know, how far their stones move."""
 
     key: str = fact("the key of the deck")
     base: float = fact("its value, in `unit`")
@@ -80,6 +81,14 @@ class TurningValue(ResultModel):
     rocking_high: float | None = fact("margin of rocking at the value above")
     tilt_turns: float | None = fact("value at which the verdict of limit analysis turns; null: at none that was tried")
     rocking_turns: float | None = fact("value at which the verdict of rocking turns; null: at none that was tried")
+    dem_base: float | None = fact(
+        "movement of discrete elements over that which counts as collapse, at the value as it is; null: not tried"
+    )
+    dem_low: float | None = fact("the same at the value below")
+    dem_high: float | None = fact("the same at the value above")
+    dem_turns: float | None = fact(
+        "value at which discrete elements turn; null: at none that was tried, or decided by last digits"
+    )
 
 
 class Assess(KindResults):

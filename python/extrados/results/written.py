@@ -94,7 +94,10 @@ def prune(folder: Path) -> bool:
 
 def beside(path: Path) -> Path:
     """The first of NAME-2, NAME-3 ... beside a path that is not there."""
-    numbered = (path.with_name(f"{path.stem}-{k}{path.suffix}") for k in itertools.count(2))
+    stem, suffix = (
+        (path.name, "") if path.is_dir() else (path.stem, path.suffix)
+    )  # a folder tower-0.8 ends in no suffix
+    numbered = (path.with_name(f"{stem}-{k}{suffix}") for k in itertools.count(2))
     return next(other for other in numbered if not os.path.lexists(other))
 
 

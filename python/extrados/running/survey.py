@@ -64,12 +64,12 @@ class SurveyJob:
 
     def _one(self, k: int, threads: int) -> dict[str, np.ndarray]:
         name = self.names[k]
-        row = {"overall": "", "strategy": "", "status": "failed", "statement": ""}
+        row = {"overall": "", "strategy": "", "status": "failed", "statement": "", "folder": str(Path(self.out) / name)}
         margin = np.nan
         try:
             deck = make_deck(tomllib.loads(self.texts[k]), Path(self.folder))
             run = compute(Context(deck, threads))
-            run.write(Path(self.out) / name, self.figures)
+            row["folder"] = str(run.write(Path(self.out) / name, self.figures))  # beside it, where others wrote there
             result = next(r for r in run.results if r.kind == "assess")
             row |= {"status": result.status, "statement": result.reason}
             if result.results.keys():
@@ -145,7 +145,7 @@ def assess_folder(
     found = sweep(context, "survey-folder", job, len(names), "buildings", slow=True)
     rows = [
         Assessed(names[k], str(found["overall"][i]), float(found["margin"][i]), str(found["strategy"][i]), str(found["status"][i]),
-                 str(found["statement"][i]), out / names[k])
+                 str(found["statement"][i]), Path(str(found["folder"][i])))
         for i, k in enumerate(found.members)
     ]  # fmt: skip
     rows.sort(key=lambda row: (*row.order, row.building))

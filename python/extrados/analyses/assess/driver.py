@@ -31,8 +31,10 @@ from extrados.results.store import group_names
 UP, DOWN = (1.25, 1.5, 2.0, 3.0, 4.0), (0.8, 0.65, 0.5, 0.35, 0.25)
 #: A motion stronger or weaker by this is the same motion to every instrument
 NUDGE = 1e-6
-#: Elements with joints so many times as stiff and as soft; a support that moves by this part of the size
+#: Elements with joints so many times as stiff and as soft; a support that moves by this part of the size; halvings of the
+#: interval in which elements turn
 STIFFER, SPREAD = 4.0, 0.002
+ELEMENT_HALVINGS = 3
 #: Factors between two of the first ones, where the margin of rocking is thin
 FINE = 16
 
@@ -72,6 +74,7 @@ class _Work:
         self.chosen: dict[str, Any] = {}
         self.bare: dict[str, tuple[str, ...]] = {}
         self.moved: list[sensitivity.Moved] = []
+        self.shaken: list[out.TurningValue] = []
         self.asker = Asker(
             context,
             dict(context.deck.data["motion"]),
@@ -391,7 +394,8 @@ class _Work:
     # ----- sensitivity
 
     def move(self) -> None:
-        """Margins with values of the deck moved one by one."""
+        """Margins with values of the deck moved one by one; the clock that stops strategies begins anew."""
+        self.asker.deadline = time.monotonic() + STOPPED_AFTER * self.options.budget
         rocked = self.results.get("rocking")
         restitution = rocked.results.restitution if rocked is not None else None
         keys = sensitivity.varied(self.context.building, self.options.vary, restitution)
@@ -410,7 +414,7 @@ class _Work:
         self._move_elements()
 
     def _move_elements(self) -> None:
-        """What only discrete elements know: stiffness of the joints, and a support that gives way while it shakes."""
+        """What only discrete elements know: stiffness of the joints, and a support that moves while it shakes."""
         if "dem" not in self.results:
             return
         choice, stones = self.choices["dem"], self.context.building.blocks()
@@ -418,23 +422,63 @@ class _Work:
         if not isinstance(r, DemRun):
             return
         stiffness = choice.keys.get("joints", {}).get("normal_stiffness", r.joint_stiffness_max_Pa_per_m)
-        for factor, told in (
-            (STIFFER, f"joints {STIFFER:g} times as stiff"),
-            (1.0 / STIFFER, f"joints {STIFFER:g} times as soft"),
-        ):
-            keys = _merged(choice.keys, {"joints": {"normal_stiffness": factor * stiffness}})
-            self._probe("dem", told, "dem", keys)
+        self._turn_elements(
+            "joints.normal_stiffness", "Pa/m", stiffness, (stiffness / STIFFER, stiffness * STIFFER),
+            lambda v: f"joints {v / stiffness:.3g} times as stiff",
+            lambda v: {"joints": {"normal_stiffness": v}},
+        )  # fmt: skip
         grounded = np.flatnonzero((stones.a < 0) | (stones.b < 0))
         if len(grounded) > 1:
-            right = int(grounded[np.argmax(stones.middle[grounded, 0])])
+            right = stones.joint_names[int(grounded[np.argmax(stones.middle[grounded, 0])])]
             spread = SPREAD * stones.size
-            keys = _merged(
-                choice.keys, {"initial": {"movements": [{"joint": stones.joint_names[right], "dx": spread}]}}
+            self._turn_elements(
+                "initial.movements.dx", "m", 0.0, (-spread, spread),
+                lambda v: f"the right support moves {'out' if v > 0.0 else 'in'} by {1e3 * abs(v):.3g} mm in the first second",
+                lambda v: {"initial": {"movements": [{"joint": right, "dx": v}]}},
+            )  # fmt: skip
+
+    def _turn_elements(
+        self, key: str, unit: str, base: float, ends: tuple[float, float], told: Callable[[float], str],
+        keys: Callable[[float], dict[str, Any]],
+    ) -> None:  # fmt: skip
+        """Move one value of discrete elements down and up; between it and an end that turns them seek where they turn."""
+        choice, r = self.choices["dem"], self.results["dem"].results
+        assert isinstance(r, DemRun)
+
+        def ask(value: float) -> DemRun | None:
+            found = self._probe("dem", told(value), "dem", _merged(choice.keys, keys(value)))
+            return found.results if found is not None and isinstance(found.results, DemRun) else None
+
+        def share(one: DemRun | None) -> float | None:
+            return None if one is None else one.peak_displacement_m / one.collapse_displacement_m
+
+        low, high = ask(ends[0]), ask(ends[1])
+        turns = None
+        fell = r.outcome == "collapse"
+        turned = [
+            e
+            for e, one in zip(ends, (low, high), strict=True)
+            if one is not None and (one.outcome == "collapse") != fell
+        ]
+        if turned and self.rows["dem"].outcome != "open":
+            near, far = base, min(turned, key=lambda e: abs(e - base))
+            for _ in range(ELEMENT_HALVINGS):
+                middle = float(np.sqrt(near * far)) if near > 0.0 else 0.5 * (near + far)
+                one = ask(middle)
+                if one is None:
+                    break
+                near, far = (near, middle) if (one.outcome == "collapse") != fell else (middle, far)
+            turns = float(np.sqrt(near * far)) if near > 0.0 else 0.5 * (near + far)
+        self.shaken.append(
+            out.TurningValue(
+                key=key, base=base, unit=unit, low=ends[0], high=ends[1], tilt_base=None, rocking_base=None, tilt_low=None, tilt_high=None,
+                rocking_low=None, rocking_high=None, tilt_turns=None, rocking_turns=None, dem_base=share(r), dem_low=share(low),
+                dem_high=share(high), dem_turns=turns,
             )
-            self._probe("dem", f"the right support moves out by {1e3 * spread:.3g} mm in the first second", "dem", keys)
+        )  # fmt: skip
 
     def _sensitivity(self) -> list[out.TurningValue]:
-        """Rows of the tornado, the widest first."""
+        """Rows of the tornado, the widest first, those of discrete elements after them."""
 
         def width(m: sensitivity.Moved) -> float:
             spans = [abs(np.log(b / a)) for a, b in zip(m.at_low, m.at_high, strict=True) if a and b]
@@ -444,9 +488,10 @@ class _Work:
             out.TurningValue(
                 key=m.what.key, base=m.what.base, unit=m.what.unit, low=m.low, high=m.high, tilt_base=m.at_base[0], rocking_base=m.at_base[1], tilt_low=m.at_low[0], tilt_high=m.at_high[0],
                 rocking_low=m.at_low[1], rocking_high=m.at_high[1], tilt_turns=m.turns[0], rocking_turns=m.turns[1],
+                dem_base=None, dem_low=None, dem_high=None, dem_turns=None,
             )
             for m in sorted(self.moved, key=width, reverse=True)
-        ]  # fmt: skip
+        ] + self.shaken  # fmt: skip
 
     # ----- the answer
 
@@ -481,7 +526,7 @@ class _Work:
             ),
             verdicts=rows, agreement=agreement, reasons=reasons, unexplained=[list(p) for p in unexplained],
             parts=dict(zip(names, (words for _, words, _ in self.parts), strict=True)), probes=self.probes,
-            **({"sensitivity": self._sensitivity()} if self.moved else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
+            **({"sensitivity": self._sensitivity()} if self.moved or self.shaken else {}), not_done=self.not_done, least_margin=least[0], least_margin_strategy=least[1], budget_s=self.options.budget,
         )  # fmt: skip
         result.parts = [r for _, _, r in self.parts]
         for name, deck in zip(names, self.decks, strict=True):

@@ -312,9 +312,15 @@ def chance(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "chance", mine,
-        f"With {row.parameters.split(' (coef')[0]} {100 * row.demand:.0f} % come down: a single run of one building under one "
-        "motion is one draw of these.", share=row.demand,
+        f"Of {row.parameters.split(' (coef')[0]}, {100 * row.demand:.0f} % come down under the hazard itself: a single run of one building "
+        "under one motion is one draw of these.", share=row.demand,
     )  # fmt: skip
+
+
+def _moves_alike(one: DemRun, other: DemRun) -> bool:
+    """Whether two runs of elements end alike, their stones moved as far to a fifth."""
+    far, near = one.peak_displacement_m, other.peak_displacement_m
+    return (one.outcome == "collapse") == (other.outcome == "collapse") and abs(far - near) < 0.2 * max(far, near)
 
 
 def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -333,10 +339,8 @@ def sliding(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if without is None or not isinstance(without.results, DemRun):
         return None
     other = without.results
-    if (other.outcome == "collapse") == (dem.outcome == "collapse"):
-        far, near = other.peak_displacement_m, dem.peak_displacement_m
-        if abs(far - near) < 0.2 * max(far, near):
-            return None
+    if _moves_alike(other, dem):
+        return None
     numbers["displacement_without_sliding_m"] = other.peak_displacement_m
     numbers["displacement_m"] = dem.peak_displacement_m
     return reason(
@@ -377,6 +381,8 @@ def drums(facts: Facts, pairs: list[Pair]) -> Reason | None:
     if not mine or one is None or not isinstance(one.results, DemRun) or not isinstance(dem, DemRun):
         return None
     if not isinstance(whole, Rocking) or (one.results.outcome == "collapse") != (whole.outcome == "collapse"):
+        return None
+    if _moves_alike(one.results, dem):
         return None
     stones = len(facts.building.blocks().mass)
     return reason(

@@ -56,7 +56,8 @@ class Assess(Analysis):
     )
     sensitivity: bool = key(
         False, "also move thickness, corners, friction, restitution and density one by one: margins of limit analysis and rocking "
-        "anew, and the value at which each verdict turns; not counted in the budget"
+        "anew, and the value at which each verdict turns; on discrete elements the stiffness of joints and a support that moves; not "
+        "counted in the budget"
     )  # fmt: skip
     vary: dict[str, Annotated[float, Field(gt=0, lt=1)]] | None = key(
         None,

@@ -46,7 +46,7 @@ def turning(moved: list[TurningValue]) -> list[str]:
     said = []
     for one in moved:
         unit = f" {one.unit}" if one.unit else ""
-        told = [f"{label} at {value:.3g}{unit}" for label, value in (("limit analysis", one.tilt_turns), ("rocking", one.rocking_turns))
+        told = [f"{label} at {value:.3g}{unit}" for label, value in (("limit analysis", one.tilt_turns), ("rocking", one.rocking_turns), ("discrete elements", one.dem_turns))
                 if value is not None]  # fmt: skip
         if told:
             said.append(f"- {one.key} ({one.base:.3g}{unit} here) turns the verdict of {' and of '.join(told)}.")

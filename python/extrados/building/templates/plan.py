@@ -166,7 +166,8 @@ class Plan(Structure):
         "floors": '[{ storey = 1, young = "50 MPa", thickness = "5 cm", load = "2 kPa" }, { storey = 2, young = "50 MPa", thickness = "5 cm", load = "1 kPa" }]',
     }
     lacks: ClassVar = {
-        "blocks": "a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`",
+        "blocks": "a building on a plan has walls, no stones in a plane: draw one of its walls as `panel` or `blocks`; the whole is for "
+        "`pushover`, with [analysis.frame] for its piers by codes, its walls out of plane for `local-mechanism`",
         "rocker": "a building on a plan does not rock as one body: draw one of its walls",
         "mesh": "the walls of a building stand in space: its analysis is `pushover`; draw one of them as `panel`",
     }
