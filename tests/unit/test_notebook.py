@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import extrados
-from extrados.explore.session import NEW_DECK
+from extrados.explore.desk import NEW_DECK
 
 
 def test_a_run_is_a_short_table_and_its_main_figure() -> None:

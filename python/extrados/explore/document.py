@@ -12,46 +12,50 @@ QUANTITY = re.compile(r"\s*([-+0-9.eE]+)\s*([^\d\s].*?)\s*")
 
 
 class Document:
-    """The text of a deck, read when it is first changed and written when it is asked for."""
+    """The text of a deck: what is put is written when the text is asked for, the last value of each key."""
 
     def __init__(self, text: str):
-        self._text: str | None = text
-        self._made: tomlkit.TOMLDocument | None = None
+        self._text = text
+        self._put: dict[tuple[str, ...], Any] = {}
 
     @property
     def text(self) -> str:
         """The deck as TOML."""
-        if self._text is None:
-            assert self._made is not None
-            self._text = tomlkit.dumps(self._made)
+        if self._put:
+            made = tomlkit.parse(self._text)
+            for path, value in self._put.items():
+                _put(made, path, value)
+            self._text, self._put = tomlkit.dumps(made), {}
         return self._text
 
     def put(self, path: list[str], value: Any) -> None:
         """Give the key at a path another value; None takes it out. Elements of arrays are called by their number."""
-        if self._made is None:
-            self._made = tomlkit.parse(self.text)
-        self._text = None
-        place: Any = self._made
-        *way, last = path
-        for k, part in enumerate(way):
-            if isinstance(place, list):
-                place = place[int(part)]
-            else:
-                if part not in place:
-                    place[part] = tomlkit.array() if (way[k + 1 : k + 2] or [last])[0].isdecimal() else tomlkit.table()
-                place = place[part]
+        self._put.pop(tuple(path), None)  # what is put last is written last
+        self._put[tuple(path)] = value
+
+
+def _put(place: Any, path: tuple[str, ...], value: Any) -> None:
+    """Give the key at a path of a TOML document a value."""
+    *way, last = path
+    for k, part in enumerate(way):
         if isinstance(place, list):
-            place[int(last)] = _item(value)
-        elif value is None:
-            place.pop(last, None)
-        elif last in place:
-            kept = place[last]
-            place[last] = made = _item(value)
-            if isinstance(kept, Item) and isinstance(made, Item) and not isinstance(made, AoT):
-                made.trivia.comment, made.trivia.comment_ws = kept.trivia.comment, kept.trivia.comment_ws
-                made.trivia.trail = kept.trivia.trail
+            place = place[int(part)]
         else:
-            place[last] = _item(value)
+            if part not in place:
+                place[part] = tomlkit.array() if (way[k + 1 : k + 2] or [last])[0].isdecimal() else tomlkit.table()
+            place = place[part]
+    if isinstance(place, list):
+        place[int(last)] = _item(value)
+    elif value is None:
+        place.pop(last, None)
+    elif last in place:
+        kept = place[last]
+        place[last] = made = _item(value)
+        if isinstance(kept, Item) and isinstance(made, Item) and not isinstance(made, AoT):
+            made.trivia.comment, made.trivia.comment_ws = kept.trivia.comment, kept.trivia.comment_ws
+            made.trivia.trail = kept.trivia.trail
+    else:
+        place[last] = _item(value)
 
 
 def _item(value: Any) -> Any:

@@ -24,17 +24,31 @@ class Reply:
     def pack(self) -> bytes:
         """Length of the head (4 bytes, little endian), the head as JSON, and the arrays, each from a multiple of 8 on."""
         parts, places, offset = [], {}, 0
-        for name, data in self.arrays.items():
-            array = np.asarray(data)
-            sort = {"f": "d" if name in self.exact else "f", "b": "b", "u": "b" if array.itemsize == 1 else "i"}.get(
-                array.dtype.kind, "i"
-            )
-            with np.errstate(over="ignore"):  # what single precision cannot hold is infinite, and not drawn
-                raw = np.ascontiguousarray(array, dtype=TYPES[sort]).tobytes()
-            places[name] = [sort, list(array.shape), offset]
-            room = -len(raw) % 8
-            parts.append(raw + bytes(room))
-            offset += len(raw) + room
-        head = json.dumps(plain({**self.words, "arrays": places}), ensure_ascii=False, allow_nan=False).encode()
+        with np.errstate(over="ignore"):  # what single precision cannot hold is infinite, and not drawn
+            for name, data in self.arrays.items():
+                array = np.asarray(data)
+                sort = _sort(array, name in self.exact)
+                raw = array.astype(TYPES[sort], order="C", copy=False).tobytes()
+                places[name] = [sort, array.shape, offset]
+                room = -len(raw) % 8
+                parts += [raw, bytes(room)]
+                offset += len(raw) + room
+        words = {**self.words, "arrays": places}
+        try:
+            told = _JSON.encode(words)
+        except (TypeError, ValueError):  # not a number, infinite, or a key that is no text
+            told = _JSON.encode(plain(words))
+        head = told.encode()
         head += b" " * (-(len(head) + 4) % 8)
-        return struct.pack("<I", len(head)) + head + b"".join(parts)
+        return b"".join([struct.pack("<I", len(head)), head, *parts])
+
+
+_JSON = json.JSONEncoder(ensure_ascii=False, allow_nan=False, separators=(",", ":"), default=plain)
+
+
+def _sort(array: np.ndarray, exact: bool) -> str:
+    """What an array is sent as."""
+    kind = array.dtype.kind
+    if kind == "f":
+        return "d" if exact else "f"
+    return "b" if kind == "b" or (kind == "u" and array.itemsize == 1) else "i"

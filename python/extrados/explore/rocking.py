@@ -23,8 +23,8 @@ MOST_PICTURES, MOST_POINTS = 600, 1600
 MOST_OUTPUTS = 20_000
 #: What each round of the map adds: every 4th, every 2nd, every cell
 STRIDES = (4, 2, 1)
-#: Cells of the map that are run at once to begin with, and how long they may take [s]
-CELLS, PATIENCE = 100, 0.06
+#: Cells of the map that are run at once to begin with, how long those run at once may take [s], and how fast they may grow
+CELLS, PATIENCE, GROWTH = 4, 0.06, 4.0
 #: Shares of the sampling at which a motion is drawn
 CURVE = 1200
 
@@ -144,7 +144,11 @@ def impulse(context: Context, building: Building) -> dict[str, Any]:
 def domain(
     context: Context, building: Building, options: FailureDomain
 ) -> Iterator[tuple[dict[str, Any], dict[str, np.ndarray]]]:
-    """The map of pulses, coarse first: codes (durations, amplitudes), 255 where nothing has been run yet."""
+    """The map of pulses, coarse first: codes (durations, amplitudes), 255 where nothing has been run yet.
+
+    `part` tells a reply amid a round, for structures that take long: so that a hand is answered between. It shows the round
+    before once more, the first as far as it is.
+    """
     rocker = building.rocker(options.form == "linear", soft_base=True)
     unit = float(np.sqrt(rocker.scale / GRAVITY))
     durations = np.array(options.durations) if options.durations else natural_durations(unit, options.pulse)
@@ -156,23 +160,27 @@ def domain(
         "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses at once (Mode II)"],
     }  # fmt: skip
     axes = {"duration": durations, "amplitude": amplitudes / GRAVITY}
-    drawn, count = (STRIDES[0], codes.copy()), CELLS
+    drawn, count, last = (STRIDES[0], codes), CELLS, time.perf_counter()
     for stride in STRIDES:
         half = stride // 2
         chosen = np.zeros(codes.shape, dtype=bool)
         chosen[half::stride, half::stride] = True
         i, k = np.nonzero(chosen & (codes == 255))
+        mixed = np.random.default_rng(1).permutation(len(i))  # weak pulses take no time, strong ones long
+        i, k = i[mixed], k[mixed]
         done = 0
         while done < len(i):
             begin, part = time.perf_counter(), slice(done, done + count)
             codes[i[part], k[part]] = mapper.codes(i[part], amplitudes[k[part]])
             done += count
-            slow = time.perf_counter() - begin > PATIENCE
-            count = max(8, count // 2) if slow else 2 * count
-            if slow and done < len(i):  # as it was drawn: between two replies a hand is answered
-                yield {**words, "stride": drawn[0], "whole": False}, {**axes, "codes": drawn[1]}
+            now = time.perf_counter()
+            count = max(1, int(count * min(GROWTH, PATIENCE / max(now - begin, 1e-9))))
+            if now - last > PATIENCE and done < len(i):
+                yield {**words, "stride": drawn[0], "whole": False, "part": True}, {**axes, "codes": drawn[1].copy()}
+                last = time.perf_counter()
         drawn = stride, codes.copy()
-        yield {**words, "stride": stride, "whole": stride == 1}, {**axes, "codes": drawn[1]}
+        yield {**words, "stride": stride, "whole": stride == 1, "part": False}, {**axes, "codes": drawn[1]}
+        last = time.perf_counter()
 
 
 def pulse_of(motion: Any) -> dict[str, float] | None:

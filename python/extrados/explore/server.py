@@ -84,6 +84,12 @@ def _words(raw: str) -> dict[str, Any] | None:
     return message if isinstance(message, dict) and isinstance(message.get("do"), str) else None
 
 
+def _next(work: Iterator[Reply]) -> bytes | None:
+    """The next reply, as it is sent; None where there are no more."""
+    reply = next(work, None)
+    return None if reply is None else reply.pack()
+
+
 async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
     """Answer the messages of a page, oldest first; long work goes on, step by step, while nothing waits."""
     loop = asyncio.get_running_loop()
@@ -93,10 +99,10 @@ async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
     with ThreadPoolExecutor(1, "session") as thread:
 
         async def step(work: Iterator[Reply]) -> bool:
-            reply = await loop.run_in_executor(thread, context.run, next, work, None)
-            if reply is not None:
-                await page.send_bytes(reply.pack())
-            return reply is not None
+            frame = await loop.run_in_executor(thread, context.run, _next, work)
+            if frame is not None:
+                await page.send_bytes(frame)
+            return frame is not None
 
         while True:
             if going and not inbox.waiting:

@@ -82,7 +82,7 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     words: dict[str, Any] = {
         "blocks": len(assembly.mass), "joints": len(assembly.a), "depth_m": assembly.depth, "chains": list(chains),
         "chain": chain, "weight_N": float(assembly.mass.sum()) * 9.80665, "size_m": assembly.size, "gamma": view.gamma,
-        "joint_names": assembly.joint_names if len(assembly.a) <= 400 else [], "measures": assembly.measures,
+        "measures": assembly.measures,
     }  # fmt: skip
     made = Picture(words, geometry(assembly, anchor), assembly)
     if building.ties:
@@ -202,9 +202,9 @@ def _line(made: Picture, name: str, state: State, anchor: np.ndarray) -> None:
 
 def _hinges(assembly: Assembly, mechanism: Mechanism, anchor: np.ndarray) -> list[dict[str, Any]]:
     """Where a mechanism turns, in words and places."""
-    found = []
+    found, pivot = [], mechanism.pivot
     for j, side in mechanism.hinges:
-        point = assembly.p[j] + mechanism.pivot[j] * (assembly.q[j] - assembly.p[j])
+        point = assembly.p[j] + pivot[j] * (assembly.q[j] - assembly.p[j])
         found.append(
             {"name": assembly.joint_names[j], "side": side, "where": place_of(assembly, j, point), "at": (point - anchor).tolist()}
         )  # fmt: skip

@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import inner_stones, is_stack
-from extrados.building.geometry.polygons import below, signed_area
+from extrados.building.geometry.polygons import below
 from extrados.limit.loads import Loads
 from extrados.limit.states import State
 from extrados.schema.constants import GRAVITY
@@ -43,15 +43,13 @@ def senses(assembly: Assembly, joints: list[int]) -> np.ndarray:
 
 def _leads_to(assembly: Assembly, joints: list[int], i: int) -> bool:
     """True where block a of the i-th joint of a chain is the next along it."""
+    ends = assembly.ends
+    a, b = ends[joints[i]]
     if len(joints) == 1:
-        return int(assembly.a[joints[0]]) != GROUND
+        return a != GROUND
     if i + 1 < len(joints):
-        j = joints[i + 1]
-        return (
-            int(assembly.a[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.a[joints[i]] != GROUND
-        )
-    j = joints[i - 1]
-    return int(assembly.b[joints[i]]) in (int(assembly.a[j]), int(assembly.b[j])) and assembly.b[joints[i]] != GROUND
+        return a != GROUND and a in ends[joints[i + 1]]
+    return b != GROUND and b in ends[joints[i - 1]]
 
 
 def funicular(assembly: Assembly, loads: Loads, state: State, joints: list[int]) -> np.ndarray:
@@ -93,21 +91,26 @@ def section_forces(
     Sums the forces on the part above each level: its joints there and its loads, less the weight below.
     sway: the part of gamma that accelerates the weight.
     """
-    joints = assembly.joints_of(block)
-    joints = joints[(assembly.a[joints] != GROUND) & (assembly.b[joints] != GROUND)]
-    normal, tangent = assembly.normal[joints], assembly.tangent[joints]
-    force = state.normal[joints, None] * normal + state.shear[joints, None] * tangent
-    force = np.where((assembly.a[joints] == block)[:, None], force, -force)
-    x, y = (assembly.p[joints] + state.position[joints, None] * (assembly.q[joints] - assembly.p[joints])).T
-    wrench = np.column_stack([force, x * force[:, 1] - y * force[:, 0]])
-    above = (assembly.middle[joints, 1] >= levels[:, None]).astype(float)
-    total = loads.dead[block] + state.gamma * loads.live[block] + above @ wrench
+    total = np.empty((len(levels), 3))
+    total[:] = loads.dead[block] + state.gamma * loads.live[block]
+    for j in assembly.bounds[block]:
+        if GROUND in assembly.ends[j]:
+            continue
+        n, t = float(state.normal[j]), float(state.shear[j])
+        (nx, ny), (tx, ty) = assembly.normal[j].tolist(), assembly.tangent[j].tolist()
+        (px, py), (qx, qy), share = assembly.p[j].tolist(), assembly.q[j].tolist(), float(state.position[j])
+        on = 1.0 if assembly.ends[j][0] == block else -1.0
+        fx, fy = on * (n * nx + t * tx), on * (n * ny + t * ty)
+        moment = (px + share * (qx - px)) * fy - (py + share * (qy - py)) * fx
+        total[levels <= float(assembly.middle[j, 1])] += (fx, fy, moment)
     if (answers := loads.resistance) is not None:
         on = answers.block == block
         force = state.mobilised[answers.number[on], None] * answers.wrench[on]
         total = total + (answers.point[on, 1] >= levels[:, None]).astype(float) @ force
-    outline = assembly.outlines[block]
-    under = below(outline, levels) * (assembly.mass[block] * GRAVITY / abs(signed_area(outline)))
+    found = below(assembly.outlines[block], np.append(levels, np.inf))
+    weight, first, second = found[:-1].T * (assembly.mass[block] * GRAVITY / found[-1, 0])
     side = sway * state.gamma
-    total = total - np.column_stack([side * under[:, 0], -under[:, 0], -under[:, 1] - side * under[:, 2]])
+    total[:, 0] -= side * weight
+    total[:, 1] += weight
+    total[:, 2] += first + side * second
     return total[:, :2], (total[:, 2] + levels * total[:, 0]) / total[:, 1]

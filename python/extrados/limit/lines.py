@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.geometry.assembly import GROUND, Assembly
+from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.chains import inner_stones
 from extrados.building.geometry.polygons import reach
 from extrados.limit.graphic import section_forces
@@ -16,6 +16,7 @@ CARRIES = 1e-4
 #: A stone this many times as high as its base is long is followed section by section.
 TALL = 1.2
 SECTIONS = 24
+SHARES = np.arange(1, SECTIONS) / SECTIONS
 BEARS = 0.7  # cosine of the slope up to which a joint bears a stone from below
 
 
@@ -40,12 +41,7 @@ def thrust_paths(assembly: Assembly, loads: Loads, state: State, sway: float = 1
     points, force = state.points(assembly), np.hypot(*state.force(assembly).T)
     found = [ThrustPath(name, points[joints], float(force[joints].max())) for name, joints in assembly.chains.items()]
     within = {b for joints in assembly.chains.values() for b in inner_stones(assembly, joints)}
-    touching: list[list[int]] = [[] for _ in assembly.mass]
-    for j, ends in enumerate(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True)):
-        for block in ends:
-            if block != GROUND:
-                touching[block].append(j)
-    for block, joints in enumerate(touching):
+    for block, joints in enumerate(assembly.bounds):
         if block in within:
             continue
         loaded = [j for j in joints if force[j] > CARRIES * max(force[i] for i in joints)]
@@ -92,7 +88,7 @@ def _down(
     order = sorted(above, key=lambda j: -float(points[j, 1]))
     foot = points[base]
     top = points[order[0]] if order else np.array([np.nan, assembly.outlines[block][:, 1].max()])
-    levels = np.linspace(top[1], foot[1], SECTIONS + 1)[1:-1]
+    levels = top[1] + SHARES * (foot[1] - top[1])
     carried, x = section_forces(assembly, block, levels, state, loads, sway)
     outline = assembly.outlines[block]
     left, right = reach(outline, levels).T

@@ -31,11 +31,11 @@ def place_of(assembly: Assembly, joint: int, point: np.ndarray) -> str:
 
 def _along(assembly: Assembly, name: str, joints: list[int], k: int) -> str | None:
     """Where the k-th joint of an arch lies along it; None where the chain is no arch but stands upright."""
-    x, y = assembly.middle[joints].T
-    span = x[-1] - x[0]
-    if abs(span) < 0.5 * abs(y[-1] - y[0]) or abs(span) < 1e-9:
+    (first, low), (last, high) = assembly.middle[[joints[0], joints[-1]]].tolist()
+    span = last - first
+    if abs(span) < 0.5 * abs(high - low) or abs(span) < 1e-9:
         return None
-    share = float((x[k] - x[0]) / span)
+    share = (float(assembly.middle[joints[k], 0]) - first) / span
     name = name if name[-1].isdigit() else f"the {name}"
     if k == 0 or k == len(joints) - 1:
         return f"{'left' if (k == 0) == (span > 0.0) else 'right'} springing of {name}"

@@ -90,7 +90,7 @@ def gif(images: list[Image.Image], rate: int) -> bytes:
     strip = Image.new("RGB", (width, height * len(some)))
     for k, image in enumerate(some):
         strip.paste(image.reduce(2), (0, k * height))
-    palette = strip.quantize(128)
+    palette = strip.quantize(128, method=Image.Quantize.MAXCOVERAGE)  # thin lines keep their colours
     first, *rest = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     out = io.BytesIO()
     first.save(
@@ -198,6 +198,8 @@ def draw_rocking(run: Stored, name: str, folder: Path) -> None:
         stones = Stones(run, name, ax)
         _poses_window(ax, stones, pose)
         (thrust,) = ax.plot([], [], color=style.THRUST, linewidth=1.6, zorder=4, label="line of thrust")
+        if line is not None:
+            ax.legend(loc="upper right")
         ground.plot(history, run.array(name, "ground") / GRAVITY, color=style.GROUND, linewidth=0.8)
         ground.set_ylabel("ground [g]")
         upper = "rotation_upper" in run.arrays[name]  # of two stacked blocks
@@ -339,7 +341,9 @@ def draw_supports(run: Stored, name: str, folder: Path) -> None:
         ax, charts = _axes(fig, 1)
         stones = Stones(run, name, ax)
         _poses_window(ax, stones, pose)
-        (thrust,) = ax.plot([], [], color=style.THRUST, linewidth=1.6, zorder=4)
+        (thrust,) = ax.plot([], [], color=style.THRUST, linewidth=1.6, zorder=4, label="line of thrust")
+        if follows:
+            ax.legend(loc="upper right")
         if follows:
             x, y = 1e3 * run.array(name, "movement"), run.array(name, "force")[:, 0] / 1e3
             charts[0].set_xlabel("movement of the support [mm]")
@@ -460,8 +464,9 @@ def draw_dem(run: Stored, name: str, folder: Path) -> None:
         ground.set_ylabel("ground [g]")
         for i in most:
             turn.plot(time, 1e3 * rotation[:, i], label=label[int(i)], linewidth=1.0)
-        turn.legend(loc="upper left", ncols=2)
-        turn.set_ylabel("rotation [mrad]")
+        if len(most) > 1:
+            turn.legend(loc="upper left", ncols=2)
+        turn.set_ylabel("rotation [mrad]" + (f" of {label[int(most[0])]}" if len(most) == 1 else ""))
         turn.set_xlabel("time [s]")
         turn.set_xlim(float(time[0]), float(time[-1]))
         cursors = [a.axvline(0.0, color=style.THRUST, linewidth=1.0) for a in (ground, turn)]

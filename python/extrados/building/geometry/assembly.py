@@ -91,9 +91,24 @@ class Assembly:
         ends = np.concatenate([self.p, self.q])
         return float((ends.max(axis=0) - ends.min(axis=0)).max())
 
+    @cached_property
+    def ends(self) -> list[tuple[int, int]]:
+        """Blocks a and b of each joint."""
+        return list(zip(self.a.tolist(), self.b.tolist(), strict=True))
+
+    @cached_property
+    def bounds(self) -> list[list[int]]:
+        """Joints that bound each block."""
+        found: list[list[int]] = [[] for _ in self.mass]
+        for j, pair in enumerate(self.ends):
+            for block in pair:
+                if block != GROUND:
+                    found[block].append(j)
+        return found
+
     def joints_of(self, block: int) -> np.ndarray:
         """Joints that bound a block."""
-        return np.flatnonzero((self.a == block) | (self.b == block))
+        return np.array(self.bounds[block], dtype=int)
 
 
 def part_of(assembly: Assembly, blocks: list[int]) -> Assembly:

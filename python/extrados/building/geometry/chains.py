@@ -72,7 +72,7 @@ def _on_ground(assembly: Assembly, joint: int) -> bool:
 
 def inner_stones(assembly: Assembly, joints: list[int]) -> set[int]:
     """Voussoirs of a chain: blocks between two of its joints."""
-    ends = [{int(assembly.a[j]), int(assembly.b[j])} for j in joints]
+    ends = [set(assembly.ends[j]) for j in joints]
     return {b for one, two in itertools.pairwise(ends) for b in one & two} - {GROUND}
 
 
@@ -83,20 +83,15 @@ def is_stack(assembly: Assembly, joints: list[int]) -> bool:
 
 def _end(assembly: Assembly, joints: list[int], k: int) -> int | None:
     """The stone with no other joint beyond the first or last joint of a row; None where it has others."""
-    for block in (int(assembly.a[joints[k]]), int(assembly.b[joints[k]])):
-        if block != GROUND and len(assembly.joints_of(block)) == 1:
+    for block in assembly.ends[joints[k]]:
+        if block != GROUND and len(assembly.bounds[block]) == 1:
             return block
     return None
 
 
 def _rows(assembly: Assembly) -> list[list[int]]:
     """Joints of every longest row of stones with at most two joints each."""
-    touching: list[list[int]] = [[] for _ in assembly.mass]
-    pairs = list(zip(assembly.a.tolist(), assembly.b.tolist(), strict=True))
-    for j, pair in enumerate(pairs):
-        for block in pair:
-            if block != GROUND:
-                touching[block].append(j)
+    pairs, touching = assembly.ends, assembly.bounds
     plain = [1 <= len(joints) <= 2 for joints in touching]
     left, rows = set(np.flatnonzero(plain).tolist()), []
 

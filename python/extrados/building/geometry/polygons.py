@@ -64,21 +64,18 @@ def reach(outline: np.ndarray, levels: np.ndarray) -> np.ndarray:
 def below(outline: np.ndarray, levels: np.ndarray) -> np.ndarray:
     """Area and its first moments, integrals of x and of y (k, 3), of what lies below each level.
 
-    Green's theorem: integrals of x, x^2 / 2 and x y over dy along the counter-clockwise edges, each up to
-    the level; Simpson's rule is exact for them.
+    Green's theorem: integrals of x, x^2 / 2 and x y over dy along the counter-clockwise edges, each up to the level.
     """
     x0, y0 = outline.T
     x1, y1 = following(x0), following(y0)
-    rise = np.where(y1 == y0, 1.0, y1 - y0)
-    start, end = np.minimum(y0, levels[:, None]), np.minimum(y1, levels[:, None])
-    found = np.zeros((len(levels), 3))
-    for y, weight in ((start, 1.0), (0.5 * (start + end), 4.0), (end, 1.0)):
-        x = x0 + (y - y0) / rise * (x1 - x0)
-        share = weight / 6.0 * (end - start)
-        found += np.stack(
-            [(x * share).sum(axis=1), (0.5 * x * x * share).sum(axis=1), (x * y * share).sum(axis=1)], axis=1
-        )
-    return found
+    slope, level = (x1 - x0) / np.where(y1 == y0, 1.0, y1 - y0), levels[:, None]
+    start, end = np.minimum(y0, level), np.minimum(y1, level)
+    xs, xe, sixth = x0 + (start - y0) * slope, x0 + (end - y0) * slope, (end - start) / 6.0
+    found = np.empty((3, len(levels)))
+    found[0] = (3.0 * sixth * (xs + xe)).sum(axis=1)
+    found[1] = (sixth * (xs * xs + xs * xe + xe * xe)).sum(axis=1)
+    found[2] = (sixth * (xs * (start + start + end) + xe * (start + end + end))).sum(axis=1)
+    return found.T
 
 
 def inside(outline: np.ndarray, points: np.ndarray) -> np.ndarray:

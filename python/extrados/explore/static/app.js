@@ -9,20 +9,26 @@ import { outMenu } from "./out.js";
 import { sidebar } from "./sidebar.js";
 
 const REST = 130; // ms without a change, after which the hand rests
+const BESIDE = 100; // ms between two looks of what stands beside the drawing while a hand moves
 const KEPT = "extrados-kept";
+const CHANGE = new Set(["hello", "open", "drop", "blocks", "analysis", "drag", "set", "show", "rocking"]); // messages that change what is seen
 const TABS = [["structure", "Structure"], ["motion", "Motion"], ["results", "Results"]];
 
 export function mount(root, transport, film, { embedded = false } = {}) {
   const app = {
     root, transport, film, embedded, words: {}, scene: null, arrays: {}, handles: [], deck: null, text: "", name: "", source: {}, forms: [], drops: [],
-    detail: null, resting: true, tab: "structure", view: { gamma: 0, through: null, thrust: null, chain: null }, welcome: null, timings: [],
+    detail: null, tab: "structure", view: { gamma: 0, through: null, thrust: null, chain: null }, welcome: null, timings: [],
     layers: { least: true, most: true, through: true, plus: true, minus: false, central: false, reactions: true, joints: true },
-    ask, change, show, edit, say, open, rest, on, tellDetail: () => tell("detail"), undo: () => travel(-1), redo: () => travel(1), typed, setTab, remember, dialog,
+    ask, change, show, edit, say, open, rest, on, tellDetail: () => tell("detail"),
+    /** True at rest: all that was asked for is seen, and the text is that of it. */
+    get still() { return !moved && !unanswered.size; },
+    undo: () => travel(-1), redo: () => travel(1), typed, setTab, remember, dialog,
   };
   const listeners = {};
   const waiting = new Map(); // number of a message -> what to do with its replies
   const flying = new Map(); // lane -> {busy, next}
-  let counter = 0, resting = null, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
+  const unanswered = new Set(); // numbers of messages that change what is seen
+  let counter = 0, moved = true, held = false, timer = null, beside = null, besides = -BESIDE, past = [], future = [], travelling = false, dirty = false, connected = false, wasOpen = false;
 
   function on(event, listener) { (listeners[event] ??= []).push(listener); }
   function tell(event, ...rest) { for (const listener of listeners[event] ?? []) listener(...rest); }
@@ -113,8 +119,9 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     counter += 1;
     message.of = counter;
     waiting.set(counter, { message, when, reply, lane });
+    if (CHANGE.has(message.do)) unanswered.add(counter);
     if (waiting.size > 400) waiting.delete(waiting.keys().next().value);
-    if (!transport.send(message)) { waiting.delete(counter); if (lane) flying.delete(lane); }
+    if (!transport.send(message)) { waiting.delete(counter); unanswered.delete(counter); if (lane) flying.delete(lane); }
   }
   function landed(entry) {
     if (!entry.lane) return;
@@ -136,7 +143,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     connected = state === "open";
     if (state === "open") {
       banner.hidden = true;
-      flying.clear(); waiting.clear();
+      flying.clear(); waiting.clear(); unanswered.clear();
       const kept = wasOpen && app.text ? { text: app.text, name: app.name, ...app.source, drops: app.drops } : null;
       ask({ do: "hello", kept });
       if (kept && (app.view.gamma || app.view.through || app.view.thrust !== null)) ask({ do: "show", gamma: app.view.gamma, lines: app.view.lines, thrust: app.view.thrust, through: app.scene?.through ? { joint: app.scene.through.joint, share: app.scene.through.wanted } : null });
@@ -149,11 +156,13 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   };
   transport.onreply = ({ words, arrays }) => {
     const entry = waiting.get(words.of);
+    if (!words.presets) unanswered.delete(words.of); // after what there is to choose from comes the first deck
     if (words.complaints || words.bad) {
       if (!["rocking", "domain", "impulse"].includes(words.to)) say((words.complaints ?? [words.bad]).join("\n"), true);
       tell("complaint", words, entry?.message);
       entry?.reply?.(words, arrays);
       if (entry) landed(entry);
+      if (moved && CHANGE.has(words.to)) rest();
       return;
     }
     if (words.presets) { app.welcome = words; tell("welcome", words); }
@@ -165,6 +174,7 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       drawing.show(app.scene, arrays, app.handles, words.opened === true);
       if (["drag", "set"].includes(words.to)) dirty = true;
       tell("scene", words.opened === true, entry?.when);
+      follow();
       if (words.to !== "hello") say("");
       rest();
     }
@@ -183,16 +193,30 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       if (entry.message.do !== "hello" || words.scene) landed(entry);
       if (words.scene && entry.when && ["drag", "show", "set"].includes(entry.message.do)) painted(entry, words.ms);
       if (words.rocking) painted(entry, words.ms, "rocking");
-      if (words.domain?.stride > 1) painted(entry, words.ms);
+      if (words.domain?.stride > 1 && !words.domain.part) painted(entry, words.ms);
     }
   };
-  /** From the event to the picture that the next frame has put on the screen. */
-  function painted(entry, server, what = entry.message.do) {
+  /** Do something once the next frame is on the screen. */
+  function afterwards(next) {
     requestAnimationFrame(() => {
       const channel = new MessageChannel();
-      channel.port1.onmessage = () => { app.timings.push({ do: what, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); };
+      channel.port1.onmessage = next;
       channel.port2.postMessage(0);
     });
+  }
+  /** From the event to the picture that the next frame has put on the screen. */
+  function painted(entry, server, what = entry.message.do) {
+    afterwards(() => { app.timings.push({ do: what, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); });
+  }
+  /** The drawing comes first: what stands beside it follows when the picture is on the screen, and not with each picture of a hand that moves. */
+  function follow() {
+    if (beside === null) { beside = 0; afterwards(() => { if (beside === 0) beside = setTimeout(followed, besides + BESIDE - performance.now()); }); }
+  }
+  function followed() {
+    clearTimeout(beside);
+    beside = null;
+    besides = performance.now();
+    tell("beside");
   }
   function opened(words) {
     app.text = words.text; app.name = words.name; app.forms = words.forms;
@@ -205,15 +229,15 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     tell("text");
   }
   function rest() {
-    app.resting = true; // until the text is that of what is seen
-    clearTimeout(resting);
-    resting = setTimeout(() => ask({ do: "rest", lane: "rest" }), REST);
+    moved = true;
+    clearTimeout(timer);
+    timer = setTimeout(() => { timer = null; ask({ do: "rest", lane: "rest" }); }, REST);
   }
   function settled(words) {
     app.text = words.text; app.forms = words.forms; app.name = words.name;
-    dirty = false;
-    app.resting = ["drag", "set", "show"].some((lane) => [...flying.keys()].some((key) => key.startsWith(lane)));
-    remember();
+    if (beside !== null) followed();
+    if (timer === null && !unanswered.size) moved = false;
+    if (!held) { dirty = false; remember(); } // one step back undoes all of a drag, also of a slow one
     tell("text");
   }
   /** Keep the present text in the history of undo. */
@@ -226,21 +250,26 @@ export function mount(root, transport, film, { embedded = false } = {}) {
     title.title = app.name;
     try { localStorage.setItem(KEPT, JSON.stringify({ text: app.text, name: app.name, source: app.source })); } catch { /* a browser without storage */ }
   }
+  root.addEventListener("pointerdown", () => { held = true; }, true);
+  for (const end of ["pointerup", "pointercancel"]) addEventListener(end, () => { if (held && dirty) rest(); held = false; }, true);
   function travel(way) {
     if (dirty) { // the last change is not in the history yet
-      clearTimeout(resting);
+      clearTimeout(timer);
+      timer = null;
       ask({ do: "rest" }, { reply: (words) => { if (words.text !== undefined) travel(way); } });
       return;
     }
     if (way < 0 ? past.length < 2 : !future.length) return;
     if (way < 0) future.push(past.pop()); else past.push(future.pop());
     travelling = true;
-    clearTimeout(resting);
+    clearTimeout(timer);
+    timer = null;
     ask({ do: "open", text: past.at(-1), here: "same" });
   }
 
   /** Words at the foot of the page. */
   function say(text, bad = false) {
+    if (status.textContent === text && status.classList.contains("bad") === bad) return;
     status.textContent = text;
     status.classList.toggle("bad", bad);
     status.hidden = !text;
@@ -254,12 +283,20 @@ export function mount(root, transport, film, { embedded = false } = {}) {
   }
 
   function theme() {
-    const dark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-    root.dataset.theme = dark ? "light" : "dark";
-    try { localStorage.setItem("extrados-theme", root.dataset.theme); } catch { /* a browser without storage */ }
+    chosen = root.dataset.theme === "dark" ? "light" : "dark";
+    try { localStorage.setItem("extrados-theme", chosen); } catch { /* a browser without storage */ }
+    dress();
+  }
+  const night = matchMedia("(prefers-color-scheme: dark)");
+  let chosen = "";
+  try { chosen = localStorage.getItem("extrados-theme") ?? ""; } catch { /* a browser without storage */ }
+  /** Dark or light, as it was chosen here, else as the machine has it. */
+  function dress() {
+    root.dataset.theme = chosen || (night.matches ? "dark" : "light");
     tell("theme");
   }
-  try { root.dataset.theme = localStorage.getItem("extrados-theme") ?? ""; } catch { /* a browser without storage */ }
+  night.addEventListener("change", dress);
+  dress();
 
   /** A dialog with what it holds; it is gone when closed. */
   function dialog(label, ...content) {

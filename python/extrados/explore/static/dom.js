@@ -16,12 +16,29 @@ function fill(element, attributes, children) {
 }
 export const h = (tag, attributes, ...children) => fill(document.createElement(tag), attributes, children);
 export const s = (tag, attributes, ...children) => fill(document.createElementNS(SVG, tag), attributes, children);
+/** Attributes of an element; those that it has already been given so are left alone. */
 export function set(element, attributes) {
-  for (const [key, value] of Object.entries(attributes)) {
-    if (value === null || value === undefined) element.removeAttribute(key);
-    else element.setAttribute(key, value);
+  const given = (element.given ??= {});
+  for (const key in attributes) {
+    const value = attributes[key] ?? null, text = value === null ? null : String(value);
+    if (given[key] === text) continue;
+    given[key] = text;
+    if (text === null) element.removeAttribute(key); else element.setAttribute(key, text);
   }
   return element;
+}
+/** The shapes of a group, each {tag, text, title, ...attributes}; elements that are there are kept, and changed where they differ. */
+export function shapes(group, wanted) {
+  let element = group.firstElementChild;
+  for (const { tag, text, title, ...attributes } of wanted) {
+    if (element?.localName !== tag) { const made = document.createElementNS(SVG, tag); if (element) element.replaceWith(made); else group.append(made); element = made; }
+    for (const key in element.given) if (!(key in attributes)) attributes[key] = null;
+    set(element, attributes);
+    const said = text ?? title ?? "";
+    if ((element.said ?? "") !== said) { element.said = said; if (title) element.replaceChildren(s("title", { text: title })); else element.textContent = said; }
+    element = element.nextElementSibling;
+  }
+  while (element) { const next = element.nextElementSibling; element.remove(); element = next; }
 }
 
 /** A number with so many digits that matter, no more zeros than needed. */

@@ -141,8 +141,8 @@ export function sidebar(app, box) {
   app.on("complaint", (words, message) => { if (message?.do === "open" && message.here === "same") complaints.replaceChildren(...(words.complaints ?? [words.bad]).map((c) => h("li", {}, c))); });
 
   function fill() { if (chosen === "answer") answer(); else if (chosen === "sizes") sizes(); else if (chosen === "deck") deck(); }
-  let due = false;
-  app.on("scene", () => { complaints.replaceChildren(); if (chosen === "answer" && !due) { due = true; requestAnimationFrame(() => { due = false; answer(); }); } });
+  app.on("scene", () => { if (complaints.firstChild) complaints.replaceChildren(); });
+  app.on("beside", () => { if (chosen === "answer") answer(); });
   app.on("detail", () => { if (chosen === "answer") answer(); });
   app.on("layers", () => { if (chosen === "answer") answer(); });
   app.on("text", fill);

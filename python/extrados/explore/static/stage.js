@@ -1,5 +1,5 @@
 // The drawing of a structure: stones, lines of thrust, hinges, loads, reactions, and the handles that hands move.
-import { degrees, number, quantity, s, set } from "./dom.js";
+import { degrees, number, quantity, s, set, shapes } from "./dom.js";
 
 const LINES = [
   ["least", "least thrust"], ["most", "greatest thrust"], ["through", "thrust through the point"],
@@ -178,27 +178,27 @@ export function stage(box, hands) {
     // a scale, round in metres
     const wish = 90 / view.k, power = 10 ** Math.floor(Math.log10(wish)), step = [1, 2, 5].map((m) => m * power).filter((v) => v <= wish).pop() ?? power;
     const x = 14, y = view.h - 14;
-    ruler.replaceChildren(
-      s("path", { d: `M${x} ${y - 4}V${y}H${x + step * view.k}V${y - 4}` }),
-      s("text", { x: x + step * view.k + 6, y: y + 1, text: quantity(step, "m", 1) }),
-    );
-    if (view.theta) ruler.append(s("text", { x: view.w - 14, y: 18, "text-anchor": "end", text: `ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }));
+    shapes(ruler, [
+      { tag: "path", d: `M${x} ${y - 4}V${y}H${x + step * view.k}V${y - 4}` },
+      { tag: "text", x: x + step * view.k + 6, y: y + 1, text: quantity(step, "m", 1) },
+      ...(view.theta ? [{ tag: "text", x: view.w - 14, y: 18, "text-anchor": "end", text: `ground tilted by ${number(degrees(scene.gamma), 3)}°, as ${number(scene.gamma, 3)} g sideways` }] : []),
+    ]);
   }
   function drawMarks(scene, layers) {
     const parts = [];
     const hinge = (h, name) => {
       const [x, y] = screenOf(...h.at);
-      parts.push(s("circle", { class: `hinge ${name}`, cx: x, cy: y, r: 5.5 }, s("title", { text: `${h.where} (${h.name})` })));
+      parts.push({ tag: "circle", class: `hinge ${name}`, cx: x, cy: y, r: 5.5, title: `${h.where} (${h.name})` });
     };
     if (!shownPose) {
       for (const name of ["plus", "minus"]) if (layers[name]) for (const h of scene[`${name}_hinges`] ?? []) hinge(h, name);
       for (const name of ["plus", "minus"]) if (layers[name]) for (const j of scene[`${name}_sliding`] ?? []) {
         const [x, y] = screenOf(...j.at);
-        parts.push(s("path", { class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4` }, s("title", { text: `slides: ${j.name}` })));
+        parts.push({ tag: "path", class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4`, title: `slides: ${j.name}` });
       }
       for (const name of ["least", "most"]) if (layers[name]) for (const at of scene[`${name}_touches`] ?? []) {
         const [x, y] = screenOf(...at);
-        parts.push(s("rect", { class: `touch ${name}`, x: x - 3, y: y - 3, width: 6, height: 6 }));
+        parts.push({ tag: "rect", class: `touch ${name}`, x: x - 3, y: y - 3, width: 6, height: 6 });
       }
     }
     if (layers.reactions && !shownPose) for (const r of scene.reactions ?? []) {
@@ -206,16 +206,16 @@ export function stage(box, hands) {
       const ux = (c * r.x_N + n * r.y_N) / size, uy = -(c * r.y_N - n * r.x_N) / size;
       const [x, y] = screenOf(...r.at), long = 20 + (34 * size) / (scene.weight_N || size);
       const [a, b] = [x - ux * long, y - uy * long], across = [-uy, ux];
-      parts.push(s("path", { class: "reaction", d: `M${a} ${b}L${x} ${y}m${-ux * 8 + across[0] * 4} ${-uy * 8 + across[1] * 4}L${x} ${y}L${x - ux * 8 - across[0] * 4} ${y - uy * 8 - across[1] * 4}` },
-        s("title", { text: `reaction at ${r.name}: ${quantity(r.x_N, "N", 3)} across, ${quantity(r.y_N, "N", 3)} up` })));
+      parts.push({ tag: "path", class: "reaction", d: `M${a} ${b}L${x} ${y}m${-ux * 8 + across[0] * 4} ${-uy * 8 + across[1] * 4}L${x} ${y}L${x - ux * 8 - across[0] * 4} ${y - uy * 8 - across[1] * 4}`,
+        title: `reaction at ${r.name}: ${quantity(r.x_N, "N", 3)} across, ${quantity(r.y_N, "N", 3)} up` });
     }
-    marks.replaceChildren(...parts);
+    shapes(marks, parts);
   }
   function drawLoads(scene) {
-    loads.replaceChildren(...(scene.loads ?? []).filter((l) => l.force_N).map((l) => {
+    shapes(loads, (scene.loads ?? []).filter((l) => l.force_N).map((l) => {
       const [x, y] = screenOf(...l.at), [a, b] = screenOf(l.at[0], l.at[1] + l.scale * l.force_N);
       const ux = x - a, uy = y - b, size = Math.hypot(ux, uy) || 1, [vx, vy] = [ux / size, uy / size];
-      return s("path", { class: "load", d: `M${a} ${b}L${x} ${y}M${x - vx * 9 - vy * 4} ${y - vy * 9 + vx * 4}L${x} ${y}L${x - vx * 9 + vy * 4} ${y - vy * 9 - vx * 4}` }, s("title", { text: `load of ${quantity(l.force_N, "N", 4)}` }));
+      return { tag: "path", class: "load", d: `M${a} ${b}L${x} ${y}M${x - vx * 9 - vy * 4} ${y - vy * 9 + vx * 4}L${x} ${y}L${x - vx * 9 + vy * 4} ${y - vy * 9 - vx * 4}`, title: `load of ${quantity(l.force_N, "N", 4)}` };
     }));
   }
 

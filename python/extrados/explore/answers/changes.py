@@ -1,0 +1,153 @@
+"""Changes by hands: handles that are dragged, stepped or typed, keys that are set; and what is told when a hand rests."""
+
+import re
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from extrados.decks.reader import DeckError
+from extrados.explore import statics, stored
+from extrados.explore.answers import motion
+from extrados.explore.answers.views import scene
+from extrados.explore.desk import Desk
+from extrados.explore.document import as_written, tidy
+from extrados.explore.frames import Reply
+from extrados.explore.handles import Handle, rounded
+from extrados.explore.messages import BadMessage, Message, numbers, quantity
+
+KEY = re.compile(r"[A-Za-z_][\w-]*(\.[\w-]+){0,8}")
+
+
+def drag(desk: Desk, message: Message) -> Iterator[Reply]:
+    """A handle led to a place (`to`), moved by steps, or given a value as text; `ends` lets go of it."""
+    handle = desk.handles.get(str(message.get("handle")))
+    if handle is None:
+        raise BadMessage("there is no such handle")
+    if handle.holds and desk.held is None:
+        desk.held = desk.anchor
+    if "to" in message:
+        value = _led(handle, desk, numbers(message["to"], 2))
+    elif "by" in message:
+        value = _stepped(handle, desk.size, *numbers(message["by"], 2))
+    else:
+        value = _typed(handle, message.get("text"))
+    try:
+        yield _change(desk, handle.changes(value))
+    finally:
+        if message.get("ends") is True or "to" not in message:
+            desk.held = None
+
+
+def set_keys(desk: Desk, message: Message) -> Iterator[Reply]:
+    """Keys of the deck given values: numbers, words, or text with units as it would stand in the deck. `rocking`: the
+    response comes with the same reply, for a hand that draws a pulse."""
+    changes = message.get("changes")
+    if not isinstance(changes, dict) or not 0 < len(changes) <= 50:
+        raise BadMessage("expected up to 50 changes")
+    if not all(KEY.fullmatch(key) for key in changes):
+        raise BadMessage("that is no key")
+    reply = _change(desk, changes)
+    if message.get("rocking") is True and desk.there().deck.motion is not None:
+        for response in motion.response(desk, {}):
+            reply.words |= response.words
+            reply.arrays |= response.arrays
+    yield reply
+
+
+def rest(desk: Desk, _: Message) -> Iterator[Reply]:
+    """What is told when the hand rests: the text of the deck, its forms, then mechanisms and safety."""
+    desk.held = None
+    yield Reply({"text": desk.document.text, "forms": stored.forms(desk.there().deck), "name": desk.name})
+    if desk.picture is not None:
+        words, arrays = statics.detail(desk.picture, desk.anchor)
+        yield Reply({"detail": words}, arrays)
+
+
+def _led(handle: Handle, desk: Desk, to: list[float]) -> Any:
+    """The value where a hand leads a handle, to as many digits as a hand means."""
+    x, y = (np.array(to) + desk.anchor).tolist()
+    value = handle.value_at(x, y)
+    if handle.unit != "m":
+        return rounded(value, max(abs(value), 1e-6))
+    return [rounded(v, desk.size) for v in value] if isinstance(value, list) else rounded(value, desk.size)
+
+
+def _stepped(handle: Handle, size: float, dx: float, dy: float) -> Any:
+    """A step of the keyboard: a hundredth of the size of the value, or of the building for places."""
+    if isinstance(handle.value, list):
+        step = 0.002 * size
+        return [rounded(handle.value[0] + dx * step, size), rounded(handle.value[1] + dy * step, size)]
+    step = handle.step or 0.01 * max(abs(handle.value), 0.02 * size if handle.unit == "m" else 1e-3)
+    exponent = np.floor(np.log10(step))
+    step = float(np.round(step / 10.0**exponent) * 10.0**exponent)
+    return max(round((handle.value + (dx + dy) * step) / step) * step, min(step, handle.least or step))
+
+
+def _typed(handle: Handle, text: Any) -> Any:
+    """A value as a hand types it, with unit or without."""
+    if not isinstance(text, str):
+        raise BadMessage("expected text")
+    if isinstance(handle.value, list):
+        parts = [p for p in re.split(r"[;,]\s*|\s+(?=[-+.\d])", text.strip()) if p]
+        if len(parts) != 2:
+            raise DeckError([f"{handle.label}: expected two numbers, x; y"])
+        return [quantity(part, handle.unit, handle.label) for part in parts]
+    return quantity(text, handle.unit, handle.label)
+
+
+def _change(desk: Desk, changes: dict[str, Any]) -> Reply:
+    """Values into live deck and text: as they stand in the text, so that both give the same numbers."""
+    live = desk.there()
+    written = {key: _written(desk, key, value) for key, value in changes.items()}
+    before = live.deck
+    live.update(written)
+    try:
+        moved = all(key.split(".")[0] == "motion" for key in written) and desk.picture is not None
+        reply = Reply({"deck": desk.words()}) if moved else scene(desk)  # statics know no motion
+    except BaseException:
+        live.back_to(before)
+        raise
+    for key, value in written.items():
+        desk.document.put(_way(desk, key), value)
+    return reply
+
+
+def _way(desk: Desk, key: str) -> list[str]:
+    """Where a key of the live deck stands in its text."""
+    way, live = key.split("."), desk.there()
+    if way[0] == "analysis" and len(way) > 1:
+        index = live.names.index(way[1])
+        way[:2] = ["analysis", str(index)] if isinstance(live.deck.data["analysis"], list) else ["analysis"]
+    return way
+
+
+def _before(desk: Desk, key: str) -> Any:
+    """What stands in the deck at a key, None where nothing does."""
+    place: Any = desk.there().deck.data
+    try:
+        for part in _way(desk, key):
+            place = place[int(part)] if isinstance(place, list) else place[part]
+    except (KeyError, IndexError, TypeError, ValueError):
+        return None
+    return place
+
+
+def _written(desk: Desk, key: str, value: Any) -> Any:
+    """A value as it stands in the text of the deck."""
+    if isinstance(value, list):
+        return [float(tidy(v)) if isinstance(v, float) else v for v in value]
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    si, bare = _unit(desk, key)
+    return as_written(value, _before(desk, key), si, bare)
+
+
+def _unit(desk: Desk, key: str) -> tuple[str, bool]:
+    """The unit of a key and whether a number may stand without it."""
+    live = desk.there()
+    deck, way = live.deck, key.split(".")
+    table = {"structure": deck.structure, "motion": deck.motion}.get(way[0], getattr(deck.building, way[0], None))
+    if way[0] == "analysis" and len(way) > 2:
+        table, way = deck.analyses[live.names.index(way[1])], way[1:]
+    return stored.unit_of(type(table), way[1:]) if table is not None else ("", True)

@@ -1,0 +1,131 @@
+"""The picture: what is drawn of the building, other views of it, and the push of what no hand moves."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from extrados.analyses.context import Refused
+from extrados.analyses.limit.applied import block_under
+from extrados.analyses.limit.tables import LimitAnalysisTable, Tilt
+from extrados.analyses.run import run_one
+from extrados.building.errors import NoView
+from extrados.building.geometry.assembly import Assembly
+from extrados.explore import bodies, statics
+from extrados.explore.desk import Desk
+from extrados.explore.frames import Reply
+from extrados.explore.handles import Handle, anchor_of, handles_of, load_handles
+from extrados.explore.messages import BadMessage, Message, numbers, quantity
+
+
+def scene(desk: Desk) -> Reply:
+    """The building as it stands on the desk, with handles; picture and handles of the desk are then these."""
+    structure = desk.there().deck.structure
+    if structure is None:
+        why = "The deck has no [structure]: there is nothing to draw."
+        return _seen(desk, None, [], {"empty": why}, {})
+    options, building, name = desk.analysis(LimitAnalysisTable, lambda: Tilt(kind="tilt"))
+    try:
+        assembly = building.blocks()
+    except NoView as error:
+        return _body(desk, str(error))
+    desk.anchor = anchor_of(structure, assembly) if desk.held is None else desk.held
+    if desk.view.through is not None and desk.view.through[0] >= len(assembly.a):
+        desk.view = replace(desk.view, through=None)
+    made = statics.picture(building, options, desk.view, desk.anchor)
+    handles = handles_of(structure, assembly)
+    if name is not None and options.load:
+        arrows, more = _loads(options.load, name, assembly, desk.anchor)
+        made.words["loads"] = arrows
+        handles += more
+    made.words["limit_analysis"] = name
+    return _seen(desk, made, handles, made.words, made.arrays)
+
+
+def _loads(
+    loads: list[Any], name: str, assembly: Assembly, anchor: np.ndarray
+) -> tuple[list[dict[str, Any]], list[Handle]]:
+    """Arrows and handles of the loads of the analysis `name`."""
+    surfaces = [(row.x, block_under(assembly, row.x)[1] if row.y is None else row.y) for row in loads]
+    scale = 0.15 * assembly.size / (max(abs(row.force) for row in loads) or 1.0)
+    arrows = [
+        {"at": [x - anchor[0], y - anchor[1]], "force_N": row.force, "horizontal_N": row.horizontal,
+         "end": None if row.x_end is None else row.x_end - anchor[0], "scale": scale}
+        for row, (x, y) in zip(loads, surfaces, strict=True)
+    ]  # fmt: skip
+    return arrows, list(load_handles(loads, name, surfaces, scale))
+
+
+def _body(desk: Desk, why: str) -> Reply:
+    """A building without stones in a plane: what there is to look at, and why there is no more."""
+    deck = desk.there().deck
+    meshes = [(a.mesh, b) for a, b in zip(deck.analyses, deck.buildings, strict=True) if hasattr(a, "mesh")]
+    mesh, building = meshes[0] if meshes else (None, deck.building)
+    words, arrays = bodies.seen(building, mesh) or ({}, {})
+    desk.anchor = np.zeros(2)
+    handles = handles_of(deck.structure, None) if words.get("sort") == "elements" else []
+    return _seen(desk, None, handles, {"empty": why, "seen": words or None, "gamma": 0.0}, arrays)
+
+
+def _seen(
+    desk: Desk, made: statics.Picture | None, handles: list[Handle], words: dict[str, Any], arrays: dict[str, np.ndarray]
+) -> Reply:  # fmt: skip
+    """The reply that shows a picture, which is now that of the desk; places of handles are told from the anchor [m]."""
+    desk.picture, desk.handles = made, {h.name: h for h in handles}
+    x, y = desk.anchor.tolist()
+    told = [
+        {"name": h.name, "label": h.label, "unit": h.unit, "at": [h.x - x, h.y - y], "value": h.value, "along": h.along}
+        for h in handles
+    ]  # fmt: skip
+    return Reply({"scene": words, "handles": told, "anchor": [x, y], "deck": desk.words()}, arrays)
+
+
+def show(desk: Desk, message: Message) -> Iterator[Reply]:
+    """Another view of the same building: the tilt, the chain, the place that the line shall pass or its thrust."""
+    view = desk.view
+    gamma, through, thrust, lines = view.gamma, view.through, view.thrust, view.lines
+    if "gamma" in message:
+        gamma = float(np.clip(numbers([message["gamma"]], 1)[0], -5.0, 5.0))
+    chain = message["chain"] if isinstance(message.get("chain"), str) else view.chain
+    if "thrust" in message:
+        thrust = None if message["thrust"] is None else _thrust(message["thrust"])
+        through = None if thrust is not None else through
+    if "through" in message:
+        through = None if message["through"] is None else _through(desk, message["through"], chain)
+        thrust = None if through is not None else thrust
+    if isinstance(message.get("lines"), list):
+        lines = frozenset(str(name)[:20] for name in message["lines"][:20])
+    desk.view = statics.View(gamma, chain, through, thrust, lines)
+    yield scene(desk)
+
+
+def _through(desk: Desk, wanted: Any, chain: str | None) -> tuple[int, float]:
+    """The joint and the share of it that a line shall pass: told, or nearest to a place of the drawing."""
+    assembly = desk.there().deck.building.blocks()
+    if not isinstance(wanted, dict):
+        place = np.array(numbers(wanted, 2)) + desk.anchor
+        return statics.nearest(assembly, place, chain or statics.first_chain(assembly))
+    joint, (share,) = wanted.get("joint"), numbers([wanted.get("share")], 1)
+    if not isinstance(joint, int) or isinstance(joint, bool) or not 0 <= joint < len(assembly.a):
+        raise BadMessage("there is no such joint")
+    return joint, min(max(share, 0.0), 1.0)
+
+
+def _thrust(wanted: Any) -> float:
+    """A thrust [N] that a line shall have: a number, or text with a unit."""
+    return quantity(wanted, "N", "Thrust of the line") if isinstance(wanted, str) else numbers([wanted], 1)[0]
+
+
+def push(desk: Desk, _: Message) -> Iterator[Reply]:
+    """Limit analysis of what no hand moves: blocks in space, along the deck's directions or all around."""
+    if desk.picture is not None:
+        raise BadMessage("a section follows the hand as it is")
+    options, building, _name = desk.analysis(Tilt, lambda: Tilt(kind="tilt"))
+    result = run_one(desk.there().context(), options, building)
+    if result.status != "ok":
+        raise Refused(result.reason)
+    wanted = ("mechanism_pose", "rose_direction", "rose_capacity")
+    arrays = {name: result.arrays[name].data for name in wanted if name in result.arrays}
+    told = {k: v for k, v in result.results.as_json().items() if isinstance(v, int | float | str)}
+    yield Reply({"push": {"answer": result.answer, "numbers": told, "warnings": result.warnings}}, arrays)

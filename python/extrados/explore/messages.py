@@ -1,0 +1,57 @@
+"""What a message of the page may give, read strictly; and what may go wrong with what it asks for."""
+
+import re
+from typing import Any
+
+from extrados.analyses.context import Refused
+from extrados.building.errors import BadGeometry, NoView
+from extrados.core.errors import CoreError
+from extrados.decks.reader import DeckError
+from extrados.explore.folder import NotThere
+from extrados.explore.stored import StoreError
+from extrados.limit.programme import NoAnswer, NoEquilibrium
+from extrados.schema import quantities
+
+#: What may go wrong with a building or a question that a hand asks for: told, not raised
+TOLD = (DeckError, BadGeometry, Refused, NoView, NoAnswer, NoEquilibrium, CoreError, NotThere, StoreError)
+Message = dict[str, Any]
+
+
+class BadMessage(ValueError):
+    """A message that no page of ours sends."""
+
+
+def numbers(given: Any, count: int) -> list[float]:
+    """So many finite numbers of a message."""
+    if not isinstance(given, list) or len(given) != count:
+        raise BadMessage(f"expected {count} numbers")
+    for value in given:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < 1e9:
+            raise BadMessage("expected numbers")
+    return [float(value) for value in given]
+
+
+def path(message: Message) -> str:
+    """The path that a message names."""
+    given = message.get("path")
+    if not isinstance(given, str):
+        raise BadMessage("expected a path")
+    return given
+
+
+def quantity(text: str, unit: str, label: str) -> float:
+    """A number typed with a unit or without, in `unit`; DeckError says what is wrong with it."""
+    text = text.strip().replace("−", "-").replace("°", " deg")
+    try:
+        return float(text)
+    except ValueError:
+        pass
+    found = re.fullmatch(r"([-+]?[0-9.]+(?:[eE][-+]?\d+)?)\s*([A-Za-z%/^0-9*]+)", text[:60])
+    if not found:
+        raise DeckError(
+            [f"{label}: '{text[:40]}' is no quantity; expected a number such as 1.5, or with its unit, 150 cm"]
+        )
+    try:
+        return float(found[1]) * quantities.factor(found[2], unit)
+    except ValueError as error:
+        raise DeckError([f"{label}: {error}"]) from None
