@@ -10,29 +10,16 @@ are named.
 import json
 import subprocess
 import sys
-import tomllib
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import apart
+import extras
 
 ROOM = apart.ROOT / "build" / "coverage"
 HTML = ROOM / "html"
 WANTED = {"Python": 90.0, "Fortran": 85.0, "C": 85.0}
+INTERRUPTED = 2  # of pytest's exit codes: it then keeps no counts
 LEAST = 8  # files of each language that are told
-
-
-def install() -> None:
-    """The extra `coverage`, where one of its packages is missing."""
-    project = tomllib.loads((apart.ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    asked = project["optional-dependencies"]["coverage"]
-    try:
-        for line in asked:
-            version(line.partition(">=")[0])
-    except PackageNotFoundError:
-        subprocess.run(
-            [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", *asked], check=True
-        )
 
 
 def run(tests: list[str]) -> None:
@@ -42,7 +29,9 @@ def run(tests: list[str]) -> None:
     python = apart.python(ROOM)
     # In one process: the workers of xdist leave without writing the counts of the core
     options = ["--cov=extrados", "--cov-report=", "-q", "-n", "0"]
-    subprocess.run([python, "-m", "pytest", *options, *tests], cwd=ROOM, check=False)
+    done = subprocess.run([python, "-m", "pytest", *options, *tests], cwd=ROOM, check=False)
+    if done.returncode == INTERRUPTED:
+        sys.exit("the tests were interrupted: nothing was counted")
     if not tests:
         meson = str(Path(sys.executable).with_name("meson"))
         subprocess.run([meson, "test", "-C", str(ROOM / "build"), "-q"], check=False, stdout=subprocess.DEVNULL)
@@ -88,7 +77,7 @@ def tell(language: str, files: dict[str, tuple[int, int]]) -> float:
 
 
 def main() -> int:
-    install()
+    extras.install("coverage")
     apart.copy(ROOM)
     # -O1: the optimiser would merge lines; the counters must be exact where threads count too
     apart.build(

@@ -6,9 +6,9 @@ What it needs is the extra `docs` of pyproject.toml, installed first where it is
 import shutil
 import subprocess
 import sys
-import tomllib
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+
+import extras
 
 ROOT = Path(__file__).resolve().parents[1]
 SITE, GALLERY, PAGE = ROOT / "build" / "site", ROOT / "docs" / "_gallery", ROOT / "docs" / "gallery.md"
@@ -34,20 +34,6 @@ parallel: 0
 """
 
 
-def install() -> None:
-    """The extra `docs`, where one of its packages is missing."""
-    asked = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"][
-        "docs"
-    ]
-    try:
-        for line in asked:
-            version(line.partition(">=")[0])
-    except PackageNotFoundError:
-        subprocess.run(
-            [sys.executable, "-m", "pip", "install", "-q", "--disable-pip-version-check", *asked], check=True
-        )
-
-
 def gallery() -> None:
     """docs/gallery.md, and its figures, by running the cases."""
     import extrados
@@ -58,6 +44,9 @@ def gallery() -> None:
     for case, analysis in SHOWN:
         run = extrados.run(ROOT / "cases" / f"{case}.toml")
         drawn = run.plot(analysis)
+        if not len(drawn):
+            told = [f"{row['name']}: {row['status']} {row['reason']}" for row in run.analyses]
+            sys.exit(f"cases/{case}.toml: {analysis} has no figure; {'; '.join(told)}")
         name = next(iter(drawn))
         picture = GALLERY / f"{case.replace('/', '-')}.png"
         drawn[name].savefig(picture, format="png")
@@ -82,7 +71,7 @@ def fortran() -> None:
 
 def main() -> None:
     """The site; `--quick` leaves out what takes long, the gallery and the Fortran reference."""
-    install()
+    extras.install("docs")
     (ROOT / "build").mkdir(exist_ok=True)
     quick = "--quick" in sys.argv
     if quick:

@@ -9,16 +9,9 @@
 #include <string.h>
 
 #include "extrados.h"
+#include "four.h"
 
 enum { PANEL = 8 };
-
-/* Four doubles at once, the same operations in the same order whatever the processor offers. */
-typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define FOR_EACH_PROCESSOR __attribute__((target_clones("avx2", "default")))
-#else
-#define FOR_EACH_PROCESSOR
-#endif
 
 /* Of its diagonal entry: a pivot that is less has been lost in rounding. */
 static const double lost = 1e-15;

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "extrados.h"
+#include "four.h"
 
 enum { most_vectors = 4, most_changes = 5, most_ahead = 16384 /* bytes */, most_threads = 4 };
 
@@ -27,14 +28,6 @@ struct extrados_sparse {
   double *buffer;            /* most_changes + most_vectors rows of one supernode */
   cholmod_dense *y, *e, *answer; /* workspace of the plain solves of the refactorising algorithm */
 };
-
-/* Four doubles at once, the same operations in the same order whatever the processor offers. */
-typedef double four __attribute__((vector_size(32), aligned(8), may_alias));
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define FOR_EACH_PROCESSOR __attribute__((target_clones("avx2", "default")))
-#else
-#define FOR_EACH_PROCESSOR
-#endif
 
 static int code_of(const cholmod_common *common) {
   if (common->status == CHOLMOD_OK) return EXTRADOS_ok;

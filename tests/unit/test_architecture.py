@@ -17,6 +17,7 @@ MAY_IMPORT = {
     "schema": set(),
     "kinds": set(),
     "interrupts": set(),
+    "_build_info": set(),  # made by the build; it lies among the sources where a tool builds apart
     "core": {"_core", "interrupts", "schema"},
     "geometry": {"errors", "schema"},
     "errors": set(),
@@ -132,12 +133,15 @@ def test_no_silent_float() -> None:
 
 def test_core_never_stops_the_process() -> None:
     """No stop, no Fortran I/O and no unchecked allocation that would end the interpreter."""
-    symbols = subprocess.run(
-        ["nm", "-D", "--undefined-only", _core.__file__], capture_output=True, text=True, check=True
-    )
+
+    def nm(*options: str) -> str:
+        return subprocess.run(["nm", *options, _core.__file__], capture_output=True, text=True, check=True).stdout
+
+    if "__gcov_init" in nm():
+        pytest.skip("in a build that counts lines gcov's own code may do all that")
     bad = re.findall(
         r"\b(_gfortran_(?:stop|error_stop|os_error|st_write|st_read|st_open|exit)\w*|exit|abort|printf|system)\b",
-        symbols.stdout,
+        nm("-D", "--undefined-only"),
     )
     # numpy's own fortranobject.c refers to none of these either
     assert not bad

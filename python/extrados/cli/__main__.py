@@ -1,0 +1,5 @@
+"""`python -m extrados.cli`."""
+
+from extrados.cli import main
+
+main()

@@ -1,0 +1,123 @@
+"""Decks looked at without a run: complaints, and how stones, solids and meshes come out."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from extrados.cli.terminal import WRONG_DECK, err_console, out_console
+
+if TYPE_CHECKING:
+    from extrados.running.check import Checked
+
+MOST_PLACES = 40
+
+
+def check(
+    decks: Annotated[list[Path], typer.Argument(help="decks to check")],
+    out: Annotated[
+        Path | None,
+        typer.Option(help="folder for the picture and the list of a survey; default results/<deck name>-check"),
+    ] = None,
+) -> None:
+    """Check decks without running them: every complaint at once, and how the stones of a survey fit."""
+    from extrados.decks.reader import DeckError, read_deck
+    from extrados.running.check import check_building
+
+    if out is not None and len(decks) > 1:
+        err_console.say("--out takes one deck at a time")
+        raise typer.Exit(WRONG_DECK)
+    complaints = []
+    for path in decks:
+        try:
+            deck = read_deck(path)
+        except DeckError as error:
+            complaints += error.complaints
+            continue
+        checked = check_building(deck)
+        complaints += checked.complaints
+        folder = out or deck.default_out.with_name(f"{deck.default_out.name}-check")
+        if checked.inspection is not None:
+            _tell_survey(checked, folder, asked=out is not None)
+        if checked.solids is not None:
+            _tell_solids(checked, folder, asked=out is not None or getattr(deck.structure, "file", None) is not None)
+        if checked.plan is not None:
+            _tell_plan(checked, folder)
+    for line in complaints:
+        err_console.say(line)
+    if complaints:
+        raise typer.Exit(WRONG_DECK)
+    print("ok" if len(decks) == 1 else f"{len(decks)} decks ok")
+
+
+def _tell_survey(checked: "Checked", folder: Path, asked: bool) -> None:
+    """How the stones of a survey fit: its list on the terminal, all of it and its picture in a folder where there is
+    anything to list, or the folder is asked for."""
+    from rich.table import Table
+
+    from extrados.running.check import write_check
+
+    inspection = checked.inspection
+    for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
+        out_console.say(line)
+    amiss = [row for row in checked.places if row.status != "closed"]
+    if amiss:
+        table = Table(box=None, pad_edge=False)
+        for title in ("", "what", "between", "depth [mm]", "x [m]", "y [m]", "mended by"):
+            table.add_column(title, justify="left" if title in ("what", "between", "mended by") else "right")
+        for k, row in enumerate(amiss[:MOST_PLACES], start=1):
+            depth = "" if row.depth is None else f"{1e3 * row.depth:.3g}"
+            table.add_row(str(k), row.what, row.between, depth, *(f"{v:.3f}" for v in row.place), row.mended_by)
+        out_console.print(table)
+        if len(amiss) > MOST_PLACES:
+            out_console.say(f"and {len(amiss) - MOST_PLACES} more")
+    grounded = int((inspection.contacts.b < 0).sum())
+    out_console.say(
+        f"{len(inspection.outlines)} stones, {len(inspection.contacts.a)} joints, {grounded} of them on the ground; "
+        f"{len(amiss)} places amiss, {len(checked.places) - len(amiss)} closed within the tolerance")  # fmt: skip
+    if not checked.places and not asked:
+        return
+    try:
+        picture, table = write_check(checked, folder)
+    except OSError as error:
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
+        return
+    out_console.say(f"Picture: {picture}")
+    out_console.say(f"List:    {table}")
+
+
+def _tell_plan(checked: "Checked", folder: Path) -> None:
+    """The size of a building's mesh, and its plan and elevations in a folder."""
+    from extrados.running.check import write_plan
+    from extrados.schema.constants import GRAVITY
+
+    mesh = checked.plan
+    for remark in checked.remarks:
+        out_console.say(f"warning: {remark}")
+    walls = f"{len(mesh.walls)} walls, " if mesh.walls else ""
+    out_console.say(
+        f"{walls}{mesh.elements()} elements, {len(mesh.xyz)} nodes; {'walls and floors weigh' if walls else 'weight'} "
+        f"{1e-3 * GRAVITY * mesh.mass().sum():.4g} kN"
+    )
+    try:
+        out_console.say(f"Picture: {write_plan(mesh, folder)}")
+    except OSError as error:
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")
+
+
+def _tell_solids(checked: "Checked", folder: Path, asked: bool) -> None:
+    """How many solids touch along how many contacts; their picture where they come from a file, or the folder is asked for."""
+    from extrados.running.check import write_solids
+
+    solids = checked.solids
+    for line in (*checked.notes, *(f"warning: {remark}" for remark in checked.remarks)):
+        out_console.say(line)
+    out_console.say(
+        f"{len(solids.mass)} solids, {len(solids.a)} contacts, {int((solids.b < 0).sum())} of them on the ground"
+    )
+    if not asked:
+        return
+    try:
+        out_console.say(f"Picture: {write_solids(solids, folder)}")
+    except OSError as error:
+        err_console.say(f"{folder}: the picture could not be written: {error.strerror or error}")

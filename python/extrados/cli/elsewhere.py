@@ -1,0 +1,60 @@
+"""The building of a deck elsewhere: on the interactive page, in other programs."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from extrados.cli.terminal import errors, out_console
+
+
+def explore(
+    deck: Annotated[Path | None, typer.Argument(help="the deck to open; default a new arch")] = None,
+    port: Annotated[
+        int | None, typer.Option(min=1024, max=65535, help="port; default 8737, or any that is free")
+    ] = None,
+    browser: Annotated[bool, typer.Option(help="open the page in a browser")] = True,
+) -> None:
+    """Open the interactive page: drag the stones, see the thrust. It is served to this machine alone."""
+    from extrados.decks.reader import read_deck
+
+    folder, first = Path.cwd().resolve(), None
+    if deck is not None:
+        with errors():
+            read_deck(deck)
+        place = deck.resolve()
+        folder = folder if place.is_relative_to(folder) else place.parent
+        first = place.relative_to(folder).as_posix()
+    from extrados.explore.supervisor import explore as serve_pages
+
+    raise typer.Exit(serve_pages(folder, first, port, browser, lambda text: out_console.say(text)))
+
+
+def _forms(begun: str) -> list[str]:
+    from extrados.bridges.forms import FORMS
+
+    return [form for form in FORMS if form.startswith(begun)]
+
+
+def export(
+    deck: Annotated[Path, typer.Argument(help="the deck")],
+    form: Annotated[
+        str, typer.Option("--to", help="compas, udec, 3dec or opensees", autocompletion=_forms, show_default=False)
+    ],
+    out: Annotated[Path | None, typer.Option(help="file; default results/<deck name>.<ending>")] = None,
+) -> None:
+    """Write the building of a deck for another program."""
+    from extrados.bridges.forms import FORMS, exported
+    from extrados.decks.reader import read_deck
+    from extrados.results.store import StoreError, reason
+
+    with errors():
+        checked = read_deck(deck)
+        text = exported(checked, form)
+        place = out or checked.default_out.with_name(f"{checked.default_out.name}-{form}{FORMS[form][1]}")
+        try:
+            place.parent.mkdir(parents=True, exist_ok=True)
+            place.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise StoreError(f"{place}: cannot be written: {reason(error)}") from None
+    out_console.say(f"{FORMS[form][2]}: {place}")

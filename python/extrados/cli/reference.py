@@ -1,0 +1,136 @@
+"""What the program knows: words of decks and results, starter decks, cases, its version."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from extrados._build_info import VERSION
+from extrados.cli.terminal import NOT_DONE, WRONG_DECK, err_console, out_console
+
+
+def _kinds(begun: str) -> list[str]:
+    """The kinds that begin so, for the shell that completes a word."""
+    from extrados import kinds
+
+    return [kind for there in kinds.TABLES.values() for kind in there if kind.startswith(begun)]
+
+
+def _words(begun: str) -> list[str]:
+    """What `explain` knows that begins so."""
+    from extrados.decks import manual, synonyms
+
+    tables = manual.stored()
+    known = [table.kind or table.section for table in tables]
+    known += [f"{table.kind or table.section}.{name}" for table in tables for name in table.keys]
+    known += [name.rsplit(".", 1)[-1] for table in tables for name in table.keys] + synonyms.words()
+    return sorted({word for word in known if word.startswith(begun) and " " not in word})
+
+
+def schema(
+    results: Annotated[bool, typer.Option("--results", help="that of summary.json instead")] = False,
+) -> None:
+    """Print the JSON Schema of decks, for editors, or of results."""
+    if results:
+        from extrados.results.explain import json_schema
+    else:
+        from extrados.decks.explain import json_schema
+
+    print(json.dumps(json_schema(), indent=1))
+
+
+def explain(
+    words: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="[WORD]",
+            help="a key, a kind or a section of decks, or a word of the trade; results, results.KIND or results.KIND.KEY",
+            autocompletion=_words,
+        ),
+    ] = None,
+    manual: Annotated[bool, typer.Option("--manual", help="the whole reference manual of decks in Markdown")] = False,
+    results: Annotated[
+        bool, typer.Option("--results", help="the whole reference manual of results in Markdown")
+    ] = False,
+) -> None:
+    """Say what a deck key, a kind or a result means: unit, default, bounds, source; and where a thing is found."""
+    told: Any
+    key = " ".join(words or [])
+    if results or key.split(".")[0] == "results":
+        from extrados.results import manual as told
+    else:
+        from extrados.decks import manual as told
+
+    if manual or results or not key:
+        print(told.manual(told.stored()))
+        return
+    try:
+        print(told.explain(key, told.stored()))
+    except KeyError as error:
+        err_console.say(error.args[0])
+        raise typer.Exit(WRONG_DECK) from None
+
+
+def new(
+    kind: Annotated[
+        str | None,
+        typer.Argument(help="a kind of analysis, structure or motion; default lists them", autocompletion=_kinds),
+    ] = None,
+) -> None:
+    """Print a commented starter deck that runs as it is."""
+    if kind is None:
+        from extrados import kinds
+        from extrados.decks import manual
+
+        tables = manual.stored()
+        for section in kinds.TABLES:
+            out_console.say(f"{section}:", "bold")
+            for table in tables:
+                if table.section == section:
+                    out_console.say(f"  {table.kind:16} {manual.first_sentence(table.summary)}")
+        return
+    from extrados.decks.explain import starter
+
+    try:
+        print(starter(kind))
+    except KeyError as error:
+        err_console.say(error.args[0])
+        raise typer.Exit(WRONG_DECK) from None
+
+
+def cases(
+    folder: Annotated[
+        Path | None, typer.Argument(help="where to look; default ./cases, else the cases that are shipped")
+    ] = None,
+) -> None:
+    """List the decks below a folder with their titles."""
+    import tomllib
+
+    from extrados.decks.reader import LARGEST
+    from extrados.schema import files
+    from extrados.schema.places import CASES
+
+    if folder is None:
+        folder = here if (here := Path("cases")).is_dir() else CASES
+    found = False
+    for path in sorted(folder.rglob("*.toml")):
+        if path.name.endswith(".expect.toml"):
+            continue
+        try:
+            title = tomllib.loads(files.read(path, LARGEST).text()).get("title", "")
+        except (ValueError, RecursionError):
+            title = "(cannot be read)"
+        out_console.say(f"{path}: {title}")
+        found = True
+    if not found:
+        err_console.say(f"no decks below {folder}")
+        raise typer.Exit(NOT_DONE)
+
+
+def version() -> None:
+    """Version, commit and compilers."""
+    from extrados.running.provenance import provenance
+
+    made = provenance()
+    print(f"extrados {VERSION} {made['commit']} ({made['compiler']}, {made['build_type']})")

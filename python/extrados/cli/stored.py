@@ -1,0 +1,83 @@
+"""Stored results: drawn anew, listed, compared."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from extrados.cli.terminal import errors, out_console
+from extrados.schema.text import printable
+
+
+def report(
+    folder: Annotated[Path, typer.Argument(help="a results folder")],
+    pdf: Annotated[bool | None, typer.Option(help="also report.pdf; default where the run holds an assessment")] = None,
+) -> None:
+    """Draw the figures and the report of stored results anew, as HTML and on A4 paper as PDF."""
+    from extrados.plots.report import write_report
+
+    with errors():
+        out_console.say(f"Report:  {write_report(folder, pdf)[0]}")
+
+
+def plot(folder: Annotated[Path, typer.Argument(help="a results folder")]) -> None:
+    """Draw the figures and the report anew, and list the figures."""
+    from extrados.plots.report import write_report
+
+    with errors():
+        for figures in write_report(folder)[1].values():
+            for name, caption in figures:
+                out_console.say(f"{folder / 'figures' / name}.png: {caption}")
+
+
+def compare(
+    old: Annotated[Path, typer.Argument(help="a results folder")],
+    new: Annotated[Path, typer.Argument(help="another one")],
+    tolerance: Annotated[
+        float, typer.Option(min=0.0, help="relative difference up to which numbers are the same")
+    ] = 1e-9,
+    page: Annotated[Path | None, typer.Option(help="also write the comparison as an HTML page")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="print it as JSON")] = False,
+) -> None:
+    """What changed between two results: deck, verdicts, numbers, warnings, program."""
+    from dataclasses import asdict
+
+    from rich.table import Table
+
+    from extrados.plots.comparing import MOST, document, row
+    from extrados.results.compare import compare as compared
+    from extrados.results.store import StoreError, read
+
+    with errors(as_json):
+        found = compared(read(old), read(new), tolerance)
+        if as_json:
+            print(json.dumps(asdict(found), indent=2))
+        elif found.same:
+            out_console.say("Nothing but the time it took differs.")
+        tables = {"verdicts": found.verdicts, "deck": found.deck, "program": found.program, **found.numbers}
+        for title, there in tables.items() if not as_json else ():
+            if not there:
+                continue
+            table = Table(box=None, pad_edge=False, title=printable(title), title_justify="left")
+            for head in ("key", "before", "after", "after / before"):
+                table.add_column(head, overflow="fold")
+            for change in there[:MOST]:
+                table.add_row(*(printable(text) for text in row(change)))
+            out_console.print(table)
+            if len(there) > MOST:
+                out_console.say(f"and {len(there) - MOST} smaller ones")
+        for words, lines in (("gone", found.warnings_gone), ("new", found.warnings_new)):
+            for line in lines if not as_json else ():
+                out_console.say(f"warning {words}: {line}")
+        if page is not None:
+            from extrados.plots import html
+
+            try:
+                page.write_text(
+                    html.page(document((str(old), str(new)), found), page.parent),
+                    encoding="utf-8",
+                    errors="backslashreplace",
+                )
+            except OSError as error:
+                raise StoreError(f"{page}: cannot be written: {error.strerror or error}") from None

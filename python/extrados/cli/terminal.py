@@ -1,0 +1,102 @@
+"""What all commands share: the two consoles, exit codes, how errors and signals end a command."""
+
+import functools
+import json
+from collections.abc import Callable
+from contextlib import contextmanager
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from extrados import interrupts
+from extrados.running.progress import Progress
+from extrados.schema.text import printable
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+WRONG_DECK, NOT_DONE = 2, 3
+
+
+class _Console:
+    """A console of rich that is made when it is first used."""
+
+    def __init__(self, stderr: bool):
+        self._stderr = stderr
+
+    @cached_property
+    def _rich(self) -> "Console":
+        from rich.console import Console
+
+        return Console(stderr=self._stderr, highlight=False, soft_wrap=True)
+
+    def say(self, text: str, style: str | None = None) -> None:
+        """Print words, some of which others wrote: nothing in them is obeyed by the terminal."""
+        self._rich.print(printable(text, keep="\n"), style=style, markup=False)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._rich, name)
+
+
+out_console, err_console = _Console(stderr=False), _Console(stderr=True)
+
+
+class Commands(typer.Typer):
+    """Commands that a signal ends without a traceback, whatever they are doing, be it an import."""
+
+    def command(self, *words: Any, **options: Any) -> Callable[[Callable], Callable]:
+        add = super().command(*words, **options)
+
+        def guarded(function: Callable) -> Callable:
+            @functools.wraps(function)
+            def call(*args: Any, **keywords: Any) -> Any:
+                try:
+                    return function(*args, **keywords)
+                except KeyboardInterrupt:
+                    err_console.say("interrupted")
+                    raise typer.Exit(interrupts.exit_code()) from None
+
+            add(call)
+            return function
+
+        return guarded
+
+
+@contextmanager
+def errors(json_out: bool = False):
+    """Every error a user can cause ends as a message and an exit code, never as a traceback."""
+    from extrados.decks.reader import DeckError
+    from extrados.results.store import StoreError
+
+    def tell(lines: list[str], code: int) -> None:
+        if json_out:
+            print(json.dumps({"error": lines, "exit": code}, indent=2))
+        else:
+            for line in lines:
+                err_console.say(line)
+        raise typer.Exit(code)
+
+    try:
+        yield
+    except DeckError as error:
+        tell(error.complaints, WRONG_DECK)
+    except StoreError as error:
+        tell([str(error)], NOT_DONE)
+    except KeyboardInterrupt:
+        tell(["interrupted"], interrupts.exit_code())
+
+
+def progress_shown(quiet: bool) -> Progress:
+    """How far a command is."""
+    return Progress(quiet, lambda: err_console._rich, err_console.say)
+
+
+def usable_threads(asked: int | None) -> int:
+    """As many threads as asked for, but no more than there are cores."""
+    from extrados.analyses.context import default_threads
+
+    cores = default_threads()
+    if asked is not None and asked > cores:
+        err_console.say(f"--threads {asked}: this process may use {cores} cores, and starts no more threads than that")
+    return min(asked or cores, cores)
