@@ -15,7 +15,7 @@ from expectations import KINDS, Row, load_cases, pick, results_of  # noqa: E402
 TRIALS = "## Trials"
 TITLES = {
     "exact": "Verification: exact solutions",
-    "peer": "Verification: independent programs",
+    "peer": "Verification: independent programs, and unlike methods of this one",
     "thesis": "Reproduction of the dissertation",
     "experiment": "Validation: experiments",
     "regression": "Regression: unchanged numbers",

@@ -13,8 +13,7 @@
   ENTRY(1, motions, "set of ground motions") \
   ENTRY(2, rocking, "set of rocking bodies") \
   ENTRY(3, dem, "model of discrete elements") \
-  ENTRY(4, sla, "model of sequentially linear analysis") \
-  ENTRY(5, dem3, "model of discrete elements in space")
+  ENTRY(4, sla, "model of sequentially linear analysis")
 
 /* Kinds of rocking structure */
 #define EXTRADOS_ROCKING_BODY_LIST(ENTRY) \

@@ -5,11 +5,12 @@
 !> offset of half a step. Work is booked with the trapezoidal rule over each position step.
 module dem_energy
    use common_kinds, only : wp
-   use dem_law, only : elastic_energy
-   use dem_model, only : block_model
+   use common_lists, only : dem_energy_count, dem_energy_kinetic, dem_energy_potential, dem_energy_elastic, &
+      dem_energy_friction, dem_energy_damping, dem_energy_mass_damping, dem_energy_work, dem_energy_residual, &
+      dem_energy_leapfrog
    implicit none
    private
-   public :: energy_terms, energy_now, energy_residual
+   public :: energy_terms, energy_residual, energy_row
 
    type :: energy_terms
       real(wp) :: kinetic = 0.0_wp        !! [J], at the time of the forces
@@ -34,45 +35,20 @@ contains
          + (energy%mass_damping - start%mass_damping) - (energy%work - start%work)
    end function energy_residual
 
-   !> Ledger at the time of the last forces
-   pure function energy_now(model) result(now)
-      type(block_model), intent(in) :: model
-      type(energy_terms) :: now
-      integer :: k
-      real(wp) :: vx, vy, spin, ax, ay, turn, cut, span
-
-      ! The first step takes half a kick from the initial velocity; steps never grow after it.
-      span = max(model%kick, model%step)
-      cut = 0.5_wp * model%mass_damping * span
-      do k = 1, size(model%set%item)
-         associate (b => model%set%item(k))
-            if (b%fixed) cycle
-            ax = b%fx * b%inverse_mass + model%pull(1)
-            ay = b%fy * b%inverse_mass + model%pull(2)
-            turn = b%moment * b%inverse_inertia
-            vx = (b%vx * (1.0_wp + cut) - span * ax) / (1.0_wp - cut)
-            vy = (b%vy * (1.0_wp + cut) - span * ay) / (1.0_wp - cut)
-            spin = (b%spin * (1.0_wp + cut) - span * turn) / (1.0_wp - cut)
-            now%leapfrog = now%leapfrog + 0.5_wp * (b%mass * (b%vx * vx + b%vy * vy) + b%inertia * b%spin * spin)
-            now%kinetic = now%kinetic + 0.125_wp * (b%mass * ((b%vx + vx - 2.0_wp * model%base(1))**2 &
-               + (b%vy + vy - 2.0_wp * model%base(2))**2) + b%inertia * (b%spin + spin)**2)
-            now%potential = now%potential - b%mass * (model%load%gravity(1) * (b%x - model%drift * b%vx - b%rest_x) &
-               + model%load%gravity(2) * (b%y - model%drift * b%vy - b%rest_y))
-            now%mass_damping = now%mass_damping + b%mass_loss
-            now%work = now%work + b%work
-         end associate
-      end do
-      now%friction = model%contacts%friction_loss
-      now%damping = model%contacts%damping_loss
-      now%work = now%work + model%contacts%support_work
-      do k = 1, model%contacts%pairs
-         associate (pair => model%contacts%pair(k))
-            if (.not. model%rigid%used) now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
-            now%friction = now%friction + pair%loss_before(1) + sum(pair%point%friction_loss)
-            now%damping = now%damping + pair%loss_before(2) + sum(pair%point%damping_loss)
-            now%work = now%work + pair%support_work
-         end associate
-      end do
-   end function energy_now
+   !> The ledger as the rows of the list dem_energy [J]
+   pure function energy_row(energy, start) result(row)
+      type(energy_terms), intent(in) :: energy
+      type(energy_terms), intent(in) :: start
+      real(wp) :: row(dem_energy_count)
+      row(dem_energy_kinetic) = energy%kinetic
+      row(dem_energy_potential) = energy%potential
+      row(dem_energy_elastic) = energy%elastic
+      row(dem_energy_friction) = energy%friction
+      row(dem_energy_damping) = energy%damping
+      row(dem_energy_mass_damping) = energy%mass_damping
+      row(dem_energy_work) = energy%work
+      row(dem_energy_residual) = energy_residual(energy, start)
+      row(dem_energy_leapfrog) = energy%leapfrog
+   end function energy_row
 
 end module dem_energy

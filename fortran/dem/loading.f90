@@ -1,4 +1,4 @@
-!> What moves a model: gravity, the ground, and supports that give way.
+!> What moves a model: the ground, and supports that give way.
 module dem_loading
    use common_kinds, only : wp, pi
    use common_signal, only : signal
@@ -15,7 +15,6 @@ module dem_loading
    end type support_move
 
    type :: loading
-      real(wp) :: gravity(2) = 0.0_wp      !! [m/s^2]
       type(signal) :: ground               !! acceleration [m/s^2]
       logical :: moving_base = .false.     !! supports move; otherwise a body force in the ground's frame
       type(support_move), allocatable :: move(:)

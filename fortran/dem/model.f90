@@ -3,9 +3,10 @@ module dem_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
    use dem_bodies, only : body, body_set, body_turn
+   use dem_clock, only : model_clock, begin_step, end_step
    use dem_contacts, only : contact_pair, contact_set, overlap, measure, choose_edges
    use dem_law, only : joint_law, act
-   use dem_loading, only : loading, mean_acceleration, move_rate
+   use dem_loading, only : move_rate
    use nonsmooth_impulses, only : impulse_problem
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -15,8 +16,6 @@ module dem_model
    !> Contacts without springs, see dem_moreau
    type :: rigid_contacts
       logical :: used = .false.                !! instead of the joints' springs and dashpots
-      logical :: quasi_static = .false.        !! every step starts from rest
-      integer :: waits = 0                     !! steps in a row in which time stands still, until all has come to rest
       real(wp) :: rebound = 0.0_wp             !! Newton's coefficient of restitution at each contact point
       integer :: pairs = -1                    !! for which the problem was made; -1: for none
       type(impulse_problem) :: problem
@@ -30,24 +29,16 @@ module dem_model
       real(wp) :: residual = 0.0_wp            !! greatest violation, over the velocity that gravity gives in a step
    end type rigid_contacts
 
-   type :: block_model
+   type, extends(model_clock) :: block_model
       type(body_set) :: set
       type(contact_set) :: contacts
       type(joint_law), allocatable :: law(:)
-      type(loading) :: load
+      real(wp) :: gravity(2) = 0.0_wp          !! [m/s^2]
       real(wp) :: mass_damping = 0.0_wp        !! alpha [1/s]
-      real(wp) :: t = 0.0_wp                   !! time of the next forces [s]
-      real(wp) :: step = 0.0_wp                !! [s]
-      real(wp) :: drift = 0.0_wp               !! position step that led here; 0 at the start [s]
-      real(wp) :: kick = 0.0_wp                !! velocity step taken last [s]
       real(wp) :: pull(2) = 0.0_wp             !! body force of the last step [m/s^2]
       real(wp) :: pull_before(2) = 0.0_wp      !! and of the one before
       real(wp) :: base(2) = 0.0_wp             !! velocity of the ground [m/s], moving base only
       real(wp) :: base_place(2) = 0.0_wp       !! its displacement [m]
-      integer :: segment = 0                   !! of the ground motion
-      integer :: steps = 0
-      logical :: shaking = .false.             !! false while settling: the ground rests
-      logical :: stale = .false.               !! somebody moved far enough to look for contacts again
       type(rigid_contacts) :: rigid
    end type block_model
 
@@ -136,21 +127,14 @@ contains
    !> Body force and base velocity of this step
    subroutine prepare(model)
       type(block_model), intent(inout) :: model
-      real(wp) :: ground(2), half
-
-      ! At the very start half a velocity step leads from the initial velocity to the half step.
-      half = 0.5_wp * model%step
-      model%kick = 0.5_wp * model%drift + half
+      real(wp) :: ground(2)
+      call begin_step(model%model_clock, ground)
       model%pull_before = model%pull
-      model%pull = model%load%gravity
-      if (model%shaking) then
-         call mean_acceleration(model%load%ground, model%segment, model%t - 0.5_wp * model%drift, &
-            model%t + half, ground)
-         if (model%load%moving_base) then
-            model%base = model%base + model%kick * ground
-         else
-            model%pull = model%pull - ground
-         end if
+      model%pull = model%gravity
+      if (model%load%moving_base) then
+         model%base = model%base + model%kick * ground
+      else
+         model%pull = model%pull - ground
       end if
    end subroutine prepare
 
@@ -167,8 +151,8 @@ contains
          b%pspin = b%spin + model%kick * b%moment * b%inverse_inertia
          ! Work of the ground's part of the body force; gravity has a potential.
          b%work = b%work + 0.5_wp * model%drift * b%mass * &
-            ((model%pull(1) + model%pull_before(1) - 2.0_wp * model%load%gravity(1)) * b%vx &
-            + (model%pull(2) + model%pull_before(2) - 2.0_wp * model%load%gravity(2)) * b%vy)
+            ((model%pull(1) + model%pull_before(1) - 2.0_wp * model%gravity(1)) * b%vx &
+            + (model%pull(2) + model%pull_before(2) - 2.0_wp * model%gravity(2)) * b%vy)
       end if
       b%fx = 0.0_wp
       b%fy = 0.0_wp
@@ -183,7 +167,7 @@ contains
       integer :: k
       real(wp) :: rate(3)
       rate = [model%base(1), model%base(2), 0.0_wp]
-      if (model%shaking .and. model%rigid%waits == 0) then
+      if (model%shaking .and. model%waits == 0) then
          do k = 1, size(model%load%move)
             if (b%number == model%load%move(k)%body) rate = rate &
                + move_rate(model%load%move(k), model%t + 0.5_wp * model%step)
@@ -247,12 +231,11 @@ contains
          > 0.5_wp * model%contacts%skin) stale = .true.
    end subroutine move
 
+   !> Time goes on
    subroutine finish(model)
       type(block_model), intent(inout) :: model
       model%base_place = model%base_place + model%step * model%base
-      model%drift = model%step
-      if (model%rigid%waits == 0) model%t = model%t + model%step
-      model%steps = model%steps + 1
+      call end_step(model%model_clock)
    end subroutine finish
 
    !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 below the greatest

@@ -44,13 +44,13 @@ contains
    pure function rigid_step(model) result(step)
       type(block_model), intent(in) :: model
       real(wp) :: step
-      step = merge(unhurried, natural, model%rigid%quasi_static) * sqrt(model%set%size / gravity_of(model))
+      step = merge(unhurried, natural, model%quasi_static) * sqrt(model%set%size / gravity_of(model))
    end function rigid_step
 
    pure function gravity_of(model) result(g)
       type(block_model), intent(in) :: model
       real(wp) :: g
-      g = max(hypot(model%load%gravity(1), model%load%gravity(2)), 1.0e-3_wp)
+      g = max(hypot(model%gravity(1), model%gravity(2)), 1.0e-3_wp)
    end function gravity_of
 
    !> Up to `count` steps; returns early where the contacts must be searched again
@@ -68,7 +68,7 @@ contains
             call move(model, model%set%item(k), model%stale)
          end do
          call finish(model)
-         if (model%rigid%quasi_static) call wait_for_rest(model)
+         if (model%quasi_static) call wait_for_rest(model)
          if (model%stale) then
             model%rigid%pairs = -1
             return
@@ -89,8 +89,8 @@ contains
          end associate
       end do
       moves = speed > at_rest * model%step * gravity_of(model)
-      model%rigid%waits = merge(model%rigid%waits + 1, 0, &
-         model%shaking .and. moves .and. model%rigid%waits < most_waits)
+      model%waits = merge(model%waits + 1, 0, &
+         model%shaking .and. moves .and. model%waits < most_waits)
    end subroutine wait_for_rest
 
    !> Order of the unknowns and room for the contact points, after a search
@@ -148,7 +148,7 @@ contains
       integer :: k
 
       call prepare(model)
-      if (model%rigid%quasi_static) then
+      if (model%quasi_static) then
          where (.not. model%set%item%fixed)
             model%set%item%vx = 0.0_wp
             model%set%item%vy = 0.0_wp

@@ -1,158 +1,185 @@
-!> A model of solids behind a handle: built in steps, run under as many motions as wanted, read after.
-!> Every run starts from a copy of what was built, so runs of one model do not know of each other.
+!> Blocks in space behind a handle, see dem_handle: how they are built, and how a run copies them.
 module dem3_handle
-   use common_handles, only : handle_new, handle_take
+   use common_handles, only : handle_leave
    use common_kinds, only : wp
-   use common_lists, only : handle_dem3
-   use common_signal, only : signal
-   use common_status, only : status_ok, status_not_ready, status_out_of_memory
-   use common_threads, only : threads_available
-   use dem3_bodies, only : body_set
+   use common_status, only : status_ok, status_bad_index, status_invalid_argument, status_not_ready, &
+      status_out_of_memory, status_wrong_handle
+   use dem_handle, only : built_model, model_register, model_take
+   use dem_run, only : run_record_new
+   use dem3_bodies, only : body_set, body_set_new
    use dem3_law, only : joint_law
-   use dem3_model, only : solid_model
-   use dem3_run, only : run_begin, run_on, run_options, run_record, run_record_new
-   use dem3_state, only : state_load
-   use, intrinsic :: iso_c_binding, only : c_f_pointer, c_funloc, c_int, c_int64_t, c_loc, c_null_ptr, c_ptr
+   use dem3_run, only : solid_simulation
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: built_solids, built_solids_register, built_solids_destroy, built_solids_take, run_solids, go_on_solids, &
-      resume_solids
+   public :: built_solids, solids_new, solids_take, solids_run_take, set_laws, set_surroundings
 
-   type :: built_solids
+   type, extends(built_model) :: built_solids
       type(body_set) :: set
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
       integer, allocatable :: law_of(:, :)            !! (3, joints): bodies, the lower first, and law
       real(wp), allocatable :: rate(:, :)             !! (6, bodies) velocity and spin at the start
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
-      type(run_options) :: options
-      logical :: ready = .false.                      !! options have been set
-      type(solid_model), allocatable :: model         !! as the last run left it
-      type(run_record), allocatable :: record         !! of the last run
+      real(wp) :: domain = 0.0_wp                     !! displacement by which a body has left the scene [m]; 0: none
+   contains
+      procedure :: new_run
    end type built_solids
 
 contains
 
-   !> Hand a model over to the registry
-   subroutine built_solids_register(built, handle, status)
-      type(built_solids), pointer, intent(inout) :: built   !! null after a failure
+   !> Bodies from flat arrays, see body_set_new, behind a handle
+   subroutine solids_new(centroid, axes, mass, inertia, owner, vertex_first, vertex, face_first, loop_first, loop, &
+                         handle, status)
+      real(wp), intent(in) :: centroid(:, :)          !! (3, bodies) [m]
+      real(wp), intent(in) :: axes(:, :, :)           !! (3, 3, bodies) columns: principal axes
+      real(wp), intent(in) :: mass(:)                 !! (bodies) [kg]; 0 marks a support
+      real(wp), intent(in) :: inertia(:, :)           !! (3, bodies) principal [kg m^2]
+      integer(c_int), intent(in) :: owner(:)          !! (parts) 1-based
+      integer(c_int), intent(in) :: vertex_first(:)   !! (parts + 1)
+      real(wp), intent(in) :: vertex(:, :)            !! (3, vertices) in the principal axes [m]
+      integer(c_int), intent(in) :: face_first(:)     !! (parts + 1)
+      integer(c_int), intent(in) :: loop_first(:)     !! (faces + 1)
+      integer(c_int), intent(in) :: loop(:)           !! vertices of the faces, 1-based
       integer(c_int64_t), intent(out) :: handle
       integer(c_int), intent(out) :: status
-      call handle_new(handle_dem3, c_loc(built), c_funloc(built_solids_destroy), handle, status)
-      if (status /= status_ok) deallocate (built)
-   end subroutine built_solids_register
-
-   !> Called by the registry
-   subroutine built_solids_destroy(object) bind(c, name='extrados_dem3_destroy')
-      type(c_ptr), value, intent(in) :: object
-      type(built_solids), pointer :: built
-      call c_f_pointer(object, built)
-      deallocate (built)
-   end subroutine built_solids_destroy
-
-   !> The model of a handle, for this call alone, until handle_leave; null where the status is not ok
-   subroutine built_solids_take(handle, built, status)
-      integer(c_int64_t), intent(in) :: handle
-      type(built_solids), pointer, intent(out) :: built
-      integer(c_int), intent(out) :: status
-      type(c_ptr) :: object
-      built => null()
-      object = c_null_ptr
-      call handle_take(handle, handle_dem3, .true., object, status)
-      if (status == status_ok) call c_f_pointer(object, built)
-   end subroutine built_solids_take
-
-   !> Run from the start under a ground motion; `steps` 0 to the end, else about so many before it pauses
-   subroutine run_solids(built, ground, wanted, steps, status)
-      type(built_solids), intent(inout) :: built
-      type(signal), intent(in) :: ground              !! acceleration [m/s^2]
-      real(wp), intent(in) :: wanted(:)               !! output times [s]
-      integer, intent(in) :: steps
-      integer(c_int), intent(out) :: status
-      type(run_options) :: options
-      type(signal) :: silence
-      integer :: k, axis
-
-      call new_run(built, wanted, status)
-      if (status /= status_ok) return
-      associate (model => built%model)
-         if (allocated(built%rate)) then
-            do k = 1, size(model%set%item)
-               associate (b => model%set%item(k))
-                  if (b%fixed) cycle
-                  b%v = built%rate(1:3, k)
-                  b%swing = 0.0_wp
-                  do axis = 1, 3
-                     b%swing = b%swing &
-                        + b%inertia(axis) * dot_product(b%turn(:, axis), built%rate(4:6, k)) * b%turn(:, axis)
-                  end do
-               end associate
-            end do
-         end if
-      end associate
-      built%model%load%ground = ground
-      options = built%options
-      options%threads = threads_available(options%threads)
-      call run_begin(built%model, options, built%record, status)
-      built%model%load%ground = silence               ! it pointed into the caller's set
-      if (status == status_ok .and. built%record%paused) call go_on_solids(built, ground, steps, status)
-   end subroutine run_solids
-
-   !> On with a paused run, under the same motion
-   subroutine go_on_solids(built, ground, steps, status)
-      type(built_solids), intent(inout) :: built
-      type(signal), intent(in) :: ground
-      integer, intent(in) :: steps                    !! 0: to the end
-      integer(c_int), intent(out) :: status
-      type(run_options) :: options
-      type(signal) :: silence
-      status = status_not_ready
-      if (.not. allocated(built%record)) return
-      if (.not. built%record%paused) return
-      built%model%load%ground = ground
-      options = built%options
-      options%threads = threads_available(options%threads)
-      call run_on(built%model, options, steps, built%record, status)
-      built%model%load%ground = silence
-   end subroutine go_on_solids
-
-   !> Take back the state of a run that had paused; see dem3_state
-   subroutine resume_solids(built, wanted, word, status)
-      type(built_solids), intent(inout) :: built
-      real(wp), intent(in) :: wanted(:)               !! output times [s]
-      integer(c_int64_t), intent(in) :: word(:)
-      integer(c_int), intent(out) :: status
-      call new_run(built, wanted, status)
-      if (status /= status_ok) return
-      call state_load(word, built%model, built%record, status)
-      if (status /= status_ok) deallocate (built%model, built%record)
-   end subroutine resume_solids
-
-   !> A model and a record that have not run yet
-   subroutine new_run(built, wanted, status)
-      type(built_solids), intent(inout) :: built
-      real(wp), intent(in) :: wanted(:)               !! output times [s]
-      integer(c_int), intent(out) :: status
+      type(built_solids), pointer :: solids
+      class(built_model), pointer :: built
       integer :: failed
-      status = status_not_ready
-      if (.not. (allocated(built%law) .and. built%ready)) return
-      if (allocated(built%model)) deallocate (built%model)
-      if (allocated(built%record)) deallocate (built%record)
-      allocate (built%model, built%record, stat=failed)
-      status = merge(status_ok, status_out_of_memory, failed == 0)
+      handle = 0
+      status = status_out_of_memory
+      allocate (solids, stat=failed)
       if (failed /= 0) return
-      call run_record_new(size(built%set%item), wanted, built%record, status)
-      if (status /= status_ok) then
-         deallocate (built%model, built%record)
-         return
+      call body_set_new(centroid, axes, mass, inertia, owner, vertex_first, vertex, face_first, loop_first, loop, &
+         solids%set, status)
+      if (status == status_ok) then
+         built => solids
+         call model_register(built, handle, status)
+      else
+         deallocate (solids)
       end if
-      associate (model => built%model)
+   end subroutine solids_new
+
+   !> The solids of a handle, for this call alone, until handle_leave; null where the status is not ok
+   subroutine solids_take(handle, solids, status)
+      integer(c_int64_t), intent(in) :: handle
+      type(built_solids), pointer, intent(out) :: solids
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      solids => null()
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      select type (built)
+      type is (built_solids)
+         solids => built
+      class default
+         status = status_wrong_handle
+         call handle_leave(handle)
+      end select
+   end subroutine solids_take
+
+   !> The last run of the solids of a handle, until handle_leave; null where the status is not ok
+   subroutine solids_run_take(handle, run, status)
+      integer(c_int64_t), intent(in) :: handle
+      type(solid_simulation), pointer, intent(out) :: run
+      integer(c_int), intent(out) :: status           !! not_ready where they have not run
+      type(built_solids), pointer :: solids
+      run => null()
+      call solids_take(handle, solids, status)
+      if (status /= status_ok) return
+      if (allocated(solids%run)) then
+         select type (last => solids%run)
+         type is (solid_simulation)
+            run => last
+            return
+         end select
+      end if
+      status = status_not_ready
+      call handle_leave(handle)
+   end subroutine solids_run_take
+
+   !> Types of joints, and pairs of bodies whose joint is not of the first
+   subroutine set_laws(built, law, joint, status)
+      type(built_solids), intent(inout) :: built
+      type(joint_law), intent(in) :: law(:)
+      integer(c_int), intent(in) :: joint(:, :)       !! (3, joints): bodies, the lower first, and law; ascending
+      integer(c_int), intent(out) :: status
+      type(joint_law), allocatable :: laws(:)
+      integer, allocatable :: law_of(:, :)
+      integer :: failed
+      status = status_bad_index
+      if (any(joint < 1) .or. any(joint(1:2, :) > size(built%set%item)) .or. any(joint(3, :) > size(law))) return
+      status = status_invalid_argument
+      if (size(law) < 1) return
+      if (.not. all(law%normal_stiffness > 0.0_wp .and. law%shear_stiffness > 0.0_wp)) return
+      if (.not. all(min(law%friction, law%damping) >= 0.0_wp)) return
+      status = status_out_of_memory
+      allocate (laws(size(law)), law_of(3, size(joint, 2)), stat=failed)
+      if (failed /= 0) return
+      laws(:) = law
+      law_of(:, :) = joint
+      call move_alloc(laws, built%law)
+      call move_alloc(law_of, built%law_of)
+      status = status_ok
+   end subroutine set_laws
+
+   !> Gravity, the way of the ground, how far the scene reaches, and velocities at the start
+   subroutine set_surroundings(built, gravity, way, domain, rate, status)
+      type(built_solids), intent(inout) :: built
+      real(wp), intent(in) :: gravity(3)              !! [m/s^2]
+      real(wp), intent(in) :: way(3)
+      real(wp), intent(in) :: domain                  !! displacement [m]; 0: no limit
+      real(wp), intent(in) :: rate(:, :)              !! (6, bodies) [m/s, rad/s]
+      integer(c_int), intent(out) :: status
+      real(wp), allocatable :: rates(:, :)
+      integer :: failed
+      status = status_invalid_argument
+      if (size(rate, 2) /= size(built%set%item) .or. .not. domain >= 0.0_wp) return
+      status = status_out_of_memory
+      allocate (rates(6, size(rate, 2)), stat=failed)
+      if (failed /= 0) return
+      rates(:, :) = rate
+      call move_alloc(rates, built%rate)
+      built%gravity = gravity
+      built%way = way
+      built%domain = domain
+      status = status_ok
+   end subroutine set_surroundings
+
+   !> A run of a copy of what was built, before its first step
+   subroutine new_run(built, wanted, status)
+      class(built_solids), intent(inout) :: built
+      real(wp), intent(in) :: wanted(:)               !! output times [s]
+      integer(c_int), intent(out) :: status
+      type(solid_simulation), allocatable :: run
+      integer :: k, axis, failed
+      status = status_not_ready
+      if (.not. (allocated(built%law) .and. allocated(built%rate))) return
+      status = status_out_of_memory
+      allocate (run, stat=failed)
+      if (failed /= 0) return
+      call run_record_new(size(built%set%item), 6, .true., wanted, run%record, status)
+      if (status /= status_ok) return
+      associate (model => run%model)
          model%set = built%set
          model%law = built%law
-         if (allocated(built%law_of)) model%law_of = built%law_of
+         model%law_of = built%law_of
          model%gravity = built%gravity
          model%way = built%way
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               if (b%fixed) cycle
+               b%v = built%rate(1:3, k)
+               b%swing = 0.0_wp
+               do axis = 1, 3
+                  b%swing = b%swing &
+                     + b%inertia(axis) * dot_product(b%turn(:, axis), built%rate(4:6, k)) * b%turn(:, axis)
+               end do
+            end associate
+         end do
       end associate
+      run%domain = built%domain
+      call move_alloc(run, built%run)
    end subroutine new_run
 
 end module dem3_handle

@@ -2,17 +2,17 @@
 module dem3_model
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
-   use dem_loading, only : loading, mean_acceleration
+   use dem_clock, only : model_clock, begin_step, end_step
+   use dem_energy, only : energy_terms
    use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
    use dem3_law, only : act, contact_pair, drop_points, elastic_energy, find_points, joint_law
    use dem3_patch, only : measure
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
    private
-   public :: solid_model, set_distances, search, colour, advance, critical_step, energy_terms, energy_now, &
-      energy_residual
+   public :: solid_model, set_distances, search, colour, advance, critical_step, energy_now
 
-   type :: solid_model
+   type, extends(model_clock) :: solid_model
       type(body_set) :: set
       type(contact_pair), allocatable :: pair(:)
       integer :: pairs = 0
@@ -21,13 +21,8 @@ module dem3_model
       integer :: colours = 0
       type(joint_law), allocatable :: law(:)          !! the first is that of contacts that form later
       integer, allocatable :: law_of(:, :)            !! (3, joints): two bodies, the lower first, law; ascending
-      type(loading) :: load                           !! its gravity is not used: that here is along z
       real(wp) :: way(3) = [1.0_wp, 0.0_wp, 0.0_wp]   !! of the horizontal ground motion
       real(wp) :: gravity(3) = 0.0_wp                 !! [m/s^2]
-      real(wp) :: t = 0.0_wp                          !! time of the next forces [s]
-      real(wp) :: step = 0.0_wp                       !! [s]
-      real(wp) :: drift = 0.0_wp                      !! position step that led here; 0 at the start [s]
-      real(wp) :: kick = 0.0_wp                       !! velocity step taken last [s]
       real(wp) :: pull(3) = 0.0_wp                    !! body force of the last step [m/s^2]
       real(wp) :: pull_before(3) = 0.0_wp
       real(wp) :: skin = 0.0_wp                       !! parts nearer than this are pairs [m]
@@ -37,21 +32,7 @@ module dem3_model
       real(wp) :: wander = 0.0_wp                     !! a body that has moved farther is asked for that [m]
       real(wp) :: lost(2) = 0.0_wp                    !! by friction and dashpots of pairs that are no more [J]
       real(wp) :: support_work = 0.0_wp               !! of them [J]
-      integer :: segment = 0                          !! of the ground motion
-      integer :: steps = 0
-      logical :: shaking = .false.                    !! false while settling: the ground rests
-      logical :: stale = .false.                      !! somebody moved far enough to look for contacts again
    end type solid_model
-
-   type :: energy_terms
-      real(wp) :: kinetic = 0.0_wp        !! [J], at the time of the forces
-      real(wp) :: leapfrog = 0.0_wp       !! [J], the conserved form
-      real(wp) :: potential = 0.0_wp      !! of gravity, 0 at rest [J]
-      real(wp) :: elastic = 0.0_wp        !! in the springs [J]
-      real(wp) :: friction = 0.0_wp       !! lost by sliding [J]
-      real(wp) :: damping = 0.0_wp        !! lost in dashpots [J]
-      real(wp) :: work = 0.0_wp           !! done by the ground and the supports [J]
-   end type energy_terms
 
 contains
 
@@ -305,7 +286,7 @@ contains
          do k = 1, size(model%set%item)
             call move(model, model%set%item(k), model%stale)
          end do
-         call finish(model)
+         call end_step(model%model_clock)
          if (model%stale) return
       end do
    end subroutine advance
@@ -349,7 +330,7 @@ contains
          !$omp end do
          !$omp single
          model%stale = stale
-         call finish(model)
+         call end_step(model%model_clock)
          !$omp end single
          if (model%stale) exit
       end do
@@ -372,15 +353,10 @@ contains
    !> Body force and velocity of the ground in this step
    subroutine prepare(model)
       type(solid_model), intent(inout) :: model
-      real(wp) :: ground(2), half
-      ! At the very start half a velocity step leads from the initial velocity to the half step.
-      half = 0.5_wp * model%step
-      model%kick = 0.5_wp * model%drift + half
+      real(wp) :: ground(2)
+      call begin_step(model%model_clock, ground)
       model%pull_before = model%pull
-      model%pull = model%gravity
-      if (.not. model%shaking) return
-      call mean_acceleration(model%load%ground, model%segment, model%t - 0.5_wp * model%drift, model%t + half, ground)
-      model%pull = model%pull - ground(1) * model%way - [0.0_wp, 0.0_wp, ground(2)]
+      model%pull = model%gravity - ground(1) * model%way - [0.0_wp, 0.0_wp, ground(2)]
    end subroutine prepare
 
    !> Velocity that follows from the forces of the last step; clears the forces
@@ -420,13 +396,6 @@ contains
       b%marked_turn = b%turn
       if (norm2(b%x - b%seen) + b%radius * norm2(b%turn - b%seen_turn) > model%reach) stale = .true.
    end subroutine move
-
-   subroutine finish(model)
-      type(solid_model), intent(inout) :: model
-      model%drift = model%step
-      model%t = model%t + model%step
-      model%steps = model%steps + 1
-   end subroutine finish
 
    !> A step that is stable for all contacts that may close: 2 / omega, with omega^2 above the greatest eigenvalue of
    !> any body on its springs, twice as stiff where the neighbour moves too [s]
@@ -524,15 +493,6 @@ contains
       ! |A^16| = root of the sum of the 32nd powers.
       bound = size * exp((scale + log(norm2(power))) / 16.0_wp)
    end function above_eigenvalues
-
-   !> Energy that came from nowhere since the start [J]
-   pure function energy_residual(energy, start) result(r)
-      type(energy_terms), intent(in) :: energy
-      type(energy_terms), intent(in) :: start
-      real(wp) :: r
-      r = (energy%leapfrog - start%leapfrog) + (energy%potential - start%potential) + (energy%elastic - start%elastic) &
-         + (energy%friction - start%friction) + (energy%damping - start%damping) - (energy%work - start%work)
-   end function energy_residual
 
    !> Ledger at the time of the last forces: leap-frog keeps m v(n-1/2) v(n+1/2) / 2 plus the energy of linear springs
    pure function energy_now(model) result(now)

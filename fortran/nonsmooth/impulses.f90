@@ -17,6 +17,9 @@
 !> of points that stick, slide and part. Then p and c follow together; few rounds are needed, since the weights are
 !> large. Where more impulses than velocities are unknown (two points of a joint, arches), those nearest to the ones at
 !> the start are found.
+!>
+!> Points that never slide (`no_sliding`) have c = 0 and the half plane p_n >= 0 for a cone: the problem is convex as it
+!> is, and the velocities are those nearest to f, in kinetic energy, at which nothing overlaps or slides.
 module nonsmooth_impulses
    use common_kinds, only : wp
    use common_status, only : status_ok, status_out_of_memory
@@ -27,7 +30,8 @@ module nonsmooth_impulses
    public :: impulse_problem, impulse_effort, problem_new, problem_room, solve_impulses
 
    integer, parameter, public :: along_normal = 1, along_tangent = 2
-   real(wp), parameter :: heavy = 1.0e2_wp       !! weight over the mass that a point feels
+   !> Friction of points that never slide, nor where they part: the cone is a half plane (its square does not overflow)
+   real(wp), parameter, public :: no_sliding = 1.0e100_wp
    real(wp), parameter :: growth = 10.0_wp       !! of the weights where impulses have far to go
    integer, parameter :: patience = 15           !! rounds before that
    integer, parameter :: most_growth = 2         !! times
@@ -38,6 +42,7 @@ module nonsmooth_impulses
    type :: impulse_problem
       integer :: nodes = 0                          !! bodies that move
       integer :: points = 0
+      real(wp) :: heavy = 1.0e2_wp                  !! weights over the mass that a point feels
       real(wp), allocatable :: mass(:)              !! (3 nodes) by rank: mass, mass, inertia
       real(wp), allocatable :: free(:)              !! (3 nodes) velocities without contacts
       real(wp), allocatable :: rate(:)              !! (3 nodes) velocities: a guess in, the answer out
@@ -105,7 +110,7 @@ contains
       problem%was(:n) = -1
       problem%raised(:n) = 0.0_wp
       call look(problem, problem%rate)
-      problem%raised(:n) = problem%friction(:n) * abs(problem%rate_at(along_tangent, :n))
+      problem%raised(:n) = raising(problem%friction(:n), problem%rate_at(along_tangent, :n))
       do while (effort%rounds < most_rounds)
          effort%rounds = effort%rounds + 1
          call least_energy(problem, tolerance, effort)
@@ -133,7 +138,7 @@ contains
                lightness(d) = lightness(d) + sum(problem%row(:, side, d, k)**2 / problem%mass(at + 1:at + freedoms))
             end do
          end do
-         problem%weight(k) = heavy / maxval(lightness)
+         problem%weight(k) = problem%heavy / maxval(lightness)
       end do
    end subroutine weigh
 
@@ -172,6 +177,15 @@ contains
          state = merge(slides_up, slides_down, trial(2) > 0.0_wp)
       end if
    end function state_of
+
+   !> c: by how much the parting velocity is raised where a point slides
+   elemental function raising(friction, sliding) result(c)
+      real(wp), intent(in) :: friction
+      real(wp), intent(in) :: sliding               !! [m/s]
+      real(wp) :: c
+      c = 0.0_wp
+      if (friction < no_sliding) c = friction * abs(sliding)
+   end function raising
 
    !> Edge of the friction cone on which a point slides: unit vector of its impulse
    pure function edge(friction, state) result(direction)
@@ -323,7 +337,7 @@ contains
       residual = 0.0_wp
       do k = 1, problem%points
          impulse = projected(problem%friction(k), problem%state(k), problem%trial(:, k))
-         raised = problem%friction(k) * abs(problem%rate_at(along_tangent, k))
+         raised = raising(problem%friction(k), problem%rate_at(along_tangent, k))
          residual = max(residual, maxval(abs(impulse - problem%impulse(:, k))) / problem%weight(k))
          if (problem%state(k) > sticks) residual = max(residual, abs(raised - problem%raised(k)))
          problem%impulse(:, k) = impulse

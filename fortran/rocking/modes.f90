@@ -196,13 +196,16 @@ contains
       integer(c_int), intent(out) :: status
       real(wp), dimension(most_numbers) :: fresh, rate, rate_there
       real(wp) :: t, h, h_next, error, t_next
-      integer :: attempts, n
+      integer :: attempts, k, n
       logical :: quiet, ended, rate_known
 
       status = status_invalid_argument
       n = size(y)
       if (n > most_numbers) return
       status = status_ok
+      do k = 1, 2
+         call note_value(k, y(k))
+      end do
       rate_known = .false.
       t = 0.0_wp
       body%segment = 0

@@ -6,6 +6,9 @@
 !> contacts open at rest, while others rock, or after an impact follows from one condition, that at each edge of a
 !> shut contact either a force (an impulse) presses or the edge parts. The solution is unique because the kinetic
 !> energy is positive; after an impact it is Moreau's, without rebound, so that energy never grows.
+!>
+!> Why not nonsmooth_impulses, which solves that condition for free bodies: here an open contact keeps its pivot, which
+!> leaves two unknowns and at most nine pairs of pivots, tried one by one for accelerations and for impulses alike.
 module rocking_stack
    use common_kinds, only : wp, gravity, pi
    use common_status, only : status_ok, status_invalid_argument

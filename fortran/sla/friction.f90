@@ -305,41 +305,50 @@ contains
       b = side(:, 1)
    end subroutine eliminate_one
 
-   !> Gaussian elimination with row pivots; the right sides become the answers
+   !> Gaussian elimination with row pivots, column by column; the right sides become the answers
    pure subroutine eliminate(a, b, status)
-      real(wp), intent(inout) :: a(:, :)
-      real(wp), intent(inout) :: b(:, :)
+      real(wp), intent(inout), contiguous :: a(:, :)
+      real(wp), intent(inout), contiguous :: b(:, :)
       integer(c_int), intent(out) :: status
-      real(wp) :: factor, row(size(a, 1)), side(size(b, 2))
-      integer :: i, k, best
+      integer :: j, k, n, best
       status = status_ok
-      do k = 1, size(a, 1)
+      n = size(a, 1)
+      do k = 1, n
          best = k - 1 + maxloc(abs(a(k:, k)), dim=1)
          if (.not. abs(a(best, k)) > least_pivot) then
             status = status_not_positive_definite
             return
          end if
          if (best /= k) then
-            row = a(k, :)
-            a(k, :) = a(best, :)
-            a(best, :) = row
-            side = b(k, :)
-            b(k, :) = b(best, :)
-            b(best, :) = side
+            do j = k, n
+               call swap(a(k, j), a(best, j))
+            end do
+            do j = 1, size(b, 2)
+               call swap(b(k, j), b(best, j))
+            end do
          end if
-         do i = k + 1, size(a, 1)
-            factor = a(i, k) / a(k, k)
-            if (.not. abs(factor) > 0.0_wp) cycle
-            a(i, k:) = a(i, k:) - factor * a(k, k:)
-            b(i, :) = b(i, :) - factor * b(k, :)
+         a(k + 1:, k) = a(k + 1:, k) / a(k, k)
+         do j = k + 1, n
+            if (abs(a(k, j)) > 0.0_wp) a(k + 1:, j) = a(k + 1:, j) - a(k, j) * a(k + 1:, k)
+         end do
+         do j = 1, size(b, 2)
+            b(k + 1:, j) = b(k + 1:, j) - b(k, j) * a(k + 1:, k)
          end do
       end do
-      do k = size(a, 1), 1, -1
-         b(k, :) = b(k, :) / a(k, k)
-         do i = 1, k - 1
-            b(i, :) = b(i, :) - a(i, k) * b(k, :)
+      do j = 1, size(b, 2)
+         do k = n, 1, -1
+            b(k, j) = b(k, j) / a(k, k)
+            b(1:k - 1, j) = b(1:k - 1, j) - b(k, j) * a(1:k - 1, k)
          end do
       end do
    end subroutine eliminate
+
+   pure subroutine swap(a, b)
+      real(wp), intent(inout) :: a, b
+      real(wp) :: kept
+      kept = a
+      a = b
+      b = kept
+   end subroutine swap
 
 end module sla_friction

@@ -11,7 +11,8 @@ module sla_interface
    use common_status, only : status_ok, status_out_of_memory, status_bad_geometry
    use sla_group, only : scan_result, slider, event_vectors, material_options, admitted, unbounded
    use sla_joint_points, only : joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft, &
-      jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
+      jump, nodal, across, along, shear, bond, bond_of, modulus, slips, is_closed, is_sliding, &
+      scan_point
    use sla_tables, only : tooth_tables, tooth_tables_copy
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
@@ -166,8 +167,7 @@ contains
       yes = .false.
       if (.not. group%slides) return
       do p = 1, group%points
-         yes = abs(group%start(p)) > 0.0_wp
-         if (.not. yes .and. is_closed(group, p)) yes = group%mode(p) /= sticks .or. abs(group%mark(p)) > 0.0_wp
+         yes = is_closed(group, p) .and. (group%mode(p) /= sticks .or. abs(group%mark(p)) > 0.0_wp)
          if (yes) return
       end do
    end function slipped
@@ -369,18 +369,19 @@ contains
             tooth = int(group%changes(p))
          case (code_wear)
             if (group%slip(p) == 1) then
-               ! The first slip: friction carries what it can, the cohesion the rest, at the slip of its own law
+               ! The first slip: friction carries what it can, the cohesion the rest
                group%mode(p) = merge(slides_up, slides_down, d(2) > 0.0_wp)
-               group%start(p) = sign(strength, d(2)) / law%ks(e)
+               group%start(p) = strength / law%ks(e)
                friction = sign(strength, d(2))
             end if
-            event%crack = 0.5_wp * group%area(p) * (bond(group, e, p) - bond_of(group, e, group%slip(p) + 1_c_int)) * &
-               (d(2) - group%start(p))**2
+            event%crack = 0.5_wp * group%area(p) * (modulus(group, e, group%slip(p)) - &
+               modulus(group, e, group%slip(p) + 1_c_int)) * (abs(d(2)) - group%start(p))**2
             group%slip(p) = group%slip(p) + 1_c_int
             if (group%mode(p) /= sticks) then
                call begin(group, e, p, friction, d, moved, lambda)
             else   ! friction keeps its force, with more stiffness
-               friction = (shear(group, e, p) - bond_of(group, e, group%slip(p) - 1_c_int)) * (d(2) - group%mark(p))
+               friction = (shear(group, e, p) - bond_of(group, e, p, group%slip(p) - 1_c_int)) * &
+                  (d(2) - group%mark(p))
             end if
             group%mark(p) = without(group, e, p, d(2), friction)
             if (law%table(e) /= 0) then
@@ -456,12 +457,14 @@ contains
       call group%spread(e, sqrt(group%area(p) * abs(change)) * nodal(group, e, p, v), event, event%rank)
    end subroutine add_vector
 
-   !> Bring a strength to the tooth at which no more of it is left than of the other
+   !> Bring a strength to the tooth at which no more of it is left than of the other. Where one is past its first, so
+   !> is the other: the joint then opens and closes, and knows whether friction acts
    pure subroutine wear_with(teeth, table, tooth, its_table, its_tooth)
       type(tooth_tables), intent(in) :: teeth
       integer(c_int), intent(in) :: table, tooth        !! of the strength that fell
       integer(c_int), intent(in) :: its_table           !! of the one that follows
       integer(c_int), intent(inout) :: its_tooth
+      if (tooth > 1) its_tooth = max(its_tooth, 2_c_int)
       do while (left(teeth, its_table, its_tooth) > left(teeth, table, tooth))
          its_tooth = its_tooth + 1_c_int
       end do
@@ -480,7 +483,7 @@ contains
       if (strength < unbounded) part = strength / teeth%strength_of(table, 1_c_int, 1.0_wp)
    end function left
 
-   !> Rows: 1 start of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the power of two
+   !> Rows: 1 stretch of the cohesion's slip [m], 2 and 7 held force, constant and per multiplier, over the power of two
    !> above the shear stiffness (no digit is lost) [m], 3 cracked, 4 tension tooth, 5 tooth of the cohesion,
    !> 6 compression tooth, 8 shut, 9 mark [m], 10 changes, 11 mode and 4 where the held force is even
    pure subroutine state(group, store, values)

@@ -5,13 +5,16 @@
 !>   tension      sigma <= f                  teeth of a softening law whose strain is the opening (band 1)
 !>   compression  -sigma <= fc                teeth of one whose strain is the shortening
 !>   sliding      |tau| <= c1 - mu sigma      before the first slip, c1 the first tooth of the cohesion
-!>                |tau_c| <= c_i              after it: teeth of a law whose strain is the slip, energy of mode II
-!>                |tau_f| <= -mu sigma        its friction, beside the cohesion: tau = tau_c + tau_f
+!>                |tau_c| <= c_i              after it: teeth of a law whose strain is the slip, energy of mode II;
+!>                                            c_i - mu sigma where the joint is pulled
+!>                |tau_f| <= -mu sigma        its friction where it is pressed, beside the cohesion: tau = tau_c + tau_f
 !> Where friction sticks it is elastic, with what stiffness the cohesion has lost. Where it slides, tau_f = -/+ mu sigma
 !> is a force that follows the displacements, see sla_friction. Slip that turns back sticks.
 !>
 !> Cohesion and tension are one bond: the same part of both is left (Lourenco and Rots 1997). The split of a bond and a
-!> slider is that of Alfano and Sacco (2006), but that here friction helps from the start, as in Coulomb's law.
+!> slider is that of Alfano and Sacco (2006), but that here friction helps from the start, as in Coulomb's law. The bond
+!> is a spring from zero slip, so its teeth are stretched by the slip s = mu |sigma| / ks that friction alone allowed
+!> before the first: c_i at the slip c_i / k_i + s. Were the spring to begin at s, the first slip would create energy.
 !>
 !> Cracked joints close again with their initial normal stiffness. What opens without strength, and what closes, does so
 !> at zero stress; a joint that closes slides on as it moved.
@@ -27,7 +30,7 @@ module sla_joint_points
    implicit none
    private
    public :: joint_points, joint_law, joint_law_new, line, sticks, slides_up, slides_down, soft
-   public :: jump, nodal, across, along, shear, bond, bond_of, slips, is_closed, is_sliding, scan_point
+   public :: jump, nodal, across, along, shear, bond, bond_of, modulus, slips, is_closed, is_sliding, scan_point
 
    !> How the friction of a closed point is
    integer(c_int), parameter :: sticks = 0, slides_up = 1, slides_down = 2
@@ -66,7 +69,7 @@ module sla_joint_points
       integer(c_int), allocatable :: changes(:)  !! openings and closings
       integer(c_int), allocatable :: mode(:)     !! sticks, slides_up, slides_down
       integer(c_int), allocatable :: even(:)     !! 0 or 1, changes with the held force
-      real(wp), allocatable :: start(:)          !! slip from which the cohesion counts its own [m]
+      real(wp), allocatable :: start(:)          !! slip by which the teeth of the cohesion are stretched [m]
       real(wp), allocatable :: mark(:)           !! slip but for what is elastic in its friction, so far [m]
       real(wp), allocatable :: held(:, :)        !! (2, points) see `slider`, constant and per multiplier [Pa]
       real(wp), allocatable :: stuck(:)          !! multiplier at which a sliding point has stuck last
@@ -147,19 +150,28 @@ contains
       integer, intent(in) :: e, p
       real(wp) :: k
       k = 0.0_wp
-      if (group%law%slip_table(e) /= 0) then
-         k = group%teeth%modulus_of(group%law%slip_table(e), group%slip(p), group%law%ks(e), 0.0_wp)
-      end if
+      if (group%law%slip_table(e) /= 0) k = bond_of(group, e, p, group%slip(p))
    end function bond
 
    !> Stiffness of the bond at a tooth [Pa/m]
-   pure function bond_of(group, e, tooth) result(k)
+   pure function bond_of(group, e, p, tooth) result(k)
+      class(joint_points), intent(in) :: group
+      integer, intent(in) :: e, p
+      integer(c_int), intent(in) :: tooth
+      real(wp) :: k, f
+      k = modulus(group, e, tooth)
+      f = group%teeth%strength_of(group%law%slip_table(e), tooth, 1.0_wp)
+      if (group%start(p) > 0.0_wp .and. f < unbounded) k = k * f / (f + k * group%start(p))
+   end function bond_of
+
+   !> Stiffness of a tooth of the cohesion, by its own slip [Pa/m]
+   pure function modulus(group, e, tooth) result(k)
       class(joint_points), intent(in) :: group
       integer, intent(in) :: e
       integer(c_int), intent(in) :: tooth
       real(wp) :: k
       k = group%teeth%modulus_of(group%law%slip_table(e), tooth, group%law%ks(e), 0.0_wp)
-   end function bond_of
+   end function modulus
 
    !> Secant stiffness across the joint [Pa/m]
    pure function across(group, e, p) result(k)
@@ -194,7 +206,7 @@ contains
          return
       end if
       k = bond(group, e, p)
-      law = line(k, k * group%start(p), 0.5_wp * k * group%start(p)**2)
+      law = line(k=k)
       if (.not. is_closed(group, p)) then
          law%k = k + group%options%floor * group%law%ks(e) * (1.0_wp + hundredth * real(group%even(p), wp))
          return
@@ -256,7 +268,7 @@ contains
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: noise
       type(scan_result), intent(inout) :: found
-      real(wp) :: f, mu, sa, sb, scale, k, spring, ta, tb
+      real(wp) :: f, mu, part, sa, sb, scale, k, spring, ta, tb
       integer :: side
 
       associate (law => group%law, kn => group%law%kn(e), ks => group%law%ks(e))
@@ -280,15 +292,13 @@ contains
          if (mu < 0.0_wp) return
          k = bond(group, e, p)
          f = group%teeth%strength_of(law%slip_table(e), group%slip(p), 1.0_wp)
-         do side = 1, -1, -2
-            if (group%slip(p) == 1) then
-               call linear_bound(side * ks * da(2) + mu * sa, side * ks * db(2) + mu * sb, f, f, lambda, noise, p, &
+         if (f < unbounded .or. group%slip(p) == 1) then
+            part = merge(0.0_wp, mu, is_closed(group, p) .and. group%slip(p) > 1)
+            do side = 1, -1, -2
+               call linear_bound(side * k * da(2) + part * sa, side * k * db(2) + part * sb, f, f, lambda, noise, p, &
                   code_wear, found)
-            else if (f < unbounded) then
-               call linear_bound(side * k * (da(2) - group%start(p)), side * k * db(2), f, f, lambda, noise, p, &
-                  code_wear, found)
-            end if
-         end do
+            end do
+         end if
          if (.not. (is_closed(group, p) .and. slips(group, e, p))) return
          spring = shear(group, e, p) - k
          ta = spring * (da(2) - group%mark(p))
@@ -320,7 +330,7 @@ contains
       real(wp), intent(in) :: ub(0:)
       real(wp), intent(in) :: lambda(:)
       real(wp), intent(inout) :: least(:)
-      real(wp) :: la(8), lb(8), da(2), db(2), k, f, w, mu, bonded, spring
+      real(wp) :: la(8), lb(8), da(2), db(2), k, f, w, mu, part, bonded, spring
       integer :: e, p
       do e = first, last
          call group%gather(e, ua, la)
@@ -349,11 +359,9 @@ contains
             if (mu < 0.0_wp) cycle
             bonded = bond(group, e, p)
             f = group%teeth%strength_of(group%law%slip_table(e), group%slip(p), 1.0_wp)
-            if (group%slip(p) == 1) then
-               spring = group%law%ks(e)
-               call lower_both([mu * k, spring], 0.0_wp, f, mu**2 * k + spring, w, da, db, lambda, least)
-            else if (f < unbounded) then
-               call lower_both([0.0_wp, bonded], group%start(p), f, bonded, w, da, db, lambda, least)
+            if (f < unbounded .or. group%slip(p) == 1) then
+               part = merge(0.0_wp, mu, is_closed(group, p) .and. group%slip(p) > 1)
+               call lower_both([part * k, bonded], 0.0_wp, f, part**2 * k + bonded, w, da, db, lambda, least)
             end if
             if (.not. (is_closed(group, p) .and. slips(group, e, p))) cycle
             spring = shear(group, e, p) - bonded

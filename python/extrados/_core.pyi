@@ -6,6 +6,7 @@ api_arch: Any
 api_mechanism: Any
 api_dem: Any
 api_dem3: Any
+api_dem_run: Any
 api_limit: Any
 api_motion: Any
 api_rocking: Any

@@ -76,7 +76,7 @@ ANALYSES: dict[str, AnalysisKind] = {
     "imperfections": _analysis(
         "limit", "Imperfections", "imperfections", "limit.sweep:draw_imperfections", "limit/church"
     ),
-    "supports": _analysis("limit", "Supports", "supports", "limit.supports:draw", "limit/oppenheim"),
+    "supports": _analysis("limit", "MovingSupports", "supports", "limit.supports:draw", "limit/oppenheim"),
     "moving-load": _analysis("limit", "MovingLoad", "moving_load", "limit.moving_load:draw", "limit/oppenheim"),
     "rocking": _analysis("rocking", "Rocking", "driver", "arch:draw_rocking", "arch/oppenheim"),
     "failure-domain": _analysis(

@@ -21,11 +21,25 @@ from extrados import _core
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import arch, dem, dem3, limit, mechanism, motion, restraints, rocking, shell, sla, soft_base, stack
+from extrados.core import (
+    arch,
+    dem,
+    dem3,
+    dem_run,
+    limit,
+    mechanism,
+    motion,
+    restraints,
+    rocking,
+    shell,
+    sla,
+    soft_base,
+    stack,
+)
 from extrados.core.ground import Ground, MotionSet
 
 BOX = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-dem.FIRST_PAUSE = dem3.FIRST_PAUSE = 3  # steps
+dem_run.FIRST_PAUSE = 3  # steps
 CUBE = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))])
 CUBE_FACES = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 LAW = dem.Law(1e8, 1e8, 0.6, damping=1e-3)

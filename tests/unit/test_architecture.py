@@ -54,7 +54,7 @@ WITHIN = (
 #: Fortran room -> rooms it may use
 MAY_USE = {
     "common": set(),
-    "mechanism": {"common"},
+    "mechanism": {"common", "nonsmooth"},
     "arch": {"common", "mechanism"},
     "rocking": {"common", "arch", "mechanism"},
     "sla": {"common"},

@@ -10,7 +10,7 @@ from test_every_strategy import quick_save
 
 import extrados
 from extrados.analyses.assess import driver, hazard, sensitivity, strategies
-from extrados.analyses.assess.reasons import Facts, explained
+from extrados.analyses.assess.reasons import Facts
 from extrados.analyses.assess.words import conclusion, margin_of, table_of
 from extrados.analyses.context import Context
 from extrados.building.building import Building
@@ -21,7 +21,6 @@ from extrados.motions.tables import Compatible, Record, SinePulse
 from extrados.plots import report, style
 from extrados.results.assess import StrategyVerdict
 from extrados.results.model import Result
-from extrados.results.rocking import Rocking
 from extrados.running.run import Run, compute
 from extrados.schema.constants import GRAVITY
 
@@ -103,12 +102,6 @@ def test_a_wrong_key_of_options_refuses_the_strategy_alone() -> None:
     assert rows["tilt"].status == "refused" and "fracture" in rows["tilt"].reason and rows["rocking"].status == "ok"
 
 
-def test_a_second_assess_is_refused() -> None:
-    data = deck()
-    (first, _) = extrados.run({**data, "analysis": data["analysis"] * 2}).analyses
-    assert first["status"] == "refused" and "one assess" in first["reason"]
-
-
 def test_the_clock_stops_what_takes_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(driver, "STOPPED_AFTER", 0.0)
     r = extrados.run(deck(assess={"strategies": ["tilt", "dem"], "options": {"dem": {"time_step": 1e-6}}}))["assess"]
@@ -167,7 +160,7 @@ def test_excursions_above_a_level() -> None:
     assert hazard.above(pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.5) == (0, 0.0)
 
 
-# ----- the rules, each with numbers that show it and numbers that do not
+# ----- the table and the statement (the rules: test_reasons.py)
 
 
 def verdict(
@@ -180,51 +173,8 @@ def verdict(
     return StrategyVerdict(strategy=strategy, outcome=outcome, capacity=capacity, demand=demand, **(keys | more))
 
 
-def rocked(**more) -> Result:
-    keys = {
-        "rotation_of": "block", "outcome": "recovery", "settled": True, "collapse_half_cycle": None, "collapse_time_s": None,
-        "half_cycles": 3, "impacts": 3, "impact_times_s": [], "peak_rotation_rad": 0.1, "peak_rotation_ratio": 0.5,
-        "peak_ground_acceleration_g": 0.4, "energy_supplied_J": 1.0, "energy_lost_at_impacts_J": 1.0, "energy_residual_ratio": 0.0,
-        "steps": 1, "rejected_steps": 0, "restitution": 0.9, "critical_rotation_rad": 0.2, "uplift_acceleration_g": 0.2,
-        "required_friction": 0.2, "decided_by_last_digits": False,
-    }  # fmt: skip
-    return Result("rocking", results=Rocking(**(keys | more)))
-
-
-def facts(rows: list[StrategyVerdict], results: dict | None = None, **more) -> Facts:
-    motion = pulses.sine_pulse(0.4 * GRAVITY, 1.2)
-    return Facts(Building(None), motion, 0.4, {r.strategy: r for r in rows}, results or {}, 1.5, **more)
-
-
-def rules(f: Facts) -> set[str]:
-    return {one.rule for one in explained(f)[0]}
-
-
-def test_static_peak_speaks_where_the_push_is_too_short() -> None:
-    rows = [verdict("tilt", "falls", 0.2, 0.4, margin=0.5), verdict("rocking", "stands")]
-    results = {"rocking": rocked()}
-    found, left = explained(facts(rows, results, needed_s=lambda a: 0.5))
-    assert [r.rule for r in found] == ["static-peak"] and not left
-    assert found[0].numbers["longest_s"] == pytest.approx(0.4, abs=0.01) and found[0].numbers["needed_s"] == 0.5
-    found, left = explained(facts(rows, results, needed_s=lambda a: 0.3))
-    assert not found and left == [("tilt", "rocking")]
-
-
-def test_impact_rule_speaks_where_rules_differ() -> None:
-    rows = [verdict("rocking", "stands"), verdict("dem", "falls")]
-    by_rule = [{"rule": "thesis", "restitution": 0.9, "outcome": "collapse"}, {"rule": "inelastic", "restitution": 0.6, "outcome": "recovery"}]  # fmt: skip
-    assert rules(facts(rows, {"rocking": rocked(outcomes_by_rule=by_rule)})) == {"impact-rule"}
-    same = [{**by_rule[0], "outcome": "recovery"}, by_rule[1]]
-    assert rules(facts(rows, {"rocking": rocked(outcomes_by_rule=same)})) == set()
-
-
-def test_last_digits_and_chance() -> None:
-    rows = [verdict("rocking", "stands"), verdict("dem", "falls")]
-    assert rules(facts(rows, {"rocking": rocked(decided_by_last_digits=True)})) == {"last-digits"}
-    rows = [verdict("rocking", "stands"), verdict("probability", "open", 0.05, 0.4)]
-    assert rules(facts(rows, {"rocking": rocked()})) == {"chance"}
-    rows = [verdict("rocking", "stands"), verdict("probability", "falls", 0.05, 0.99)]
-    assert rules(facts(rows, {"rocking": rocked()})) == set()
+def facts(rows: list[StrategyVerdict]) -> Facts:
+    return Facts(Building(None), pulses.sine_pulse(0.4 * GRAVITY, 1.2), 0.4, {r.strategy: r for r in rows}, {}, 1.5)
 
 
 def test_relations_and_overall_statement() -> None:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import extrados
 from extrados.analyses.rocking.block import pose, toe_forces
 from extrados.building.rockers.block import BlockModel
 from extrados.building.templates.block import make_block
@@ -67,6 +68,35 @@ def test_rectangular_pulse(x: float, length: float) -> None:
     m = rectangle(linear=True)
     motion = pulses.pulse("rectangular", -1.0, length / m.frequency[0]).ground
     assert lowest_overturning(m, motion, 0.5 * (1.0 + x), 1.5 * x) == pytest.approx(x, abs=1e-4 * x)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.2, 0.4])
+def test_pulses_on_a_block_that_starts_off_rest(ratio: float) -> None:
+    """x(0) = r alpha under a rectangular pulse of a g alpha, linear form: it passes alpha on its own after p t = ln(a/(a - 1 + r)).
+
+    The curve over durations and the durations at given amplitudes start from the same rotation; a pulse below uplift may do."""
+    import extrados
+
+    m = rectangle(linear=True)
+    p, alpha = float(m.frequency[0]), float(m.alpha[0])
+    lengths = np.array([0.4, 0.8, 2.0]) / p
+    x = np.array([1.5, 3.0] if ratio == 0.0 else [0.95, 1.5, 3.0])
+    run = extrados.run(
+        {
+            "structure": {"kind": "block", "width": 1.0, "height": 4.0},
+            "initial": {"rotation_ratio": ratio},
+            "analysis": {
+                "kind": "failure-domain", "pulse": "rectangular", "form": "linear", "durations": lengths.tolist(), "amplitudes": 20,
+                "accuracy": 1e-6, "at_amplitudes": [f"{a!r} g" for a in (x * alpha).tolist()],
+            },
+        },
+        threads=1,
+    )  # fmt: skip
+    found = run["failure-domain"]
+    grown = np.exp(p * lengths)
+    assert found.mode_I.amplitudes_g == pytest.approx((1.0 - ratio) * alpha * grown / (grown - 1.0), abs=2e-6)
+    assert found.at_amplitudes.mode_I_durations_s == found.at_amplitudes.mode_II_durations_s
+    assert found.at_amplitudes.mode_I_durations_s == pytest.approx(np.log(x / (x - 1.0 + ratio)) / p, abs=2e-6)
 
 
 @pytest.mark.parametrize(
@@ -308,3 +338,14 @@ def test_column_is_taken_as_one_body() -> None:
     r = extrados.run({"structure": tapered, "motion": motion, "analysis": {"kind": "rocking"}})["rocking"]
     centre = 2.0 / 3.0 * (0.5 + 2 * 0.4) / (0.5 + 0.4)  # of a trapezium
     assert r["critical_rotation_rad"] == pytest.approx(np.arctan(0.25 / centre), rel=1e-9)
+
+
+def test_an_answer_names_the_energy_ratio_that_it_rests_on() -> None:
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
+    block = {"kind": "block", "width": 0.5, "height": 2.0}
+    run = extrados.run(
+        {"structure": block, "motion": motion, "joints": {"energy_ratio": 0.5}, "analysis": {"kind": "rocking"}}
+    )
+    rests = run.analysis("rocking")["assumptions"]
+    assert rests["joints.energy_ratio"]["value"] == 0.5 and rests["joints.energy_ratio"]["from"] == "deck"
+    assert "joints.restitution" not in rests and "energy ratio 0.5 (deck)" in run.analysis("rocking")["answer"]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from extrados import _core
-from extrados.core import dem, lists, rocking, sla
+from extrados.core import dem, dem_run, lists, rocking, sla
 from extrados.core.errors import HandleError, status_list
 from extrados.core.ground import Ground, MotionSet
 
@@ -16,7 +16,7 @@ SETUP = """
 import copy, pickle, threading
 import numpy as np
 from extrados import _core
-from extrados.core import arch, calls, dem, motion, rocking, sla
+from extrados.core import arch, calls, dem, dem3, dem_run, errors, motion, rocking, sla
 from extrados.core.ground import Ground, MotionSet
 
 def plane(**change):
@@ -47,6 +47,15 @@ def bodies(**change):
     return dem.Bodies(**{**values, **change})
 
 short = dem.Options(0.01)
+
+def solid():
+    cube = np.array([[x, y, z] for z in (0.0, 1.0) for x, y in ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))])
+    faces = ((3, 2, 1, 0), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+    return dem3.Model(dem3.Solids(np.full((1, 3), 0.5), np.array([2000.0]), np.eye(3)[None] * 300.0, [cube], [faces], [0],
+                                  [dem3.Law(1e8, 1e8, 0.6)]), dem3.Options(0.01, settle_steps=0))
+
+def status_of(*answer):
+    errors.check(answer[-1], "what was asked")
 one = Ground(samples=np.zeros((1, 5)), step=0.01)
 block = rocking.block_body(1000.0, 1500.0, 2.0, 0.5, 0.5, (0.9, 0.9))
 """
@@ -78,9 +87,28 @@ ABUSES = {
     "dem state of a run that has ended": ("m = dem.Model(bodies(), short); m.run(MotionSet([one])); m.state()", "HandleError"),
     "dem state that is damaged": ("dem.Model(bodies(), short).run(MotionSet([one]), state=np.zeros(40))", "ValueError"),
     "dem state that is too short": (
-        "w = np.zeros(20, int); dem.Model(bodies(), short).run(MotionSet([one]), state=np.r_[w, dem.state_digest(w)])",
+        "w = np.zeros(20, int); dem.Model(bodies(), short).run(MotionSet([one]), state=np.r_[w, dem_run.state_digest(w)])",
         "ValueError"),
     "dem read before a run": ("m = dem.Model(bodies(), short); m._last_run(False)", "HandleError"),
+    "dem run before a start": (
+        "status_of(*_core.api_dem_run.run(dem.Model(bodies(), short).handle, MotionSet([one]).handle, 1, 1.0, 0))",
+        "HandleError"),
+    "dem run after its end": (
+        "m = dem.Model(bodies(), short); s = MotionSet([one]); m.run(s);"
+        "status_of(*_core.api_dem_run.run(m.handle, s.handle, 1, 1.0, 0))", "HandleError"),
+    "dem of solids asked for plane blocks": (
+        "m = solid(); m.run(MotionSet([one])); status_of(*_core.api_dem.bodies(m.handle, 1))", "HandleError"),
+    "dem of solids built as plane blocks": (
+        "status_of(_core.api_dem.surroundings(solid().handle, np.zeros(2), 0.0, 0, np.zeros(4)))", "HandleError"),
+    "dem of plane blocks asked for solids": (
+        "m = dem.Model(bodies(), short); m.run(MotionSet([one])); status_of(*_core.api_dem3.bodies(m.handle, 2))",
+        "HandleError"),
+    "dem state of plane blocks for solids": (
+        "kept = []; m = dem.Model(bodies(), dem.Options(0.5)); w = MotionSet([one]);"
+        "m.run(w, watch=lambda reached: kept.append(m.state())); solid().run(w, state=kept[0])", "ValueError"),
+    "dem history of rates that bodies have not": (
+        "m = dem.Model(bodies(), short); m.run(MotionSet([one]));"
+        "status_of(*_core.api_dem_run.history(m.handle, 2, 6, 1))", "CoreError"),
     # indices
     "connectivity too high": ("wall(plane(connect=np.array([[0, 1, 2, 4]])))", "IndexError"),
     "connectivity negative": ("wall(plane(connect=np.array([[0, 1, 2, -1]])))", "IndexError"),
@@ -224,7 +252,7 @@ def test_an_object_in_use_is_neither_used_nor_closed_by_another_thread() -> None
     thread.start()
     try:
         while True:  # until the run has taken its model
-            _, _, status = _core.api_dem.summary(model.handle)
+            _, _, status = _core.api_dem_run.summary(model.handle)
             if status_list()[status][0] == "busy":
                 break
         with pytest.raises(HandleError, match="another call is using it"):
@@ -250,13 +278,14 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
     """The core destroys what was forgotten in use when the call that uses it ends."""
     model, motions = long_run()
     before = _core.api_support.handle_count()
-    thread = threading.Thread(target=_core.api_dem.run, args=(model.handle, motions.handle, 1, 1.0, np.zeros(1), 0))
+    assert _core.api_dem_run.start(model.handle, np.zeros(1)) == 0
+    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 1.0, 0))
     handle = model.handle
     thread.start()
-    while status_list()[_core.api_dem.summary(handle)[2]][0] != "busy":
+    while status_list()[_core.api_dem_run.summary(handle)[2]][0] != "busy":
         pass
     del model
-    assert status_list()[_core.api_dem.summary(handle)[2]][0] == "closed_handle"
+    assert status_list()[_core.api_dem_run.summary(handle)[2]][0] == "closed_handle"
     assert _core.api_support.handle_count() == before
     while thread.is_alive():
         _core.api_support.set_cancel(1)
@@ -268,9 +297,10 @@ def test_an_owner_that_is_gone_does_not_pull_the_object_from_under_a_call() -> N
 def test_an_error_is_not_hidden_by_an_object_in_use() -> None:
     before = _core.api_support.handle_count()
     model, motions = long_run()
-    thread = threading.Thread(target=_core.api_dem.run, args=(model.handle, motions.handle, 1, 1.0, np.zeros(1), 0))
+    assert _core.api_dem_run.start(model.handle, np.zeros(1)) == 0
+    thread = threading.Thread(target=_core.api_dem_run.run, args=(model.handle, motions.handle, 1, 1.0, 0))
     thread.start()
-    while status_list()[_core.api_dem.summary(model.handle)[2]][0] != "busy":
+    while status_list()[_core.api_dem_run.summary(model.handle)[2]][0] != "busy":
         pass
     with pytest.raises(KeyboardInterrupt), model, motions:
         raise KeyboardInterrupt
@@ -329,4 +359,4 @@ def test_lists_are_whole() -> None:
         assert len({e.number for e in entries}) == len({e.name for e in entries}) == len(entries) > 2
     assert rocking.OUTCOMES == ("no-hinging", "recovery", "collapse")
     assert sla.ELEMENTS == {"T3": 3, "Q4": 4, "T6": 6, "Q8": 8}
-    assert dem.REASONS.index("blow-up") == lists.number("dem_stop", "blow_up") == 4
+    assert dem_run.REASONS.index("blow-up") == lists.number("dem_stop", "blow_up") == 4

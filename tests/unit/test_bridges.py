@@ -335,6 +335,20 @@ def test_rings_that_part_are_weaker_and_slide_at_their_own_friction() -> None:
     assert smooth < 0.8 * rough and rough < whole
 
 
+def test_rings_that_crush_are_no_linear_programme(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether a bridge of many loops stands is asked of the curve of strength: its tangent planes led on without end."""
+    rings = bridge(spans=[SPAN | {"rings": 2, "voussoirs": 50}], backing={"height": 1.0})
+    mu = np.full(len(rings.a), 0.6)
+    limit = LimitAnalysis(rings, mu, strength=4e6)
+    gamma = limit.collapse()[0].gamma
+
+    def asked(*_: Any) -> None:
+        raise AssertionError("a linear programme was asked")
+
+    monkeypatch.setattr(limit, "optimise", asked)
+    assert limit.stands(0.0) and limit.stands(gamma - 1e-5) and not limit.stands(gamma + 1e-5)
+
+
 def test_a_load_at_rest_spreads_through_the_fill() -> None:
     """Half the collapse load at rest and half crossing is the collapse load."""
     whole = run(moving([2.0]), fill=FILL)["collapse_load_N"]

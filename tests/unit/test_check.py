@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from extrados.analyses.context import Context
+from extrados.analyses.run import run_one
 from extrados.decks.reader import Deck, DeckError, read_deck
 from extrados.running.check import check_building
 from extrados.running.run import compute
@@ -28,6 +29,7 @@ HOUSE = (
 TIE = "[[ties]]\nstart = [-9.5, 3.0]\nground = [0.0, 0.0]\n"
 GENERATED = '[motion]\nkind = "generated"\nmmi = 8\nduration = 15\n'
 FRAGILITY = '[[analysis]]\nkind = "fragility"\ncount = 4\nlevels = ["0.1 g"]\n'
+FACADE = '[[analysis]]\nkind = "local-mechanism"\nmechanism = "facade"\nheight = 6\nthickness = 0.5\n'
 
 
 #: What is wrong, the words of the complaint, and a deck whose wrong line ends in "# here"
@@ -106,7 +108,7 @@ WRONG = {
     "bars of a block": ("needs an arch", BLOCK + PULSE + DEM + 'merge = "three-bars" # here\n'),
     "record that is not there": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + ROCKING),
     "suite that is not there": (
-        "none of the 1 records", BLOCK + '[motion] # here\nkind = "suite"\nfiles = ["none.at2"]\n' + FRAGILITY,
+        "none of the 1 records", BLOCK + '[motion] # here\nkind = "suite"\nfiles = ["none.at2"]\n' + FRAGILITY.replace("count = 4", "count = 1"),
     ),
     "record of dem": ("none.at2", BLOCK + '[motion] # here\nkind = "record"\nfile = "none.at2"\n' + DEM),
     "curve that is not there": ("none.csv", PANEL + SLA + 'measured = "none.csv" # here\n'),
@@ -137,6 +139,49 @@ WRONG = {
         "give axial_load", PANEL + 'compressive_strength = "2 MPa"\n' + '[[analysis]] # here\nkind = "code-checks"\n',
     ),
     "frequencies the wrong way": ("is not above", '[[analysis]]\nkind = "shake-table"\nlowest = 30\nhighest = 20 # here\n'),
+    "energy ratio of an arch": ("that of a block", ARCH + PULSE + "[joints]\nenergy_ratio = 0.5 # here\n" + ROCKING),
+    "energy ratio of spectra": (
+        "square root", PULSE + '[joints]\nenergy_ratio = 0.5 # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
+    ),
+    "spectra on a soft base": (
+        "rigid ground", PULSE + '[supports]\nstiffness = "10 MPa/m" # here\n[[analysis]]\nkind = "rocking-spectrum"\n',
+    ),
+    "base too soft": ("falls over by itself", BLOCK + PULSE + "[supports]\nstiffness = 1e3 # here\n" + ROCKING),
+    "durations of one pulse": ("'generated'", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 1\ndurations = [1, 2] # here\n'),
+    "more motions than there are": (
+        "expected at most 1", BLOCK + PULSE + '[[analysis]]\nkind = "fragility"\ncount = 4 # here\n',
+    ),
+    "buttress of an arch": (
+        "needs a buttress", ARCH + '[[analysis]]\nkind = "sweep"\nvary = "thickness"\nstart = 1\nstop = 2\nbuttress_alone = true # here\n',
+    ),
+    "ties in space": (
+        "tilt of solids", ARCH + TIE.replace("[[ties]]", "[[ties]] # here") + TILT + "direction = 10\n",
+    ),
+    "loads in space": ("tilt of solids", ARCH + TILT + "direction = 10\n[[analysis.load]] # here\nx = 0.0\nforce = 1e3\n"),
+    "crushing in space": (
+        "tilt of solids", ARCH + '[material]\ncompressive_strength = "5 MPa" # here\n' + TILT + "direction = 10\n",
+    ),
+    "floors of an arch": (
+        "has no floors", ARCH + PUSH + '[[analysis.variants]]\nname = "stiff"\nfloors = 2.0 # here\n',
+    ),
+    "mortar of rigid contacts": (
+        "know no mortar", ARCH + PULSE + "[joints]\ncohesion = 1e5 # here\n" + DEM + 'solver = "nonsmooth"\n',
+    ),
+    "springs under rigid contacts": (
+        "know no springs", ARCH + PULSE + "[supports]\nstiffness = 1e9 # here\n" + DEM + 'solver = "nonsmooth"\n',
+    ),
+    "restitution of many blocks": ("of a single block", ARCH + PULSE + '[joints]\ndamping = "restitution" # here\n' + DEM),
+    "facade without its thickness": ("needs thickness", '[[analysis]] # here\nkind = "local-mechanism"\nmechanism = "facade"\nheight = 6\n'),
+    "mechanism of no building": ("needs a [structure]", '[[analysis]]\nkind = "local-mechanism"\nmechanism = "building" # here\n'),
+    "corner that turns above its top": (
+        "not below the top", '[[analysis]]\nkind = "local-mechanism"\nmechanism = "corner"\nheight = 6\nthickness = 0.5\ncrack_angle = 30\n'
+        "hinge_height = 7 # here\n",
+    ),
+    "floor above the top": ("above the top", FACADE + "[[analysis.floors]]\nload = 1e3\nheight = 30 # here\n"),
+    "side walls of a corner": (
+        "leave side_walls out", FACADE.replace('"facade"', '"corner"') + "crack_angle = 30\nside_walls = { thickness = 0.5, crack_angle = 20 } # here\n",
+    ),
+    "facade without weight": ("has weight", "[material]\ndensity = 0.0 # here\n" + FACADE),
     "block without weight": ("weighs nothing", BLOCK + "[material]\ndensity = 0.0 # here\n" + TILT),
     "arch without weight that rocks": ("weighs nothing", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + ROCKING),
     "arch without weight, discrete elements": ("weighs nothing", ARCH + PULSE + "[material]\ndensity = 0.0 # here\n" + DEM),
@@ -164,6 +209,16 @@ def test_check_and_run_say_the_same(tmp_path: Path, wrong: str) -> None:
     assert len(said) == 1 and said[0].startswith(f"{path}:{line}: ") and words in said[0], said
     key = said[0].removeprefix(f"{path}:{line}: ").split(": ")
     assert key[0].rsplit(".", 1)[-1] != key[1], "the key stands once"
+
+
+def test_a_second_assessment_is_refused(tmp_path: Path) -> None:
+    """It alone: the first goes on."""
+    path = tmp_path / "deck.toml"
+    path.write_text(ARCH + PULSE + 2 * '[[analysis]]\nkind = "assess"\n')
+    deck = read_deck(path)
+    (said,) = check_building(deck).complaints
+    assert said.startswith(f"{path}:13: ") and "holds one assess" in said
+    assert run_one(Context(deck), deck.analyses[1], deck.buildings[1]).reason == said
 
 
 def test_every_complaint_at_once(tmp_path: Path) -> None:

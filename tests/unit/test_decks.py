@@ -1,5 +1,7 @@
 """Wrong decks: every complaint with its line, all at once, and never a traceback."""
 
+import re
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -214,3 +216,18 @@ def test_decks_from_python() -> None:
     deck = make_deck({"structure": {"kind": "arch", "radius": 1.0, "thickness": 0.2, "embrace": 150.0, "voussoirs": 9},
                       "analysis": {"kind": "tilt"}})  # fmt: skip
     assert deck.analyses[0].kind == "tilt"
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"joints": {"friction_rule": "non-associated"}, "analysis": {"kind": "tilt"}},
+         "joints.friction_rule: unknown key; it belongs in the [[analysis]] table"),
+        ({"analysis": {"kind": "moving-load", "dynamic": 1.4}},
+         "analysis.dynamic: unknown key; it belongs in analysis.factors"),
+    ],
+)  # fmt: skip
+def test_a_key_at_the_wrong_place_is_told_its_own(tables: dict, words: str) -> None:
+    arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 150.0, "voussoirs": 20}
+    with pytest.raises(DeckError, match=re.escape(words)):
+        make_deck({"structure": arch, **tables})

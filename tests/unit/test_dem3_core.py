@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from extrados.building.geometry.solids.assembly import Stone, assemble, mass_properties
 from extrados.building.geometry.solids.polyhedra import Polyhedron, box, prism
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.core.dem3 import Law, Options, Solids
 from extrados.core.errors import CoreError
 from extrados.core.ground import Ground, as_motion_set
@@ -59,6 +59,19 @@ def test_a_block_settles_as_far_as_its_joint_gives() -> None:
     run = dem3.run(solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4)), Options(end_time=0.2))
     assert run.reason == "end" and 2.0 - run.place[-1, 0, 2] == pytest.approx(DENSITY * GRAVITY * 4.0 / 1e9, rel=1e-5)
     assert run.residual < 1e-9
+
+
+def test_a_tiny_step_of_the_run_keeps_nothing_from_rest() -> None:
+    block = solids([box((0, 0, 0), (1, 1, 4))], Law(1e9, 1e9, 0.6, 1e-4))
+    run = dem3.run(block, Options(end_time=1e-5, step=1e-6, settle_steps=4000))
+    assert run.reason == "end" and run.settling_steps < 4000 and run.step == pytest.approx(1e-6)
+
+
+def test_an_energy_ledger_that_does_not_close_names_the_fastest_body() -> None:
+    pile = solids([box((0, 0, z), (1, 1, z + 1)) for z in (0, 1)], Law(1e8, 1e8, 0.6))
+    quick = np.array([[0, 0, 0, 0, 0, 0], [2.0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 0]])
+    run = dem3.run(pile, Options(end_time=1.0, residual_limit=1e-14), rate=quick)
+    assert run.reason == "blow-up" and run.blamed == [1] and run.stop_time < 1.0
 
 
 @pytest.mark.parametrize("direction", [0.0, 33.0, 120.0, 251.0])
@@ -129,7 +142,7 @@ def test_no_bit_depends_on_threads_pauses_or_a_state_taken_back(monkeypatch) -> 
     )
     once = dem3.run(model, options, shaken(1.0), scale=3.0)
     assert once.reason == "end" and np.abs(once.place[-1] - once.place[0]).max() > 1e-5
-    monkeypatch.setattr(dem3, "FIRST_PAUSE", 5)
+    monkeypatch.setattr(dem_run, "FIRST_PAUSE", 5)
     kept = []
     with dem3.Model(model, replace(options, threads=2)) as other, as_motion_set([shaken(1.0)]) as motions:
         paused = other.run(motions, scale=3.0, watch=lambda reached: kept.append(other.state()))

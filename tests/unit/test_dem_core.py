@@ -9,7 +9,7 @@ from dem_models import G, block_on_floor, constant, cosine, housner, model, piec
 from interrupting import interrupted
 
 from extrados import _core
-from extrados.core import dem
+from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set
 
 STIFF = dem.Law(1e10, 1e10, 0.6, damping=2e-3)
@@ -157,7 +157,7 @@ def test_threads_give_the_same_bits() -> None:
     bodies = model(bricks, [rectangle(-20.0, 20.0, -1.0, 0.0)], dem.Law(1e9, 1e9, 0.6, damping=2e-3))
     runs = [dem.run(bodies, dem.Options(0.8, 0.1, threads=k), cosine(1.2 * G, 8.0)) for k in (1, 2)]
     assert np.array_equal(runs[0].place, runs[1].place)
-    assert all(np.array_equal(runs[0].energy[k], runs[1].energy[k]) for k in dem.ENERGIES)
+    assert all(np.array_equal(runs[0].energy[k], runs[1].energy[k]) for k in dem_run.ENERGIES)
     assert runs[0].searches > 3  # the order of contacts changed on the way
     assert runs[0].residual < 0.01
 
@@ -230,7 +230,9 @@ def test_an_open_ledger_stops_the_run() -> None:
 
 def test_cancel_answers_with_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
     bodies = block_on_floor(1.0, 4.0, dem.Law(1e12, 1e12, 2.0, damping=1e-4))
-    monkeypatch.setattr(dem, "long_call", interrupted(dem.long_call, 1.0, lambda: _core.api_support.set_cancel(1)))
+    monkeypatch.setattr(
+        dem_run, "long_call", interrupted(dem_run.long_call, 1.0, lambda: _core.api_support.set_cancel(1))
+    )
     run = dem.run(bodies, dem.Options(3600.0, 0.05), cosine(0.5 * G, 10.88, 3600.0))
     _core.api_support.set_cancel(0)
     assert run.interrupted and len(run.time) > 1

@@ -15,7 +15,7 @@ from extrados.building.geometry.rigid import rigid_bodies
 from extrados.building.rockers.impact import inelastic_impact
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.templates.arch import make_arch
-from extrados.core import dem
+from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set
 from extrados.decks.reader import DeckError
 from extrados.running.run import Run
@@ -141,7 +141,9 @@ def test_threads_and_pauses_change_no_bit() -> None:
 
 
 def test_cancel_answers_with_what_it_has(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(dem, "long_call", interrupted(dem.long_call, 1.0, lambda: _core.api_support.set_cancel(1)))
+    monkeypatch.setattr(
+        dem_run, "long_call", interrupted(dem_run.long_call, 1.0, lambda: _core.api_support.set_cancel(1))
+    )
     run = dem.run(block_on_floor(1.0, 4.0, law(2.0)), options(36000.0, 0.5), cosine(0.5 * G, 10.88, 36000.0))
     _core.api_support.set_cancel(0)
     assert run.interrupted and len(run.time) > 1 and np.isfinite(run.place).all()

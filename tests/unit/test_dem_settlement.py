@@ -11,7 +11,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.dem.model import make_model
 from extrados.analyses.dem.settlement import TIMES, closed_settlement, farthest_settlement
 from extrados.building.geometry.convex import overlap_depth
-from extrados.core import dem
+from extrados.core import dem, dem_run
 from extrados.core.ground import as_motion_set
 from extrados.decks.reader import read_text
 
@@ -71,7 +71,7 @@ def test_what_stands_settles_as_its_closed_joints_give(name) -> None:
     model = make_model(Context(deck), deck.analyses[0])
     closed, gaps = closed_settlement(model, model.values)
     options = dem.Options(end_time=1e-6, output_step=1e-3, settlement=farthest_settlement(model))
-    with dem.Model(model.bodies(), options) as elements, as_motion_set([dem.STILL]) as motions:
+    with dem.Model(model.bodies(), options) as elements, as_motion_set([dem_run.STILL]) as motions:
         found = elements.run(motions)
     n = model.rigid.count
     settled = np.hypot(*(found.settled[:n, :2] - model.rigid.centroid[:n]).T).max()

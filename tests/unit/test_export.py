@@ -124,6 +124,37 @@ def test_opensees_finds_a_thrust_between_the_least_and_the_greatest(tmp_path: Pa
     assert found.thrust_min_N < sum(map(abs, across)) / 2 < found.thrust_max_N
 
 
+WALL = {"kind": "panel", "width": 2.0, "height": 1.0, "thickness": 0.2}
+TIE = {"start": [-9.5, 2.0], "end": [9.5, 2.0], "yield_force": "10 kN"}
+
+
+def test_a_script_of_opensees_holds_what_the_deck_holds() -> None:
+    """The nodes of [[supports.held]], in their directions, in place of the bottom edge."""
+    held = [{"edge": "left", "fix": "x"}, {"x": [0, 0], "y": [0, 0]}]
+    wall = extrados.deck(WALL, extrados.Sla(mesh={"size": 0.5}), supports={"held": held})
+    lines = extrados.export(wall, "opensees").splitlines()
+    fixed = {line for line in lines if line.startswith("ops.fix")}
+    mesh = wall.building.mesh(wall.analyses[0].mesh)
+    left = np.flatnonzero(mesh.xy[:, 0] < 1e-9)
+    corner = int(np.hypot(*mesh.xy.T).argmin())
+    assert fixed == {f"ops.fix({n + 1}, 1, {int(n == corner)})" for n in left} and len(left) > 2
+
+
+@pytest.mark.parametrize(
+    ("tables", "words"),
+    [
+        ({"structure": extrados.Block(width=1.0, height=4.0, base_slope=3.0)}, "structure.base_slope: .*level ground"),
+        ({"structure": ARCH, "ties": [TIE]}, r"ties.*: OpenSees is given no \[\[ties\]\]"),
+        ({"structure": BLOCK.structure, "supports": {"abutting_wall": "left"}}, "supports.abutting_wall: OpenSees"),
+        ({"structure": WALL, "supports": {"held": [{"edge": "left", "stiffness": 1e9}]}}, "held.*stiffness: .*rigid"),
+        ({"structure": WALL | {"ties": [{"edge": "top", "direction": "y"}]}}, "structure.ties: .*no ties of a wall"),
+    ],
+)  # fmt: skip
+def test_opensees_leaves_nothing_out_in_silence(tables, words: str) -> None:
+    with pytest.raises(extrados.DeckError, match=words):
+        extrados.export(extrados.deck(analysis=extrados.Tilt(), **tables), "opensees")
+
+
 def test_stones_as_a_scene_of_pyvista() -> None:
     pytest.importorskip("pyvista")
     scene = extrados.scene(DECK)

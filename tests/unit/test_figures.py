@@ -2,12 +2,13 @@
 
 from pathlib import Path
 
-import matplotlib
+import numpy as np
 import pytest
 from figure_faults import Watch, faults
 
 import extrados
 from extrados.plots import report, style
+from extrados.plots.sla import near_the_peak
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 #: Quick decks whose figures are unlike each other
@@ -22,9 +23,6 @@ SOME = (
 )
 
 
-@pytest.mark.skipif(
-    matplotlib.__version_info__ < (3, 10), reason="matplotlib 3.9 leaves no room for the last number of an axis"
-)
 @pytest.mark.parametrize("case", SOME)
 def test_figures_can_be_read(case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     run = extrados.run(CASES / f"{case}.toml")
@@ -49,3 +47,11 @@ def test_the_test_finds_what_cannot_be_read() -> None:
         ax.legend()
         fig.get_layout_engine().execute(fig)
         assert faults(fig) == []
+
+
+def test_a_plateau_of_a_mechanism_does_not_shrink_its_curve() -> None:
+    """An envelope that goes on for metres is drawn by the way to nearly its greatest load, from where it starts."""
+    displacement, load = np.array([0.1, 0.2, 0.3, 50.0]), np.array([0.0, 5.0, 9.9, 10.0])
+    assert near_the_peak(displacement, load) == pytest.approx(0.2)
+    assert near_the_peak(-displacement, load) == pytest.approx(0.2)
+    assert near_the_peak(np.zeros(1), np.zeros(1)) == 0.0

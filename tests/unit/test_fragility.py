@@ -361,13 +361,15 @@ def test_code_demands_are_those_of_the_code_whatever_the_motion() -> None:
     assert all(r.results["checks"] == runs[0].results["checks"] for r in runs)
     assert all(r.verdict == runs[0].verdict for r in runs) and runs[1].results["dynamic_outcome"] == "recovery"
     checks = runs[0].results["checks"]
-    assert checks["NTC linear (ground level)"]["demand"] == pytest.approx(0.25 * 1.2)
-    # S_De(T) = S_e(T) (T/2 pi)^2 on the branch of constant velocity
-    period = float(checks["NTC nonlinear"]["note"].removeprefix("T_s = ").removesuffix(" s"))
+    assert checks["NTC linear (at the ground)"]["demand"] == pytest.approx(0.25 * 1.2)
+    # S_De(T) = S_e(T) (T/2 pi)^2 at 8 % on the branch of constant velocity, T_SLV of 0.4 d_0 and 0.6 a_0
+    a0, d0 = 0.5 / 2.4 * G / 1.35, 1.2 * 0.5 / 2.4
+    period = 1.68 * np.pi * np.sqrt(0.4 * d0 / (0.6 * a0))
     assert 0.5 < period < 2.0
     assert checks["NTC nonlinear"]["demand"] == pytest.approx(
-        2.5 * 0.3 * G * 0.5 / period * (period / (2 * np.pi)) ** 2, rel=1e-3
+        np.sqrt(10.0 / 13.0) * 2.5 * 0.3 * G * 0.5 / period * (period / (2 * np.pi)) ** 2
     )
+    assert checks["NTC nonlinear"]["capacity"] == pytest.approx(0.4 * d0)
     # A compatible motion brings the spectrum of its code
     compatible = {"kind": "compatible", **SITE, "duration": 10.0, "tolerance": 0.3}
     own = run({"kind": "code-checks", "peak_velocity": 0.3}, block, compatible)

@@ -96,9 +96,10 @@ def test_the_best_single_mechanism_keeps_hardly_less(ratio: float, embrace: floa
     assert kept == pytest.approx(model.impacts.inelastic, rel=0.01)
 
 
-def test_the_blow_is_the_nearest_admissible_velocity() -> None:
+@pytest.mark.parametrize("voussoirs", [17, 500])
+def test_the_blow_is_the_nearest_admissible_velocity(voussoirs: int) -> None:
     """Optimality of the projection: impulses press, joints part, and never both (complementarity); no joint slides."""
-    m = MechanismModel(make_arch(1.0, 0.12, 170.0, 17))
+    m = MechanismModel(make_arch(1.0, 0.12, 170.0, voussoirs))
     a = m.assembly
     before = -m.fields[0]
     after = inelastic_impact(a, before)
@@ -203,3 +204,32 @@ def test_assessment_is_held_against_the_run() -> None:
     assert any("replaced by a sine" in text for text in run.results[0].warnings)
     disagree = (r.verdict == "fails") != (r.run_outcome == "collapse")
     assert disagree == any("better witness" in text for text in run.results[0].warnings)
+
+
+@pytest.mark.parametrize(("amplitude", "outcome"), [("0.6 g", "collapse"), ("0.1 g", "recovery")])
+def test_impulses_beyond_the_criterion_are_told(amplitude: str, outcome: str) -> None:
+    """The criterion ends at 2.3 times the uplift acceleration, here 0.14 g: it says that a short sine of any strength is harmless."""
+    base = deck(0.10, 170.0, 0.08)
+    base |= {
+        "motion": {"kind": "sine-pulse", "amplitude": amplitude, "period": 0.15},
+        "analysis": [{"kind": "assessment"}],
+    }
+    run = extrados.run(base)
+    assert (run["assessment"].verdict, run["assessment"].run_outcome) == ("stands", outcome)
+    told = " ".join(run.results[0].warnings)
+    assert ("lies above" in told) == ("beyond the criterion" in told) == (outcome == "collapse")
+
+
+def test_another_rule_in_place_of_the_thesis_is_told() -> None:
+    motion = {"kind": "sine-pulse", "amplitude": "0.5 g", "period": 0.6}
+    tables = {"motion": motion, "joints": {"restitution": "thesis"}, "analysis": {"kind": "rocking"}}
+    pointed = {"kind": "pointed-arch", "span": 8.0, "radius": 5.0, "thickness": 0.8, "voussoirs": 10}
+    round_arch = {"kind": "arch", "radius": 5.0, "thickness": 0.8, "embrace": 157.5, "voussoirs": 9}
+    told = [
+        any(
+            '"energy-safe" stands in its place' in text
+            for text in extrados.run({"structure": s, **tables}).analyses[0]["warnings"]
+        )
+        for s in (pointed, round_arch)
+    ]
+    assert told == [True, False]

@@ -67,6 +67,22 @@ def test_thrust_at_an_acceleration() -> None:
     assert "there is no 'porch'" in run(ARCH, kind="thrust", chain="porch").reason
 
 
+def test_a_sweep_claims_no_optimum_where_there_is_none() -> None:
+    """Density changes nothing; past the friction that its hinges need an arch bears the same."""
+    told = [
+        run(ARCH, kind="sweep", vary=vary, start=start, stop=stop, count=7).answer
+        for vary, start, stop in (("material.density", 1500, 2500), ("joints.friction", 0.3, 0.9))
+    ]
+    assert "from 1500 to 2500 kg/m^3: the same throughout, with 0.4333 g" in told[0]
+    assert "greatest from 0.5 to 0.9, with 0.4333 g" in told[1]
+
+
+def test_a_sweep_of_no_number_is_refused() -> None:
+    bridge = {"kind": "bridge", "spans": [{"span": 8.0, "rise": 2.5, "thickness": 0.5}]}
+    refused = run(bridge, kind="sweep", vary="spans.²", start=1, stop=2)
+    assert refused.status == "refused" and "expected a number from 0 to 0" in refused.reason
+
+
 def test_sweep_finds_changes_and_optimum() -> None:
     coarse = run(CHURCH, kind="sweep", vary="buttress_width", start=0.7, stop=3.0, count=11)
     fine = run(CHURCH, kind="sweep", vary="buttress_width", start=0.7, stop=3.0, count=60)

@@ -16,6 +16,7 @@ from extrados.limit.equilibrium import spanning_tree
 from extrados.limit.interior import RESIDUAL, CollapseProblem
 from extrados.limit.loads import Loads, forces_at, tilt_loads
 from extrados.limit.programme import LimitAnalysis, NoAnswer, NoEquilibrium
+from extrados.limit.states import State
 from extrados.limit.systems import Sparse
 
 UNIT = (0.4, 0.175)  # Ferris and Tin-Loi (2001)
@@ -147,6 +148,24 @@ def test_bounds_of_drucker() -> None:
     lower, upper = limit.without_dilatancy_between(1)
     assert lower == pytest.approx(0.0, abs=1e-6)
     assert lower <= limit.collapse()[0].gamma <= upper + 1e-9
+
+
+def test_a_joint_that_carries_nothing_needs_no_friction() -> None:
+    """What rounding leaves on a head joint that parts is no force: two courses that slide at 0.65 need 0.65."""
+    state = State(0.65, np.array([0.0, 1000.0]), np.array([2e-7, 650.0]), np.array([0.5, 0.5]), np.zeros(0))
+    assert state.friction == pytest.approx([0.0, 0.65])
+    few = State(0.65, np.array([1e-5, 1000.0]), np.array([1e-3, 650.0]), np.array([0.5, 0.5]), np.zeros(0))
+    assert few.friction == pytest.approx([100.0, 0.65])
+
+
+def test_the_bound_without_friction_is_told_without_a_sign() -> None:
+    data = {
+        "structure": {"kind": "brickwork", "units": 4, "courses": 3, "unit_length": 0.5, "unit_height": 0.25},
+        "joints": {"friction": 0.65},
+        "analysis": [{"kind": "tilt", "friction_rule": "non-associated", "starts": 1}],
+    }
+    (result,) = run_analyses(Context(make_deck(data)))
+    assert "it bears 0.6500 g, 0.0000 g without friction" in result.answer
 
 
 def test_certificate_obeys_virtual_work() -> None:

@@ -160,6 +160,23 @@ def test_what_does_not_fit_together_is_told():
         plan().assembly(2000.0, None)
 
 
+@pytest.mark.parametrize("start, end", [(0, 6), (6, 0), (0, 3), (1, 3), (-1, 7), (5, 8), (3, 6)])
+def test_walls_that_lie_on_each_other_are_refused(start, end):
+    """Whichever of them is longer, and whether or not they have an end in common; end to end they meet."""
+    beside = {"name": "same", "start": [float(start), 0.0], "end": [float(end), 0.0], "thickness": 0.3}
+    with pytest.raises(BadGeometry, match="'front' and 'same' lie on each other"):
+        meshed(plan([WALLS[0], beside]))
+    beside |= {"start": [6.0, 0.0], "end": [9.0, 0.0]}
+    assert not meshed(plan([WALLS[0], beside])).warnings
+
+
+def test_walls_that_end_short_of_each_other_are_told():
+    for gap, told in ((0.0, False), (0.05, True), (0.29, True), (0.31, False)):
+        side = {"name": "side", "start": [6.0 + gap, 0.0], "end": [6.0 + gap, 5.0], "thickness": 0.3}
+        warnings = meshed(plan([WALLS[0], side])).warnings
+        assert any("end 0." in w and "nothing joins them" in w for w in warnings) == told, (gap, warnings)
+
+
 def test_meeting_points():
     one, two = plan().walls[:2]
     assert meeting(one, two) == pytest.approx((6.0, 0.0))

@@ -229,6 +229,16 @@ kind = "rocking"
 """
 
 
+def test_the_answer_names_the_rebound_that_it_rests_on() -> None:
+    """Before a wall the impact rule of the joints plays no part."""
+    for given, said in ((None, "rebound three impacts (method)"), (0.4, "rebound 0.4 (deck)")):
+        deck = tomllib.loads(DECK)
+        if given is not None:
+            deck["supports"]["rebound"] = given
+        (one,) = extrados.run(deck).results
+        assert said in one.answer and "restitution" not in one.answer
+
+
 def test_what_a_strategy_cannot_honour_is_refused_by_name() -> None:
     damper = "[[dampers]]\nstart = [-0.3, 5.0]\nstart_stone = 'block'\nground = [-3.0, 5.0]\ndamping = 100.0\n"
     for kind in ("tilt", "dem", "assessment", "rocking-spectrum"):
@@ -262,7 +272,8 @@ def test_wrong_dampers_and_hinges_are_told_with_their_line() -> None:
 
 def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
     """A blow without rebound at each corner that approaches, in turn: the far toe, the top at the wall, the near toe, again and
-    again, until nothing moves. The impacts of the default rebound leave more: an upper bound."""
+    again, until nothing moves. The default rebound takes the first two as they are, then Housner's back to the near toe, which
+    leaves more: an upper bound."""
     structure = Block(kind="block", mass=5000.0, inertia=9000.0, centre_height=2.0, toe_right=0.4, toe_left=0.25)
     model = block_model(Building(structure))
     b = model.block
@@ -279,7 +290,7 @@ def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
 
         velocity = np.array([-way * centre[1], way * (centre[0] - near * way), way])  # about the near toe
         assert at(corners[2][0], velocity) == pytest.approx(0.0, abs=1e-12)
-        before, struck = abs(velocity[2]), []
+        before, struck, rates = abs(velocity[2]), [], []
         for _ in range(60):
             approach = [k for k, (place, normal) in enumerate(corners) if normal @ at(place, velocity) < -1e-9]
             if not approach:
@@ -291,6 +302,9 @@ def test_blows_at_one_corner_after_the_other_end_at_the_wall() -> None:
                 np.array([[normal, [normal[1], -normal[0]]]]), velocity[None],
             )[0]  # fmt: skip
             assert at(place, velocity) == pytest.approx(0.0, abs=1e-8)
+            rates.append(way * velocity[2] / before)
+        assert rates[0] == pytest.approx(model.restitution[1 - side], rel=1e-9)
+        assert three_impacts(model, side) == pytest.approx(-rates[1] * model.restitution[side], rel=1e-9)
         assert struck[:3] == [0, 1, 2]
         assert abs(velocity[2]) < 1e-3 * before
         assert three_impacts(model, side) > 0.3

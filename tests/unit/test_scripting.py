@@ -2,7 +2,10 @@
 
 import inspect
 import json
+import math
 import os
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -12,7 +15,7 @@ import pytest
 
 import extrados
 from extrados import kinds, objects
-from extrados.decks.reader import make_deck, read_deck
+from extrados.decks.reader import PROPERTIES, make_deck, read_deck
 
 CASES = Path(__file__).resolve().parents[2] / "cases"
 DECKS = sorted(p for p in CASES.rglob("*.toml") if not p.name.endswith(".expect.toml"))
@@ -40,7 +43,10 @@ def test_every_kind_has_an_object_with_its_keys() -> None:
             assert (maker.section, maker.kind) == (section, kind)
             assert set(inspect.signature(maker).parameters) == set(kinds.table(section, kind).model_fields) - {"kind"}
             assert maker.__doc__.count("\n") > 4
-    assert {"Arch", "Rocking", "Joints", "Tie", "deck", "sweep"} <= set(dir(extrados))
+    for name, model in PROPERTIES.items():
+        assert getattr(extrados, model.__name__).table is model, f"[{name}] has no object: another is called so"
+    assert len(objects.names()) == len(set(objects.names()))
+    assert {"Arch", "Rocking", "Joints", "Supports", "Tie", "deck", "sweep"} <= set(dir(extrados))
 
 
 def test_an_object_is_what_a_deck_says() -> None:
@@ -62,6 +68,7 @@ def test_an_object_is_what_a_deck_says() -> None:
         (lambda: extrados.Arch(radius=-1.0, thickness=1.0, embrace=90, voussoirs=7), "structure.radius: -1.0: input should be greater"),
         (lambda: extrados.Block(width="1,5 m", height=2), "'1,5 m' is not a quantity: .*decimal sign is a point"),
         (lambda: extrados.StepPulse(amplitude=0.5, duration=0.1), 'write "0.5 g"'),
+        (lambda: extrados.Arch(radius=math.nan, thickness=1.0, embrace=90, voussoirs=7), "radius: nan: input should be a finite number$"),
         (lambda: extrados.Joints(frction=0.5), "joints.frction: unknown key; did you mean 'friction'"),
         (lambda: extrados.deck(ARCH, extrados.Rocking()), r"rocking needs a \[motion\]"),
         (lambda: extrados.sweep(DECK, over={"structure.thickness": [1.2, -1.0]}), "structure.thickness: -1.0: input should"),
@@ -73,6 +80,12 @@ def test_an_object_is_what_a_deck_says() -> None:
 def test_errors_from_python_are_those_of_decks(wrong, words: str) -> None:
     with pytest.raises(extrados.DeckError, match=words):
         wrong()
+
+
+@pytest.mark.parametrize("how", [{"workers": 0}, {"workers": -2}, {"threads": 0}])
+def test_a_sweep_by_no_one_is_refused(how: dict[str, int]) -> None:
+    with pytest.raises(ValueError, match="expected 1 or more"):
+        extrados.sweep(DECK, over={"structure.thickness": [1.2]}, **how)
 
 
 def test_a_table_that_is_not_there_names_the_nearest() -> None:
@@ -133,6 +146,8 @@ def test_a_stopped_sweep_goes_on(tmp_path: Path) -> None:
 
     with pytest.raises(RuntimeError):
         extrados.sweep(DECK, over=over, progress=stop, resume=place)
+    code = f"from extrados.results.checkpoint import _hold; from pathlib import Path; _hold(Path({str(place)!r}))"
+    subprocess.run([sys.executable, "-c", code], check=True)  # another process may go on as well
     told: list[float] = []
     swept = extrados.sweep(DECK, over=over, progress=lambda done, total, text: told.append(done), resume=place)
     assert told[0] == 1 and swept.rows == extrados.sweep(DECK, over=over, progress=False).rows

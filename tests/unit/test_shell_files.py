@@ -142,6 +142,39 @@ def test_a_file_bears_as_the_plan_does(tmp_path):
     assert of_file.feet[0].vertical_N == pytest.approx(of_file.weight_N, rel=1e-9)
 
 
+def test_a_thicker_variant_is_thicker_in_all_groups(tmp_path):
+    """Its coefficient is that of a deck whose groups are told so, not that of the default thickness alone."""
+    written(tmp_path, "msh")
+    deck = """
+        [structure]
+        kind = "mesh"
+        file = "corner.msh"
+        thickness = {default}
+        groups = [{{ name = "front", thickness = {front} }}, {{ name = "ground", support = "fixed" }}]
+        [material]
+        tensile_strength = "20 kPa"
+        fracture_energy = "5 N/m"
+        [[analysis]]
+        kind = "pushover"
+        ripple = 0.2
+        events = 40
+        mesh.layers = 3
+        {more}
+    """
+    found = []
+    for name, default, front, more in (
+        ("told", 0.6, 0.4, ""),
+        ("variant", 0.3, 0.2, 'variants = [{ name = "thick", thickness = 2.0 }]'),
+    ):
+        path = tmp_path / f"{name}.toml"
+        path.write_text(textwrap.dedent(deck).format(default=default, front=front, more=more))
+        found.append(extrados.run(path).results[0].results)
+    told, varied = found
+    (thick,) = varied.variants
+    assert thick.greatest_base_shear_N == pytest.approx(told.greatest_load_N, rel=1e-9)
+    assert thick.greatest_base_shear_N > 1.5 * varied.greatest_load_N
+
+
 def test_a_membrane_is_a_floor(tmp_path):
     """Level elements that do not bend: nodes of theirs alone only move in their plane."""
     xyz, one, two, ground, _ = corner()

@@ -16,15 +16,16 @@ KN, KS, MU, C, GII = 82e9, 36e9, 0.75, 0.35e6, 125.0  # J4D: Pa/m, Pa/m, -, Pa, 
 
 def one_joint(
     pressure: float, *, proportional: float = 0.0, law: str = "exponential", ripple: float = 0.1, friction: float = MU,
-    cohesion: float = C, slip: float = 4e-3, events: int = 2000,
+    cohesion: float = C, slip: float = 4e-3, events: int = 2000, tension: float = 0.0,
 ):  # fmt: skip
     """Shear of 1 m x 1 m of joint whose upper side moves as one: constant `pressure` [Pa], and `proportional` Pa of
-    pressure for each Pa of shear."""
+    pressure for each Pa of shear; a `tension` that softens, or none that limits."""
     xy = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [0.0, 0.0]])
     free = Freedoms.make(4, [(n, d) for n in (0, 1) for d in (0, 1)], [[(2, d, 1.0), (3, d, 1.0)] for d in (0, 1)])
     joint = Joints(
         np.array([[0, 1, 2, 3]]), np.array([[0.0, 1.0]]), np.array([[0.5, 0.5]]), KN, KS, friction,
         cohesion=Softening(cohesion, GII, law, ripple) if cohesion else None, dry=not cohesion, small=1.0,
+        tension=Softening(tension, 18.0, law, ripple) if tension else None,
     )  # fmt: skip
     constant, reference = np.zeros((4, 2)), np.zeros((4, 2))
     constant[2, 1], reference[2] = -pressure, [1.0, -proportional]
@@ -59,6 +60,20 @@ def test_a_joint_follows_coulomb_under_constant_pressure(pressure: float, law: s
     slip = found.monitors[-1, 0] - found.load[-1] / KS
     assert found.dissipated[-1] == pytest.approx(GII + MU * pressure * slip, rel=0.03)
     assert found.ledger_error < 1e-9
+    # The first slip hands over to friction what it carries, and creates no energy
+    assert (np.diff(found.dissipated) > -1e-9 * found.external.max()).all()
+
+
+def test_a_joint_that_is_pulled_has_no_friction() -> None:
+    """Tension takes mu sigma from the cohesion, before the first slip and after it, and nothing acts against the bond."""
+    pull, ripple = 0.05e6, 0.05
+    found = one_joint(-pull, tension=0.25e6, ripple=ripple)
+    assert found.load[0] == pytest.approx(C * (1.0 + ripple) - MU * pull, rel=0.01)
+    held = found.equilibrium
+    slip = np.maximum(found.monitors[:, 0] - C / KS, 0.0)
+    assert (found.load[held] <= (C * np.exp(-C * slip / GII) - MU * pull + 2.0 * ripple * C)[held]).all()
+    assert held.sum() > 10 and (np.diff(found.dissipated) > -1e-9 * found.external.max()).all()
+    assert found.reason == "mechanism" and found.load[held][-1] < 0.5 * C  # torn, as the bond is one
 
 
 def test_a_joint_follows_coulomb_under_proportional_pressure() -> None:

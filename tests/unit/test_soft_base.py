@@ -383,6 +383,19 @@ def test_what_it_leaves_out_is_refused(tables: dict, word: str, kind: str) -> No
     assert word in reason
 
 
+@pytest.mark.parametrize("ratio", [0.5, -0.5])
+def test_the_turn_at_the_start_counts(ratio: float) -> None:
+    """Of a block that is let go it is the greatest, to the last bit and not of the first step's end."""
+    tables = {
+        "structure": BLOCK, "supports": {"stiffness": "50 MPa/m", "damping_ratio": 0.3}, "initial": {"rotation_ratio": ratio},
+        "motion": {"kind": "sine-pulse", "amplitude": "0.001 g", "period": 0.2},
+    }  # fmt: skip
+    alone = extrados.run({**tables, "analysis": {"kind": "rocking", "end_time": 2.0}})["rocking"]
+    many = extrados.run({**tables, "analysis": {"kind": "fragility", "count": 1}})["fragility"]
+    assert alone.peak_rotation_ratio == pytest.approx(0.5, rel=1e-12)
+    assert many.mean_peak_rotation_ratio == pytest.approx(0.5, rel=1e-12)
+
+
 GENERATED = {"kind": "generated", "mmi": 8, "duration": 4.0, "seed": 4}
 
 

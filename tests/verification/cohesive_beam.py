@@ -66,9 +66,11 @@ class Path:
         return int(self.load.argmax())
 
     def opening_after_peak(self, part: float) -> float:
-        """Opening where the load has fallen to a part of its peak [m]."""
-        fall = slice(self.peak, None)
-        return float(np.interp(-part * self.load[self.peak], -self.load[fall], self.opening[fall]))
+        """Opening where the load has fallen to a part of its peak [m]; between two states a power of it."""
+        fall = np.log(self.load[self.peak :] / self.load[self.peak])
+        if not fall[-1] < np.log(part):
+            raise ValueError(f"the crack ends at {np.exp(fall[-1]):.3f} of the peak load, above {part}")
+        return float(np.exp(np.interp(-np.log(part), -fall, np.log(self.opening[self.peak :]))))
 
 
 def _rectangle(a: float, b: float, young: float, nu: float) -> np.ndarray:

@@ -16,7 +16,7 @@ def changed(data: Any, path: str, value: Any) -> Any:
     place: Any = data
     *way, last = path.split(".")
     for part in way:
-        if isinstance(place, list) and part.isdigit() and int(part) < len(place):
+        if isinstance(place, list) and part.isdecimal() and int(part) < len(place):
             place = place[int(part)]
         elif isinstance(place, dict):
             place = place.setdefault(part, {})

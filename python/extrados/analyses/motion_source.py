@@ -72,11 +72,20 @@ def _try(make: Callable[[], Motion], notes: list[str] | None = None) -> Ground |
     return motion.ground
 
 
+def how_many(context: Context) -> int | None:
+    """Motions that the deck has; None where there are as many as are asked for. Refused where a suite has none."""
+    model = context.deck.motion
+    if isinstance(model, models.Generated | models.Compatible):
+        return None
+    try:
+        return len(suite_members(model, context.deck.folder)) if isinstance(model, models.Suite) else 1
+    except RecordError as error:
+        raise Refused(str(error), ("motion",)) from None
+
+
 def source_of(context: Context, seed: int | None, duration: float | None = None) -> tuple[Source, int | None]:
     """The motions of the deck and how many there are (None: as many as asked for); Refused where there are none."""
     model, folder = context.deck.motion, context.deck.folder
-    if duration is not None and not isinstance(model, models.Generated):
-        raise Refused("durations need a [motion] of kind 'generated'")
     try:
         if isinstance(model, models.Generated):
             if duration is not None:

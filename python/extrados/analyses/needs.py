@@ -23,7 +23,7 @@ Need = Callable[[], Any]
 #: Keys that ask for solids
 SPATIAL = ("direction", "rose", "pyramids")
 #: Rooms whose kinds need more than all do
-ROOMS = ("limit", "rocking", "statistics", "codes", "motion", "dem", "sla", "shell")
+ROOMS = ("limit", "rocking", "statistics", "codes", "motion", "dem", "sla", "shell", "assess")
 
 
 def complaints(context: Context, options: Analysis, building: Building) -> list[str]:

@@ -27,6 +27,8 @@ def written(deck: Deck) -> str:
     lines = [f'"""{_words(title)}: by extrados {VERSION}; units N, m, kg, s. The model stands under its weight at the end."""', "",
              "import openseespy.opensees as ops", "", "ops.wipe()"]  # fmt: skip
     assert deck.structure is not None
+    for what, key in deck.building.special_keys.items():
+        raise BadGeometry(f"OpenSees is given no {what} here: leave it out of the deck", key)
     if deck.structure.rocks_as == "block" and len(deck.building.blocks().mass) == 1:
         lines += _block(deck)
     else:
@@ -53,6 +55,8 @@ def _block(deck: Deck) -> Iterator[str]:
     if not isinstance(model, BlockModel):
         raise BadGeometry("OpenSees takes one rigid block here", ("structure",))
     block, friction = model.block, deck.building.friction()
+    if block.slope:
+        raise BadGeometry("OpenSees is given a block on level ground here", ("structure", "base_slope"))
     mass, inertia, height = float(block.mass[0]), float(block.inertia[0]), float(block.centre_height)
     toes = {"right": float(block.toe_right), "left": -float(block.toe_left)}
     stiffness = HARD * mass * GRAVITY / height
@@ -78,11 +82,14 @@ def _block(deck: Deck) -> Iterator[str]:
 
 def _mesh(mesh: Mesh) -> Iterator[str]:
     """Elements in plane stress, elastic; joints of no thickness as contacts of their pairs of nodes."""
+    for word in ("ties", "bars"):
+        if getattr(mesh, word):
+            raise BadGeometry(f"OpenSees is given no {word} of a wall here: leave them out", ("structure", word))
     yield '\nops.model("basic", "-ndm", 2, "-ndf", 2)'
     for k, (x, y) in enumerate(mesh.xy.tolist(), 1):
         yield f"ops.node({k}, {x!r}, {y!r})"
-    for k in _held(mesh):
-        yield f"ops.fix({k + 1}, 1, 1)"
+    for k, fixed in sorted(_held(mesh).items()):
+        yield f"ops.fix({k + 1}, {int('x' in fixed)}, {int('y' in fixed)})"
     for k, material in enumerate(mesh.materials, 1):
         yield f'ops.nDMaterial("ElasticIsotropic", {k}, {material.young!r}, {material.poisson!r}, {material.density!r})'
     number, weight = 0, np.zeros(len(mesh.xy))
@@ -112,12 +119,16 @@ def _mesh(mesh: Mesh) -> Iterator[str]:
             yield f"ops.load({k}, 0.0, {-force!r})"
 
 
-def _held(mesh: Mesh) -> list[int]:
-    """Nodes on the ground: those of the stones, else of the lowest edge."""
-    if mesh.ground is not None:
-        return sorted(set(np.asarray(mesh.ground).ravel().tolist()))
-    low, size = mesh.low[1], mesh.high[1] - mesh.low[1]
-    return np.flatnonzero(mesh.xy[:, 1] < low + 1e-9 * size).tolist()
+def _held(mesh: Mesh) -> dict[int, set[str]]:
+    """The nodes that are held, with their directions: those of the stones on the ground, and those of [[supports.held]]."""
+    held = {} if mesh.ground is None else {int(node): set("xy") for node in np.ravel(mesh.ground)}
+    for k, support in enumerate(mesh.held):
+        key = ("supports", "held", k)
+        if support.stiffness is not None:
+            raise BadGeometry("OpenSees is given rigid supports here: leave out stiffness", (*key, "stiffness"))
+        for node in mesh.nodes_at(support, f"supports.held[{k}]").tolist():
+            held.setdefault(node, set()).update(support.fix)
+    return held
 
 
 def _weights(mesh: Mesh, group: ElementGroup) -> np.ndarray:

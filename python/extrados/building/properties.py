@@ -221,7 +221,7 @@ class Supports(Table):
     )
     rebound: Annotated[float, Field(ge=0, le=1)] | None = key(
         None, "rate after over rate before it is thrown back by the wall; default, of a block, three impacts: of the far toe, of "
-        "the top on the wall, of the near toe, which is an upper bound", source="Sorrentino and others 2011, from memory, to be verified",
+        "the top on the wall, of the near toe, which is an upper bound", source="three balances of angular momentum, derived here",
     )  # fmt: skip
     held: list[Held] = key(
         [], "held nodes of finite-element meshes, [[supports.held]]; default the bottom edge, or the joints on the ground",

@@ -5,6 +5,7 @@ import hashlib
 import re
 import tomllib
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 from typing import Any, get_args
 
@@ -318,10 +319,7 @@ class _Checker:
         if sort == "extra_forbidden" and (path[0], place[-1]) in MOVED and len(place) == 1:
             self.complain(at, f"has moved to {MOVED[path[0], place[-1]]}")
         elif sort == "extra_forbidden":
-            known = _table_at(model, place[:-1]).model_fields
-            home = next((name for name, there in PROPERTIES.items() if place[-1] in there.model_fields), "")
-            hint = f"; it belongs in [{home}]" if home and home != path[0] else _nearest(str(place[-1]), known)
-            self.complain(at, f"unknown key{hint}")
+            self.complain(at, f"unknown key{_home(model, str(path[0]), place)}")
         elif sort == "missing":
             known = _table_at(model, place[:-1]).model_fields
             about = known[place[-1]].description if place and place[-1] in known else ""
@@ -344,9 +342,9 @@ class _Checker:
             wanted = f"at least {limits['min_length']}" if sort == "too_short" else f"at most {limits['max_length']}"
             self.complain(at, f"{_shown(problem.get('input'))}: expected {wanted}, found {limits['actual_length']}")
         else:
-            unit = _unit(model, place)
-            texts = dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems)
-            self.complain(at, f"{_shown(problem.get('input'))}: {', or '.join(texts)}{f' {unit}' if unit else ''}")
+            told = ", or ".join(dict.fromkeys(p["msg"][0].lower() + p["msg"][1:] for p in problems))
+            unit = _unit(model, place) if told[-1].isdigit() else ""  # of a bound
+            self.complain(at, f"{_shown(problem.get('input'))}: {told}{f' {unit}' if unit else ''}")
 
     def fits(self, analysis: Analysis, data: dict[str, Any], path: tuple) -> None:
         """Complain where the deck lacks what an analysis looks at."""
@@ -382,6 +380,25 @@ def _place(problem: ErrorDetails) -> tuple:
     last = rest[-1:] if problem["type"] in ("extra_forbidden", "missing") else ()
     rest = rest[: len(rest) - len(last)]
     return (*first, *(p for p in rest if isinstance(p, int) or not _is_branch(p)), *last)
+
+
+def _home(model: type[Table], section: str, place: tuple) -> str:
+    """Where an unknown key belongs: in another section, in a table of this one, or as another word."""
+    key, known = str(place[-1]), _table_at(model, place[:-1]).model_fields
+    if home := next((name for name, there in PROPERTIES.items() if key in there.model_fields and name != section), ""):
+        return f"; it belongs in [{home}]"
+    within = (name for name, field in known.items() if (t := _table_in(field.annotation)) and key in t.model_fields)
+    if home := next(within, ""):
+        return f"; it belongs in {'.'.join((section, *(str(p) for p in place[:-1] if not isinstance(p, int)), home))}"
+    if section in PROPERTIES and key in _of_analyses():
+        return "; it belongs in the [[analysis]] table"
+    return _nearest(key, known)
+
+
+@cache
+def _of_analyses() -> frozenset[str]:
+    """The keys of all analyses."""
+    return frozenset(key for kind in kinds.ANALYSES for key in kinds.table("analysis", kind).model_fields)
 
 
 def _table_at(model: type[Table], place: tuple) -> type[Table]:

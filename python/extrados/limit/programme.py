@@ -366,12 +366,21 @@ class LimitAnalysis:
         """True where an admissible thrust line exists, upright or at a given gamma."""
         try:
             if self._crush is not None:  # without a cost the tangent planes of crushing would be sought all around
-                most, least = (-d * self.optimise(self._gamma_cost(-d), (-BOUND, BOUND))[0].value for d in (1.0, -1.0))
-                return least <= gamma <= most
+                return self._greatest(-1) <= gamma <= self._greatest(1)
             self.optimise(np.zeros(self.system.unknowns), (gamma, gamma))
         except NoEquilibrium:
             return False
         return True
+
+    def _greatest(self, direction: int) -> float:
+        """Greatest gamma to +x (1) or -x (-1) that forces bear under crushing, however joints slide.
+
+        Walls go by the interior-point method, which takes the curve of strength itself: with many tangent planes a linear
+        programme of theirs may not come to an end.
+        """
+        if isinstance(self.system, Sparse) and self._cone is not None and (found := self._interior(direction)):
+            return found[0].gamma
+        return -direction * self.optimise(self._gamma_cost(-float(direction)), (-BOUND, BOUND))[0].value
 
     def thrust(self, joints: list[int], gamma: float = 0.0) -> tuple[State, State]:
         """States of least and greatest horizontal thrust of a chain, across its `thrust_joint`, at a fixed gamma."""

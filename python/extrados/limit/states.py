@@ -14,6 +14,8 @@ HINGE = 1e-4
 NO_WORK = 1e-9
 # Joints that move less than this part of the fastest block are at rest.
 AT_REST = 1e-7
+# Of the greatest compression of a joint: a force this small is rounding, and needs no friction.
+NO_FORCE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -32,8 +34,10 @@ class State:
 
     @property
     def friction(self) -> np.ndarray:
-        """Coefficient of friction needed at each joint."""
-        return np.abs(self.shear) / np.maximum(self.normal, 1e-12 * self.normal.max())
+        """Coefficient of friction needed at each joint; none where it carries nothing."""
+        most = self.normal.max()
+        carries = np.hypot(self.normal, self.shear) > NO_FORCE * most
+        return np.where(carries, np.abs(self.shear) / np.maximum(self.normal, 1e-12 * most), 0.0)
 
     def points(self, assembly: Assembly) -> np.ndarray:
         """Where the thrust line meets the joints (joints, 2) [m]."""

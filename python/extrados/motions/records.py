@@ -58,24 +58,37 @@ def list_suite(names: list[str] | None, pattern: str | None, subfolder: str | No
     root = folder.resolve()
     if names is not None:
         found = [locate(name, folder) for name in names]
-    elif pattern is not None:
-        if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
-            raise RecordError(f"{pattern}: leads out of the deck's folder")
-        try:
-            found = sorted(p for p in root.glob(pattern) if p.is_file())
-        except (ValueError, NotImplementedError) as error:
-            raise RecordError(f"{pattern}: is no pattern: {error}") from None
     else:
-        inside = locate(subfolder or ".", folder)
-        if not inside.is_dir():
-            raise RecordError(f"{inside}: no such folder")
-        found = sorted(p for p in inside.iterdir() if p.is_file() and p.suffix.lower() in SUFFIXES)
+        try:
+            found = _matching(pattern, root) if pattern is not None else _records_in(locate(subfolder or ".", folder))
+        except OSError as error:  # a name that is too long, a folder that may not be read
+            raise RecordError(f"{pattern or subfolder}: cannot be searched: {error.strerror}") from None
     if not found:
         raise RecordError(f"{folder}: no records match {pattern or subfolder or names}")
     if len(found) > MOST_RECORDS:
         raise RecordError(f"{folder}: {len(found)} records, a suite has at most {MOST_RECORDS}")
     # told from the deck's folder on, so that the door asks of each whether it lies within
     return [p.relative_to(root) if p.is_relative_to(root) else p for p in found]
+
+
+def _matching(pattern: str, root: Path) -> list[Path]:
+    """The files below `root` that match, sorted."""
+    asked = Path(pattern)
+    if asked.is_absolute() or ".." in asked.parts:
+        raise RecordError(f"{pattern}: leads out of the deck's folder")
+    if not asked.parts:  # "." and "./", which Path.glob of Python 3.11 answers by errors of its own
+        raise RecordError(f"{pattern}: is no pattern: it names no file")
+    try:
+        return sorted(p for p in root.glob(pattern) if p.is_file())
+    except ValueError as error:
+        raise RecordError(f"{pattern}: is no pattern: {error}") from None
+
+
+def _records_in(folder: Path) -> list[Path]:
+    """The files of a folder that have the suffix of a record, sorted."""
+    if not folder.is_dir():
+        raise RecordError(f"{folder}: no such folder")
+    return sorted(p for p in folder.iterdir() if p.is_file() and p.suffix.lower() in SUFFIXES)
 
 
 def acceleration_of(record: Record, treatment: Treatment, source: str = "") -> tuple[np.ndarray, float, list[str]]:

@@ -26,11 +26,11 @@ def draw_local_mechanism(run: Stored, name: str, folder: Path) -> list[tuple[str
                 label="straight, to d_0*",
             )
             ax.axvline(
-                r.ultimate_displacement_m, color=style.THRUST, linewidth=1.0, linestyle=":", label="d_u* = 0.4 d_0*"
+                r.ultimate_displacement_m, color=style.THRUST, linewidth=1.0, linestyle=":", label="d_SLV = 0.4 d_0*"
             )
         check = r.checks.get("NTC nonlinear")
         if check is not None and check.demand is not None:
-            ax.axvline(check.demand, color="#d98200", linewidth=1.2, label="S_De(T_s)")
+            ax.axvline(check.demand, color="#d98200", linewidth=1.2, label="asked: S_D(T_SLV)")
         ax.set_xlim(0.0, None)
         ax.set_ylim(0.0, None)
         ax.set_xlabel("displacement d* [m]")

@@ -23,6 +23,10 @@ STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
 MOST_NAMED = 12  # bars that a legend still names
 NOTHING = 1e-3  # of the greatest stress: less is drawn as none
+#: A curve is drawn as far as so many times the way to nearly its greatest load
+MOST_PLATEAU = 20.0
+#: Part of the wall by which a state has moved that came apart
+APART = 0.05
 
 
 def _polygons(run: Stored, name: str, xy: np.ndarray) -> list[np.ndarray]:
@@ -184,20 +188,30 @@ def _curve(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         there = [p for p in PREFIXES if f"{p}envelope_load" in run.arrays[name]]
         far = np.concatenate([get(f"{p}envelope_displacement") for p in there])
         loads = np.concatenate([get(f"{p}event_load")[get(f"{p}event_equilibrium") > 0] for p in there])
-        ax.set_xlim(1.05e3 * min(far.min(), 0.0), 1.05e3 * max(far.max(), 1e-12))
+        least, most = min(far.min(), 0.0), max(far.max(), 1e-12)
+        enough = max(near_the_peak(*(get(f"{p}envelope_{n}") for n in ("displacement", "load"))) for p in there)
+        cut = most > MOST_PLATEAU * enough > 0.0
+        ax.set_xlim(1.05e3 * max(least, -MOST_PLATEAU * enough) if cut else 1.05e3 * least,
+                    1.05e3 * (MOST_PLATEAU * enough if cut else most))  # fmt: skip
         if len(loads):
             if "measured_greatest" in run.arrays[name]:
                 loads = np.append(loads, get("measured_greatest"))
             low, high = min(loads.min(), 0.0), max(loads.max(), 0.0)
             ax.set_ylim((low - 0.08 * (high - low)) / 1e3, (high + 0.08 * (high - low)) / 1e3)
         ax.axhline(0.0, color="#999", linewidth=0.5)
-        ax.set_xlabel("control displacement [mm]")
+        ax.set_xlabel(f"control displacement [mm]{f', goes on to {1e3 * most:.0f}' if cut else ''}")
         ax.set_ylabel("load [kN]")
         ax.legend()
         return style.save(fig, folder, f"{name}-curve"), (
             "Load against displacement: every event (thin), the monotone envelope and its bilinear idealisation; grey, the "
             "steps of an incremental solution of the same deck, if there is one."
         )
+
+
+def near_the_peak(displacement: np.ndarray, load: np.ndarray) -> float:
+    """How far an envelope had come from its start when it first bore nearly all of its greatest load [m]."""
+    there = int(np.argmax(load >= 0.98 * load.max()))
+    return float(abs(displacement[there] - displacement[0]))
 
 
 def _measured(run: Stored, name: str, ax: Axes, here: bool) -> None:
@@ -245,7 +259,7 @@ def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str
 
 def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, int, str]], file: str) -> str:
     """Cracks of some states: how the names of their arrays begin, number, words. One magnification and one scale of
-    widths for the series."""
+    widths for the series; what came apart has a magnification of its own, and cracks beyond the scale."""
     reach = "point_reach" if "point_reach" in run.arrays[name] else "point_band"
     xy, at, reach = (run.array(name, n) for n in ("node", "point_xy", reach))
     span = np.ptp(xy, axis=0)
@@ -253,15 +267,20 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
     def get(prefix: str, what: str, s: int) -> np.ndarray:
         return run.array(name, f"{prefix}state_{what}")[s]
 
-    factor = _scale(span, np.concatenate([get(prefix, "displacement", s) for prefix, s, _ in shown]))
-    most = max(float(get(prefix, f"width_{d}", s).max()) for prefix, s, _ in shown for d in "ns")
+    moves = [get(prefix, "displacement", s) for prefix, s, _ in shown]
+    apart = [bool(np.abs(moved).max() > APART * span.max()) for moved in moves]
+    whole = [k for k in range(len(shown)) if not apart[k]] or list(range(len(shown)))
+    common = _scale(span, np.concatenate([moves[k] for k in whole]))
+    widest = [max(float(get(prefix, f"width_{d}", s).max()) for d in "ns") for prefix, s, _ in shown]
+    most = max(widest[k] for k in whole)
     edges = _outline(run, name)
     with _panels(span, len(shown)) as (fig, axes):
         drawn = None
         for ax in axes[len(shown) :]:
             ax.set_axis_off()
-        for ax, (prefix, s, words) in zip(axes, shown, strict=False):
-            moved, load = get(prefix, "displacement", s), get(prefix, "load", s)
+        for k, (ax, (prefix, s, words)) in enumerate(zip(axes, shown, strict=False)):
+            moved, load = moves[k], get(prefix, "load", s)
+            factor = common if k in whole else _scale(span, moved)
             shape = xy + factor * moved
             _wall(ax, _polygons(run, name, shape), facecolors="white", edgecolors="#e4e4e4")
             ax.add_collection(LineCollection(shape[edges], colors=style.EDGE, linewidths=0.7))
@@ -277,7 +296,7 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
                 half = 0.42 * reach[wide][:, None] * np.column_stack([np.cos(along), np.sin(along)])
                 lines = LineCollection(
                     np.stack([place[wide] - half, place[wide] + half], axis=1), cmap=CRACKS,
-                    norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * width[wide] / most,
+                    norm=Normalize(0.0, 1e3 * most), linewidths=0.5 + 2.0 * np.minimum(width[wide] / most, 1.0),
                 )  # fmt: skip
                 lines.set_array(1e3 * width[wide])
                 ax.add_collection(lines)
@@ -285,7 +304,8 @@ def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, in
             style.section_axes(ax)
             ax.set_title(f"{words}, {load / 1e3:.4g} kN\ndisplacements x {factor:g}")
         if drawn is not None:
-            fig.colorbar(drawn, ax=list(axes), shrink=0.7, label="crack width [mm]")
+            beyond = "max" if max(widest) > 1.001 * most else "neither"
+            fig.colorbar(drawn, ax=list(axes), shrink=0.7, label="crack width [mm]", extend=beyond)
         return style.save(fig, folder, file)
 
 

@@ -63,6 +63,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
             color=style.THRUST,
             label="collapse",
         )
+        ax.set_axisbelow(True)
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
         ax.set_xlabel("greatest rotation over the critical rotation")
         ax.set_ylabel("share of the motions [%]")
@@ -216,6 +217,7 @@ def _sensitivity(run: Stored, name: str, folder: Path) -> tuple[str, str]:
                 ax.barh(place + shift, index, 0.34, color=color, label=text)
                 bars = np.maximum([index - low, high - index], 0.0)
                 ax.errorbar(index, place + shift, xerr=bars, fmt="none", ecolor="k", capsize=2, linewidth=0.8)
+            ax.set_axisbelow(True)
             ax.set_title(title)
             ax.set_xlabel("share of the variance (Sobol index)")
             ax.axvline(0.0, color="k", linewidth=0.8)
@@ -328,6 +330,7 @@ def _durations(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
         )
         right.set_ylim(-0.02, 1.02)
         right.set_ylabel("probability of collapse")
+        right.set_title("share that falls, 95 % interval")
         for ax in (left, right):
             ax.set_xlabel("duration of the motion t_d [s]")
         return [
@@ -447,6 +450,7 @@ def draw_code_checks(run: Stored, name: str, folder: Path) -> list[tuple[str, st
     with style.figure(6.5, 0.6 + 0.35 * len(rows)) as (fig, (ax,)):
         for k, (_, value, code) in enumerate(rows):
             ax.barh(k, value, color=style.STONE if not code else style.THRUST if value > 1.0 else style.SAFE)
+        ax.set_axisbelow(True)
         ax.axvline(1.0, color="k", linewidth=0.9)
         ax.set_yticks(range(len(rows)), [rule for rule, _, _ in rows])
         ax.invert_yaxis()

@@ -14,7 +14,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import AutoLocator, MaxNLocator
 
 STONE, EDGE, THRUST, HINGE, GROUND, SAFE = "#e8e2d4", "#6b6355", "#b3261e", "#1f4e79", "#3b7a57", "#3b7a57"
 MODES = ("#f4f1ea", "#cfe3d6", "#f2c28b", "#c8553d")
@@ -104,6 +104,18 @@ def legend_above(ax: Axes, handles: list | None = None, labels: list[str] | None
 def numbers(axis: Axis) -> None:
     """Ticks at whole numbers only: joints, events."""
     axis.set_major_locator(MaxNLocator(integer=True))
+
+
+class InnerLocator(AutoLocator):
+    """Ticks away from the ends of an axis whose limits follow its size ("datalim"): the layout, which settles that size,
+    leaves no room for a number that only then comes to stand at the edge."""
+
+    CLEAR = 0.05  # of the axis, at each end
+
+    def tick_values(self, vmin: float, vmax: float) -> np.ndarray:
+        ticks = super().tick_values(vmin, vmax)
+        clear = self.CLEAR * (vmax - vmin)
+        return ticks[(ticks >= vmin + clear) & (ticks <= vmax - clear)]
 
 
 #: Energies below this are rounding, in J

@@ -76,15 +76,20 @@ class LocalMechanism(Checked):
 
     mechanism: str = fact("which")
     multiplier: float = fact(
-        "alpha_0, the horizontal multiplier of the weights that starts it", source="NTC 2018 C8.7.1"
+        "alpha_0, the horizontal multiplier of the weights that starts it", source="Circ. 7/2019 C8.7.1.2.1"
     )
-    participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="NTC 2018 C8.7.1")
+    participating_mass_kg: float = fact("M*, of the equivalent oscillator", "kg", source="Circ. 7/2019 C8.7.1.2.1")
     participating_part: float = fact("e* = g M* over the weights that sway")
-    activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="NTC 2018 C8.7.1")
+    activation_acceleration_g: float = fact("a_0* = alpha_0 g/(e* FC)", "g", source="Circ. 7/2019 C8.7.1.2.1")
     zero_displacement_m: float | None = fact("d_0*, at which the multiplier vanishes; null: at none", "m")
-    ultimate_displacement_m: float | None = fact("d_u* = 0.4 d_0*", "m")
-    secant_period_s: float | None = fact("T_s, at d_s* = 0.4 d_u*", "s")
+    ultimate_displacement_m: float | None = fact("d_SLV = 0.4 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
+    collapse_displacement_m: float | None = fact("d_SLC = 0.6 d_0*", "m", source="Circ. 7/2019 C8.7.1.2.1.6")
+    equivalent_period_s: float | None = fact(
+        "T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) on the straight capacity curve", "s", source="Circ. 7/2019 C8.7.1.2.1.8"
+    )
     swaying_weight_N: float = fact("weights that sway", "N")
     floor_acceleration_g: float = maybe(
-        "of a place above the ground: acceleration there, the demand of the linear check", "g"
+        "of a place above the ground: a_Z, the acceleration there, the demand of the linear check",
+        "g",
+        source="Circ. 7/2019 C7.2.3",
     )

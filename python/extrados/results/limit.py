@@ -249,7 +249,7 @@ class JointOpening(ResultModel):
     slip_mm: float = fact("how far it slides", "mm")
 
 
-class Supports(KindResults):
+class MovingSupports(KindResults):
     """supports: what opens where supports give way; of an arch, until it falls."""
 
     movement_at_fall_m: float = maybe("movement of the support at which the arch falls", "m")

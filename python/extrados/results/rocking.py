@@ -154,8 +154,12 @@ class AtAmplitudes(ResultModel):
     """Shortest failing pulses at given amplitudes."""
 
     amplitudes_g: list[float] = fact("amplitudes of the pulses", "g")
-    mode_I_durations_s: list[float | None] = fact("shortest that brings it down in either mode; null: none", "s")
-    mode_II_durations_s: list[float | None] = fact("shortest that does without an impact; null: none", "s")
+    mode_I_durations_s: list[float | None] = fact(
+        "shortest that brings it down in either mode; null: none up to the longest of `durations`", "s"
+    )
+    mode_II_durations_s: list[float | None] = fact(
+        "shortest that does without an impact; null: none up to the longest of `durations`", "s"
+    )
 
 
 class FailureDomain(KindResults):

@@ -212,6 +212,9 @@ def sweep(
     resume: str | Path | None = None,
 ) -> Sweep:
     """See `extrados.sweep`."""
+    for name, number in (("workers", workers), ("threads", threads)):
+        if isinstance(number, int) and number < 1:
+            raise ValueError(f"{name} = {number}: expected 1 or more")
     keys, rows, shape = _members(over)
     _refuse(deck, keys, rows, shape)
     scheduler = workers if isinstance(workers, str) else ""
@@ -227,10 +230,12 @@ def sweep(
     context = Context(whole, each, tell, out=out, resume=again, scheduler=scheduler)
     try:
         found = in_batches(context, "members", job, len(rows), "members", slow=True, processes=count)
+        if out is not None and found.complete:
+            checkpoint.discard(out)
     finally:
         bar.stop()
-    if out is not None and found.complete:
-        checkpoint.discard(out)
+        if out is not None:
+            checkpoint.let_go(out)
     return _told(deck, job, shape, found)
 
 

@@ -39,8 +39,6 @@ FINE = 16
 
 def run(context: Context, options: Assess) -> Result:
     """The table of verdicts, their agreement, the reasons, and one overall statement; its parts are analyses of the run."""
-    if sum(a.kind == "assess" for a in context.deck.analyses) > 1:
-        raise Refused("a deck holds one assess: give another hazard a deck of its own")
     work = _Work(context, options)
     result = Result("assess")
     try:

@@ -137,6 +137,7 @@ def _codes(asked: Asked) -> Choice:
     if asked.building.structure.rocks_as == "piers":
         raise LeftOut("the pier rules need axial_load: give options.code-checks")
     own = asked.building.structure.kind in (CodeChecks.structures or ())
+    own = own and set(asked.building.special_keys) <= set(CodeChecks.bears)
     keys: dict[str, Any] = {} if own else {"mechanism": "building"}
     words = "" if own else "the local mechanism that limit analysis finds; "
     kind = None if own else "local-mechanism"
@@ -146,8 +147,8 @@ def _codes(asked: Asked) -> Choice:
         )
     if isinstance(asked.context.deck.motion, Compatible):
         return Choice(keys, f"{words}the spectrum that the motions match", 0.0, kind)
-    told = f"{words}a_g S is the peak of the motion; no spectrum is given"
-    return Choice({**keys, "peak_acceleration": f"{asked.peak_g!r} g"}, told, 0.0, kind)
+    told = f"{words}no spectrum of a code is given, the demand is that of the motion itself: its peak and its response spectrum"
+    return Choice({**keys, "motion_spectrum": True}, told, 0.0, kind)
 
 
 def _sla(asked: Asked) -> Choice:

@@ -5,13 +5,16 @@ from typing import Any
 
 import numpy as np
 
-from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, more_piers, ntc, piers, west
+from extrados.analyses.codes import ntc
+from extrados.analyses.codes.code_rules import Line, asce43, housner, ishiyama, more_piers, piers, west
 from extrados.analyses.codes.tables import CodeChecks
 from extrados.analyses.context import Context, Refused
 from extrados.building.templates.block import BlockAssembly
+from extrados.core import motion as core_motion
 from extrados.core import rocking as core_rocking
 from extrados.motions.code_spectra import damping_factor
 from extrados.motions.from_deck import code_spectrum
+from extrados.motions.motion import Motion
 from extrados.motions.tables import Compatible
 from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
@@ -74,20 +77,19 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     model = rocker.model
     context.warnings += model.warnings
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
-    spectrum = spectrum_of(context, options.spectrum)
-    pga, sd, sa = None, None, None
+    spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum)
+    pga, sa, pgv = None, None, options.peak_velocity
+    if options.motion_spectrum and pgv is None:
+        pgv = float(core_motion.measures(*_sampled(context.motion)).pgv[0])
     if spectrum is not None:
         pga = spectrum(0.0, 0.05) / GRAVITY
-
-        def sd(period: float, damping: float) -> float:
-            return spectrum(period, damping) * (period / (2.0 * np.pi)) ** 2
 
         def sa(period: float, damping: float) -> float:
             return spectrum(period, damping) / GRAVITY
 
     if options.peak_acceleration is not None:
         pga = options.peak_acceleration / GRAVITY
-    beside: dict[str, Any] = {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": options.peak_velocity}
+    beside: dict[str, Any] = {"peak_ground_acceleration_g": pga, "peak_ground_velocity_m_s": pgv}
     if context.deck.motion is not None:
         motion = context.motion
         context.warnings += motion.notes
@@ -98,8 +100,13 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
         )  # fmt: skip
         beside |= {"dynamic_outcome": dynamic.outcome, "dynamic_peak_rotation_ratio": dynamic.peak_ratio}
     alpha = float(model.alpha.min())
+    # one body: all its mass takes part (e* = 1); d* is the displacement of the centre of mass
+    alpha0 = float(np.tan(alpha))
+    a0 = alpha0 * GRAVITY / options.confidence_factor
     lines = [
-        west(float(np.tan(alpha)), pga), *ishiyama(width, height, pga, options.peak_velocity), *ntc(model, pga, options.behaviour_factor, options.confidence_factor, sd),
+        west(alpha0, pga), *ishiyama(width, height, pga, pgv),
+        *ntc.checks(a0, block.centre_height * alpha0, options.behaviour_factor, None if pga is None else pga * GRAVITY, spectrum,
+                    f"alpha_0 {alpha0:.4g}, e* 1, q {options.behaviour_factor:g}"),
         asce43(width, height, sa),
     ]  # fmt: skip
     if options.pulse_period is not None:
@@ -126,6 +133,32 @@ def spectrum_of(context: Context, model: CodeSpectrum | None) -> Callable[[float
         return value * (damping_factor(damping) if five else 1.0)
 
     return at
+
+
+def demanded_spectrum(
+    context: Context, model: CodeSpectrum | None, of_motion: bool
+) -> Callable[[float, float], float] | None:
+    """That of the code, see `spectrum_of`; where the deck has none and asks for it, that of its motion."""
+    code = spectrum_of(context, model)
+    if code is not None or not of_motion:
+        return code
+    if context.deck.motion is None:
+        raise Refused("motion_spectrum needs a [motion]", ("analysis", "motion_spectrum"))
+    motion = context.motion
+    acceleration, step = _sampled(motion)
+
+    def at(period: float, damping: float) -> float:
+        if period < 10.0 * step:  # too stiff to answer otherwise than the ground
+            return motion.peak
+        return float(core_motion.response_spectra(acceleration, step, [period], [damping]).psa[0, 0])
+
+    return at
+
+
+def _sampled(motion: Motion) -> tuple[np.ndarray, float]:
+    """Accelerations [m/s^2] and their step [s]."""
+    time, acceleration = motion.series()
+    return acceleration, float(time[1] - time[0])
 
 
 def _wall(context: Context, options: CodeChecks) -> list[Line]:

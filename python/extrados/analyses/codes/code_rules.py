@@ -1,13 +1,14 @@
 """Rules of codes and simple formulas for rocking bodies and wall piers, each with its source.
 
-Clauses marked "verify clause" are quoted from memory of the standards: compare with the text before use.
+Clauses marked "verify clause" are quoted from memory of the standards: compare with the text before use. The others were
+read: the Circolare in its text, ASCE 41-13 in the worked example of *Advanced Design Examples of Seismic Retrofit of
+Structures*, section 2.7.5, whose equations are quoted.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from extrados.building.rockers.block import BlockModel
 from extrados.schema.constants import GRAVITY
 
 
@@ -55,35 +56,6 @@ def ishiyama(width: float, height: float, pga: float | None, pgv: float | None) 
         Line("Ishiyama acceleration", "PGA", width / height, pga, "g", source, note, "Ishiyama"),
         Line("Ishiyama velocity", "PGV", float(speed), pgv, "m/s", source, note, "Ishiyama"),
     )
-
-
-def ntc(model: BlockModel, pga: float | None, q: float, fc: float, sd) -> list[Line]:
-    """Linear and nonlinear kinematic checks of a local mechanism: one body, all its mass takes part (e* = 1)."""
-    b = model.block
-    alpha0 = float(np.tan(model.alpha.min()))
-    a0 = alpha0 / fc
-    # d* is the displacement of the centre of mass; it vanishes the multiplier at the rotation alpha.
-    d0 = b.centre_height * alpha0
-    lines = [
-        Line(
-            "NTC linear (ground level)",
-            "a_g S",
-            a0 * q,
-            pga,
-            "g",
-            "NTC 2018 C8.7.1.2.1: a0* >= a_g S/q (verify clause)",
-            code="NTC 2018",
-        ),
-    ]
-    d_u = 0.4 * d0
-    d_s = 0.4 * d_u
-    a_s = a0 * GRAVITY * (1.0 - d_s / d0)
-    t_s = 2.0 * np.pi * float(np.sqrt(d_s / a_s))
-    lines.append(
-        Line("NTC nonlinear", "displacement", d_u, None if sd is None else sd(t_s, 0.05), "m",
-             "Circ. 617/2009 C8A.4.2.2: d_u* = 0.4 d_0* >= S_De(T_s) (verify clause)", f"T_s = {t_s:.3f} s", "NTC 2018")
-    )  # fmt: skip
-    return lines
 
 
 def asce43(width: float, height: float, sa) -> Line:
@@ -186,10 +158,19 @@ def more_piers(
     stress = load / area
     effective = height / 2.0 if double else height
     factor = 1.0 if double else 0.5
+    # Gravity loads count 1.1 times where they press (ASCE 41-13 Eq. 7-1)
+    pressed = 1.1 * stress
+    book = "as in Advanced Design Examples of Seismic Retrofit of Structures, Eq."
+    toes = (factor * axial + 0.5 * weight) * width / height
     lines = [
-        Line("ASCE 41 rocking of a pier", "lateral strength", 0.9 * (factor * axial + 0.5 * weight) * width / height, None, "N",
-             "ASCE 41-13: V_r = 0.9 (alpha P_D + 0.5 P_W) L/h_eff, alpha 0.5 free, 1 fixed at the top (as in the worked example of "
-             "Advanced Design Examples of Seismic Retrofit of Structures, Eq. 2.31)"),
+        Line("ASCE 41 rocking of a pier", "lateral strength", 0.9 * toes, None, "N",
+             f"ASCE 41-13: V_r = 0.9 (alpha P_D + 0.5 P_W) L/h_eff, alpha 0.5 free, 1 fixed at the top ({book} 2.31)"),
+        Line("ASCE 41 bed-joint sliding", "lateral strength", 0.5 * (0.75 * cohesion * area + axial), None, "N",
+             f"ASCE 41-13: V_bjs1 = 0.75 (0.75 v_te + P_D/A_n)/1.5 A_n, v_te = cohesion ({book} 2.33)"),
+        Line("ASCE 41 sliding once cracked", "lateral strength", 0.5 * axial, None, "N",
+             f"ASCE 41-13: V_bjs2 = 0.5 P_D, what is left of it ({book} 2.34)"),
+        Line("ASCE 41 toe crushing", "lateral strength", toes * max(0.0, 1.0 - pressed / (0.7 * strength)), None, "N",
+             f"ASCE 41-13: V_tc = (alpha P_D + 0.5 P_W) L/h_eff (1 - f_a/(0.7 f_m)), f_a of 1.1 times the loads ({book} 2.35)"),
         Line("EN 1998-3 flexure", "lateral strength", max(0.0, width * load / (2.0 * effective) * (1.0 - 1.15 * stress / strength)), None,
              "N", "EN 1998-3:2005 C.4.2.1: V_f = D N (1 - 1.15 nu_d)/(2 H_0) (verify clause)"),
     ]  # fmt: skip
@@ -200,8 +181,11 @@ def more_piers(
     if diagonal is not None:
         b = min(max(height / width, 1.0), 1.5)
         tension = 1.5 * diagonal
-        lines.append(
+        beta = min(max(width / height, 0.67), 1.0)
+        lines += [
             Line("NTC diagonal cracking", "lateral strength", area * tension / b * float(np.sqrt(1.0 + stress / tension)), None, "N",
-                 "NTC 2018, Circ. 7/2019 C8.7.1.16: V_t = l t (1.5 tau_0/b) sqrt(1 + sigma_0/(1.5 tau_0)), 1 <= b = h/l <= 1.5 (verify clause)")
-        )  # fmt: skip
+                 "NTC 2018, Circ. 7/2019 [C8.7.1.16]: V_t = l t (1.5 tau_0/b) sqrt(1 + sigma_0/(1.5 tau_0)), 1 <= b = h/l <= 1.5"),
+            Line("ASCE 41 diagonal tension", "lateral strength", beta * area * tension * float(np.sqrt(1.0 + pressed / tension)), None, "N",
+                 f"ASCE 41-13: V_dt = f_dt A_n beta sqrt(1 + f_a/f_dt), f_dt = 1.5 tau_0, 0.67 <= beta = L/h_eff <= 1 ({book} 2.36)"),
+        ]  # fmt: skip
     return lines

@@ -35,6 +35,11 @@ class Overturning:
     weights: tuple[Weight, ...]
     pushes: tuple[Push, ...] = ()
 
+    @property
+    def alone(self) -> "Overturning":
+        """Without what holds it back: the actions whose presence until collapse is certain (Circ. 7/2019 C8.7.1.2.1.6)."""
+        return Overturning(self.weights, tuple(p for p in self.pushes if p.force > 0.0))
+
     def multiplier(self, rotation: float = 0.0) -> float:
         """alpha at a rotation [rad], by the work of all forces in a further small one; at rest alpha_0."""
         c, s = np.cos(rotation), np.sin(rotation)
@@ -63,22 +68,26 @@ class Overturning:
 @dataclass(frozen=True)
 class Capacity:
     """alpha0; mass M* [kg]; part e*; acceleration a0* [m/s^2] before the confidence factor; d0 [m]: d0* at which the
-    multiplier vanishes, None where it does not."""
+    multiplier vanishes, None where it does not; alone: a0* without what holds it back, from which the curve falls to d0."""
 
     alpha0: float
     mass: float
     part: float
     acceleration: float
     d0: float | None
+    alone: float
 
 
-def capacity(alpha0: float, weight: np.ndarray, displacement: np.ndarray, ultimate: float | None) -> Capacity:
+def capacity(
+    alpha0: float, weight: np.ndarray, displacement: np.ndarray, ultimate: float | None, alone: float | None = None
+) -> Capacity:  # fmt: skip
     """Of a mechanism whose swaying weights [N] move sideways by `displacement` in a unit of its coordinate, and which
     vanishes at `ultimate` of it: M* = (sum P d)^2 / (g sum P d^2), e* = g M*/sum P, a0* = alpha0 g/e*,
-    d* = d sum P d^2 / sum P d over the same unit."""
+    d* = d sum P d^2 / sum P d over the same unit; alone: its multiplier without what holds it back, where that is another."""
     first, second = float(weight @ displacement), float(weight @ displacement**2)
     mass = first**2 / (GRAVITY * second)
     part = GRAVITY * mass / float(weight.sum())
     return Capacity(
-        alpha0, mass, part, alpha0 * GRAVITY / part, None if ultimate is None else abs(ultimate * second / first)
-    )
+        alpha0, mass, part, alpha0 * GRAVITY / part, abs(ultimate * second / first) if ultimate else None,
+        (alpha0 if alone is None else alone) * GRAVITY / part,
+    )  # fmt: skip

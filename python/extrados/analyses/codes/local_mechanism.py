@@ -4,22 +4,25 @@ from collections.abc import Callable
 
 import numpy as np
 
-from extrados.analyses.codes.code_checks import spectrum_of
+from extrados.analyses.codes import ntc
+from extrados.analyses.codes.code_checks import demanded_spectrum
 from extrados.analyses.codes.code_rules import Line
 from extrados.analyses.codes.kinematics import Capacity, capacity
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.limit.common import limit_of
+from extrados.analyses.limit.tables import Tilt
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.mechanism import MechanismModel
+from extrados.building.rockers.restraints import Restraints, members_of
 from extrados.core.errors import CoreError
+from extrados.core.restraints import FREE
 from extrados.limit.linkage import laden
 from extrados.results import codes as out
 from extrados.results.model import Array, Result, TableData
 from extrados.schema.constants import GRAVITY
 
-#: d_u* over d_0*, and d_s* over d_u*
-ULTIMATE, SECANT = 0.4, 0.4
 #: ASCE 41 height over thickness up to which no out-of-plane check is asked, for S_X1 up to 0.24 g, up to 0.37 g, above
 SLENDER = {"one-story": (20, 16, 13), "first": (20, 18, 15), "top": (14, 14, 9), "other": (20, 16, 13)}
 STEPS = 61
@@ -31,25 +34,31 @@ def run(context: Context, options: LocalMechanism) -> Result:
     if options.mechanism == "building":
         found, curve, words = _of_building(context)
     else:
+        if options.mechanism == "corner" and material.compressive_strength is not None:
+            context.warnings.append("a corner turns about its outer edge, as if the stone did not crush there")
         body = overturning(options, material.density, material.compressive_strength)
         alpha0 = body.multiplier()
         weight, displacement = body.swaying
-        end = body.ultimate()
-        found = capacity(alpha0, weight, displacement, end)
+        end, alone = body.ultimate(), body.alone
+        found = capacity(alpha0, weight, displacement, alone.ultimate(), alone.multiplier())
         turned = np.linspace(0.0, end if end else 0.1, STEPS)
         scale = float(weight @ displacement**2) / float(weight @ displacement)
         curve = (turned * scale, np.array([body.multiplier(q) for q in turned]))
         words = f"the {options.mechanism}"
     if found.alpha0 <= 0.0:
         raise Refused(f"{words} does not stand at rest: its multiplier is {found.alpha0:.3g}")
+    if found.d0 is None and found.alone <= 0.0:
+        context.warnings.append(
+            "without its ties it would not stand at rest: the nonlinear check, which does not count on them, is left out"
+        )
     lines, more = _checks(context, options, found)
     a0 = found.acceleration / options.confidence_factor
     d0 = found.d0
-    period = None if d0 is None else _secant(a0, d0)
     r = out.LocalMechanism(
         mechanism=options.mechanism, multiplier=found.alpha0, participating_mass_kg=found.mass, participating_part=found.part,
         activation_acceleration_g=a0 / GRAVITY, zero_displacement_m=d0,
-        ultimate_displacement_m=None if d0 is None else ULTIMATE * d0, secant_period_s=period,
+        ultimate_displacement_m=None if d0 is None else ntc.SLV * d0, collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
+        equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / options.confidence_factor, d0),
         swaying_weight_N=found.mass * GRAVITY / found.part,
         checks={x.rule: out.Check(capacity=x.capacity, demand=x.demand, unit=x.unit, verdict=x.verdict, source=x.source, note=x.note, code=x.code)
                 for x in lines}, **more,
@@ -73,76 +82,106 @@ def run(context: Context, options: LocalMechanism) -> Result:
 
 
 def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarray], str]:
-    """The weaker of both collapse mechanisms of the deck's stones, with its finite motion."""
-    structure = context.building.structure
-    if structure is None:
-        raise Refused('mechanism = "building" needs a [structure]')
-    stones: Assembly = context.building.blocks()
+    """The weaker of the collapse mechanisms of the deck's stones that no wall stops, with its finite motion."""
+    building = context.building
+    assert building.structure is not None
+    stones: Assembly = building.blocks()
     model = MechanismModel(stones)
-    side = int(np.argmin(model.uplift))
     mass, _, _ = laden(stones)
-    try:
-        table = model.tables[side]
-    except CoreError as error:
-        raise Refused(f"the mechanism cannot be carried through its motion: {error}") from None
-    field = model.fields[side][:, 0] * (1.0, -1.0)[side]
-    found = capacity(model.uplift[side], mass * GRAVITY, field, table.critical)
-    turned = np.linspace(0.0, table.critical, STEPS)
-    c = model.coefficients((1, -1)[side], turned)
-    alpha = c.gravity_moment / (c.drive * GRAVITY)
     weight = mass * GRAVITY
+    reach = tuple((float(t.numbers[2]), float(t.numbers[3])) for t in model.tables)
+    held = Restraints(members_of(building, stones, model.linkages), model.linkages, (reach[0], reach[1]))
+    wall = building.supports.abutting_wall
+    curves = {}
+    for side in (k for k, against in enumerate(("right", "left")) if wall != against):
+        try:
+            table = model.tables[side]
+        except CoreError as error:
+            raise Refused(f"the mechanism cannot be carried through its motion: {error}") from None
+        turned = np.linspace(0.0, table.critical, STEPS)
+        c = model.coefficients((1, -1)[side], turned)
+        drive = np.abs(c.drive) * GRAVITY
+        curves[side] = (turned, (np.abs(c.gravity_moment) + _held(held, side, turned)) / drive, table.critical)
+    side = min(curves, key=lambda k: float(curves[k][1][0]))
+    turned, alpha, critical = curves[side]
+    if held.members and len(stones.mass) > 1:
+        context.warnings.append(
+            "the mechanism is the one without ties, dampers and added hinges, which then hold it: an upper bound"
+        )
+    words = f"the mechanism of the {building.structure.word}"
+    slides = _sliding(context, tuple(curves), float(alpha[0]))
+    if slides is not None:
+        context.warnings.append(
+            f"its joints slide, at a friction of {building.joints.friction}, before it turns (multiplier {float(alpha[0]):.4g} without "
+            "sliding): the displacement that it bears is not known"
+        )
+        multiplier, field = slides
+        return (
+            capacity(multiplier, weight, field, None),
+            (np.zeros(1), np.array([multiplier])),
+            f"{words}, which slides,",
+        )
+    field = model.fields[side][:, 0] * (1.0, -1.0)[side]
+    found = capacity(float(alpha[0]), weight, field, critical, model.uplift[side])
     scale = abs(float(weight @ field**2) / float(weight @ field))
-    return found, (turned * scale, np.abs(alpha)), f"the mechanism of the {structure.word}"
+    return found, (turned * scale, alpha), words
 
 
-def _secant(a0: float, d0: float) -> float:
-    """T_s = 2 pi sqrt(d_s*/a_s*), on the straight capacity curve."""
-    d_s = SECANT * ULTIMATE * d0
-    return float(2.0 * np.pi * np.sqrt(d_s / (a0 * (1.0 - d_s / d0))))
+def _sliding(context: Context, sides: tuple[int, ...], turning: float) -> tuple[float, np.ndarray] | None:
+    """Multiplier of limit analysis with the deck's friction, and the sideways velocities of its mechanism; None where sliding
+    does not make it less than `turning`, that of the mechanism which turns."""
+    building = context.building
+    stones = building.blocks()
+    mass, place, _ = laden(stones)
+    limit = limit_of(building, Tilt(kind="tilt"))
+    found = []
+    for side in sides:
+        state, mechanism = limit.collapse((1, -1)[side])
+        move = mechanism.velocity
+        found.append((abs(state.gamma), move[:, 0] - move[:, 2] * (place - stones.centroid)[:, 1]))
+    multiplier, sideways = min(found, key=lambda one: one[0])
+    if multiplier > 0.99 * turning:
+        return None
+    return multiplier, sideways * np.sign(mass @ sideways)
+
+
+def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:
+    """Moment [N m] at each rotation by which ties, slipping dampers and hinges hold it back, all at what they bear."""
+    if not held.members:
+        return np.zeros(len(rotation))
+    _, slope = held.paths(side, rotation)
+    moment = np.zeros(len(rotation))
+    for k, member in enumerate(held.members):
+        law = member.law
+        bound = np.where(slope[:, k] > 0.0, law.most, -law.least) if law.stiffness > 0.0 else np.zeros(len(rotation))
+        if (bound >= FREE).any():
+            raise Refused(f"{member.name} never yields: give the force that its anchorage bears", ("ties",))
+        moment += bound * np.abs(slope[:, k])
+    return moment
 
 
 def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple[list[Line], dict[str, float]]:
-    spectrum = spectrum_of(context, options.spectrum)
+    spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum)
     a_g = spectrum(0.0, 0.05) if spectrum is not None else None
     if options.peak_acceleration is not None:
         a_g = options.peak_acceleration
-    pga = None if a_g is None else a_g / GRAVITY
-    a0 = found.acceleration / options.confidence_factor
-    q = options.behaviour_factor
-    lines = [
-        Line("NTC linear (at the ground)", "a_g S", a0 / GRAVITY * q, pga, "g",
-             "NTC 2018, Circ. 7/2019 C8.7.1.2.1: a_0* >= a_g S/q (verify clause)", f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}, q {q:g}",
-             "NTC 2018"),
-    ]  # fmt: skip
-    more: dict[str, float] = {}
-    if found.d0 is not None:
-        period = _secant(a0, found.d0)
-        demand = None if spectrum is None else spectrum(period, 0.05) * (period / (2.0 * np.pi)) ** 2
-        floor = _floor(options, spectrum, period)
-        if floor is not None and demand is not None:
-            demand = max(demand, floor[1])
+    q, height = options.behaviour_factor, options.building_height
+    at_height = None
+    if spectrum is not None and options.base_height > 0.0 and height is not None:
+        at_height = ntc.floor(spectrum, options.base_height, height, options.storeys, options.building_period)
+    note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}, q {q:g}"
+    if height is not None:
+        note += f", z/H {options.base_height / height:.3g}"
+    fc = options.confidence_factor
+    lines = ntc.checks(found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc)
+    more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
+    if height is not None and options.base_height > 0.0 and a_g is not None:
+        part = a_g / GRAVITY * (3.0 * (1.0 + options.base_height / height) / 2.0 - 0.5)
         lines.append(
-            Line("NTC nonlinear", "displacement", ULTIMATE * found.d0, demand, "m",
-                 "Circ. 617/2009 C8A.4.2.2: d_u* = 0.4 d_0* >= S_De(T_s) (verify clause)", f"T_s {period:.3f} s", "NTC 2018")
+            Line("EN 1998-1 part of a building", "S_a", found.alpha0 * q, part, "g",
+                 "EN 1998-1:2004 4.3.5.2: S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5), T_a = 0; q_a = q (verify clause)",
+                 "rigid until it rocks", "EN 1998-1")
         )  # fmt: skip
-    if options.base_height > 0.0:
-        elevated = _floor(options, spectrum, 0.0)
-        acceleration = None if elevated is None else elevated[0] / GRAVITY
-        if acceleration is not None:
-            more["floor_acceleration_g"] = acceleration
-        # at a height both linear checks must hold: told as a code of its own
-        lines.append(
-            Line("NTC linear (at height z)", "S_e(T_1) psi gamma", a0 / GRAVITY * q, acceleration, "g",
-                 "Circ. 617/2009 C8A.4.2.3: a_0* >= S_e(T_1) psi(Z) gamma/q, psi = Z/H, gamma = 3 N/(2 N + 1) (verify clause)",
-                 f"z/H {options.base_height / (options.building_height or 1.0):.3g}", "NTC 2018 at height")
-        )  # fmt: skip
-        if pga is not None:
-            part = pga * (3.0 * (1.0 + options.base_height / (options.building_height or 1.0)) / 2.0 - 0.5)
-            lines.append(
-                Line("EN 1998-1 part of a building", "S_a", found.alpha0 * q, part, "g",
-                     "EN 1998-1:2004 4.3.5.2: S_a = a_g S (3 (1 + z/H)/(1 + (1 - T_a/T_1)^2) - 0.5), T_a = 0; q_a = q (verify clause)",
-                     "rigid until it rocks", "EN 1998-1")
-            )  # fmt: skip
     if options.one_second_acceleration is not None and options.thickness and options.height:
         s_x1 = options.one_second_acceleration / GRAVITY
         limit = SLENDER[options.storey][0 if s_x1 <= 0.24 else 1 if s_x1 <= 0.37 else 2]
@@ -153,21 +192,6 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
     if options.mechanism in ("parapet", "wall", "gable") and options.thickness and options.height:
         lines.append(_nzsee(options, spectrum))
     return lines, more
-
-
-def _floor(
-    options: LocalMechanism, spectrum: Callable[[float, float], float] | None, period: float
-) -> tuple[float, float] | None:
-    """Acceleration S_e(T_1) psi gamma [m/s^2], and the displacement at the secant period [m], of a place above the ground."""
-    height = options.building_height
-    if spectrum is None or options.base_height <= 0.0 or height is None:
-        return None
-    first = options.building_period or 0.05 * height**0.75
-    psi, gamma = options.base_height / height, 3.0 * options.storeys / (2.0 * options.storeys + 1.0)
-    acceleration = spectrum(first, 0.05) * psi * gamma
-    ratio = period / first
-    de = spectrum(first, 0.05) * (first / (2.0 * np.pi)) ** 2
-    return acceleration, de * psi * gamma * ratio**2 / np.sqrt((1.0 - ratio) ** 2 + 0.02 * ratio)
 
 
 def _nzsee(options: LocalMechanism, spectrum: Callable[[float, float], float] | None) -> Line:

@@ -17,16 +17,38 @@ NEEDS = {
 def overturning(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
     """The body above the hinge; lengths m, density kg/m^3, compressive strength Pa (None: the hinge is the outer edge).
 
-    The hinge lies within the wall where stone crushes, by 2 P/(3 f_d w): the resultant of a triangle of stress f_d.
+    The hinge lies within the wall where stone crushes, by 2 P/(3 f_d w): the resultant of a triangle of stress f_d. Refused, with
+    the key, where a size is missing or does not fit, and where nothing that sways has weight.
     """
+    _refuse_sizes(options)
+    body = _corner(options, density) if options.mechanism == "corner" else _upright(options, density, strength)
+    if not sum(w.weight for w in body.weights if w.sways) > 0.0:
+        raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
+    return body
+
+
+def _refuse_sizes(options: LocalMechanism) -> None:
     missing = [name for name in NEEDS[options.mechanism] if getattr(options, name) is None]
     if missing:
-        raise Refused(f"{options.mechanism} needs {' and '.join(missing)}")
-    if options.mechanism == "corner":
-        return _corner(options, density)
+        raise Refused(f"{options.mechanism} needs {' and '.join(missing)}", ("analysis",))
+    top = float(options.height or 0.0)
+    if options.hinge_height >= top:
+        raise Refused(
+            f"{options.hinge_height:g} m is not below the top of the wall, {top:g} m", ("analysis", "hinge_height")
+        )
+    for name, parts in (("floors", options.floors), ("ties", options.ties)):
+        for k, part in enumerate(parts):
+            if part.height > top:
+                raise Refused(
+                    f"{part.height:g} m is above the top of the wall, {top:g} m", ("analysis", name, k, "height")
+                )
+    if options.mechanism == "corner" and options.side_walls is not None:
+        raise Refused("both walls of a corner turn with it: leave side_walls out", ("analysis", "side_walls"))
+
+
+def _upright(options: LocalMechanism, density: float, strength: float | None) -> Overturning:
+    """A wall, a gable or a tower that turns about a hinge along it."""
     height, thickness = float(options.height or 0.0) - options.hinge_height, float(options.thickness or 0.0)
-    if height <= 0.0:
-        raise Refused(f"hinge_height {options.hinge_height:g} m is not below the top of the wall, {options.height:g} m")
     width = options.width or (thickness if options.mechanism == "tower" else 1.0)
     unit = density * GRAVITY * thickness
     if options.mechanism == "gable":
@@ -51,7 +73,7 @@ def overturning(options: LocalMechanism, density: float, strength: float | None)
     if strength is not None:
         setback = 2.0 * sum(w.weight for w in weights) / (3.0 * strength * width)
         if setback >= thickness / 2.0:
-            raise Refused("the weight alone crushes the wall at the hinge")
+            raise Refused("the weight alone crushes the wall at the hinge", ("material", "compressive_strength"))
         weights = [Weight(w.weight, w.arm - setback, w.height, w.sways) for w in weights]
     return Overturning(tuple(weights), tuple(pushes))
 

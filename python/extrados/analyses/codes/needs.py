@@ -1,8 +1,10 @@
-"""What the code checks need of a deck: a motion and a spectrum that can be read, of a wall what makes it a pier."""
+"""What the rules of codes need of a deck: a motion and a spectrum that can be read, of a wall what makes it a pier, of a
+mechanism its sizes."""
 
 from collections.abc import Iterator
 
-from extrados.analyses.codes.tables import CodeChecks
+from extrados.analyses.codes.mechanisms import overturning
+from extrados.analyses.codes.tables import CodeChecks, LocalMechanism
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.table import Analysis
@@ -11,9 +13,14 @@ from extrados.building.building import Building
 
 def needs(context: Context, options: Analysis) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
+    building, structure = context.building, context.building.structure
+    if isinstance(options, LocalMechanism):
+        if options.mechanism == "building":
+            yield lambda: _refuse_nothing(building)
+        else:
+            yield lambda: overturning(options, building.material.density, building.material.compressive_strength)
     if not isinstance(options, CodeChecks):
         return
-    building, structure = context.building, context.building.structure
     wall = structure is not None and structure.rocks_as == "piers"
     if wall:
         yield lambda: _refuse_wall(building, options)
@@ -27,6 +34,11 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
             yield lambda: spectrum_of(context, options.spectrum)(0.0, 0.05)
     if (wall or options.axial_load is not None) and building.material.compressive_strength is None:
         yield lambda: _refuse_weak()
+
+
+def _refuse_nothing(building: Building) -> None:
+    if building.structure is None:
+        raise Refused('"building" needs a [structure]', ("analysis", "mechanism"))
 
 
 def _refuse_wall(building: Building, options: CodeChecks) -> None:

@@ -22,9 +22,13 @@ class CodeChecks(BuildingAnalysis):
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
     peak_velocity: Velocity | None = key(None, "demand of Ishiyama's rule", gt=0)
+    motion_spectrum: bool = key(
+        False,
+        "where there is no spectrum of a code, take the response spectrum of the deck's motion, and its peak velocity",
+    )
     pulse_period: Time | None = key(None, "period of the sine whose half Housner's formula takes; asks for it", gt=0)
-    behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="NTC 2018, C8.7.1")
-    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="NTC 2018, C8.5.4")
+    behaviour_factor: float = key(2.0, "q of the linear check", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7")
+    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     axial_load: Force | None = key(None, "vertical load on top of the wall; asks for the pier rules", ge=0)
     thickness: Length | None = key(None, "thickness of the pier; default the depth of the block", gt=0)
     sliding_friction: float = key(
@@ -90,8 +94,11 @@ class LocalMechanism(BuildingAnalysis):
         source="EN 1998-1 3.2.2; NTC 2018 3.2.3",
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
-    behaviour_factor: float = key(2.0, "q of the linear checks", ge=1, le=6, source="NTC 2018, C8.7.1")
-    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="NTC 2018, C8.5.4")
+    motion_spectrum: bool = key(
+        False, "where there is no spectrum of a code, take the response spectrum of the deck's motion"
+    )
+    behaviour_factor: float = key(2.0, "q of the linear checks", ge=1, le=6, source="Circ. 7/2019, C8.7.1.2.1.7")
+    confidence_factor: float = key(1.35, "FC", ge=1, le=2, source="Circ. 7/2019, Table C8.5.IV")
     base_height: Length = key(
         0.0, "height z of the hinge's place above the foundation: above 0 the floor amplifies", ge=0
     )

@@ -25,8 +25,7 @@ def beta_for_restitution(building: Building, values: JointValues) -> float:
     where that is a number, else Housner's. Refused where no damping gives it: dashpots take what a blow without rebound takes
     (Housner 1963) at the most, and without them the block bounces."""
     block, joints = building.blocks(), building.joints
-    if not isinstance(block, BlockAssembly):
-        raise Refused('joints.damping = "restitution" is of a single block; say damping = "edge" and vary it')
+    assert isinstance(block, BlockAssembly)
     wanted = joints.restitution if isinstance(joints.restitution, float) else float(BlockModel(block).housner[0])
     if joints.energy_ratio is not None:
         wanted = float(np.sqrt(joints.energy_ratio))

@@ -129,14 +129,8 @@ class Model:
 
 
 def make_model(context: Context, options: DemTable) -> Model:
-    """The model of a deck; Refused where a block has no area or crosses itself, or where rigid contacts lack something."""
+    """The model of a deck; Refused where a block has no area or crosses itself."""
     building = context.building
-    if options.rigid:
-        for name in ("cohesion", "tension"):
-            if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
-                raise Refused(f'joints.{name}: rigid contacts (solver = "nonsmooth") know no mortar')
-        if building.supports.stiffness is not None:
-            raise Refused('supports.stiffness: rigid contacts (solver = "nonsmooth") know no springs')
     assembly = building.blocks()
     groups: tuple[tuple[int, ...], ...] = ()
     if options.merge == "three-bars":

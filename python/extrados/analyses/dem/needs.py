@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from functools import partial
 
+import numpy as np
+
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.dem import tables
 from extrados.analyses.dem.solid_model import refusals, refuse_stones
@@ -12,6 +14,7 @@ from extrados.building.errors import BadGeometry, Key
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.building.templates.arch import ArchAssembly
+from extrados.building.templates.block import BlockAssembly
 
 
 def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
@@ -28,6 +31,10 @@ def needs(context: Context, options: tables.DemTable) -> Iterator[Need]:
     yield building.refuse_mixture
     if options.merge == "three-bars":
         yield lambda: _refuse_bars(building)
+    if options.rigid:
+        yield lambda: _refuse_springs(building)
+    if building.joints.damping == "restitution" and building.joints.beta is None:
+        yield lambda: _refuse_restitution(building)
     if building.initial.movements:
         yield building.moved
     if isinstance(options, tables.Dem):
@@ -43,6 +50,20 @@ def _refuse_bars(building: Building) -> None:
         raise Refused('merge = "three-bars" needs an arch', key)
     if building.initial.rotation_ratio:
         raise Refused('[initial] rotation_ratio: glued voussoirs do not start rotated; merge = "none" does', key)
+
+
+def _refuse_springs(building: Building) -> None:
+    """Refused where rigid contacts are asked for what only springs have."""
+    for name in ("cohesion", "tension"):
+        if np.nanmax(building.joint_property(name), initial=0.0) > 0.0:
+            raise Refused('rigid contacts (solver = "nonsmooth") know no mortar', ("joints", name))
+    if building.supports.stiffness is not None:
+        raise Refused('rigid contacts (solver = "nonsmooth") know no springs', ("supports", "stiffness"))
+
+
+def _refuse_restitution(building: Building) -> None:
+    if not isinstance(building.blocks(), BlockAssembly):
+        raise Refused('"restitution" is of a single block; say damping = "edge" and vary it', ("joints", "damping"))
 
 
 def _needs_of_solids(context: Context, options: tables.Dem, stones: SolidAssembly) -> Iterator[Need]:

@@ -1,16 +1,17 @@
 """Runs of the core as one job of the batch layer: each run is a member, its histories are rows."""
 
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import astuple, dataclass, replace
 from functools import partial
-from typing import Any, overload
+from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
 
 from extrados.analyses.batches import Chain, stacked, sweep
 from extrados.analyses.context import Context
-from extrados.core import dem, dem3
+from extrados.core import dem, dem3, dem_run
 from extrados.core.calls import cancel_requested
 from extrados.core.errors import Cancelled, status_code
 from extrados.core.ground import Ground, as_motion_set
@@ -22,7 +23,11 @@ SOLIDS_FOR_THREADS = 60
 KEEP_SECONDS, ENDED = 10.0, 999_999_999_999
 NUMBERS = ("stop_time", "step", "critical_step", "residual")
 COUNTS = ("steps", "settling_steps", "searches", "most_pairs")
+HISTORIES = ("time", "place", "rate")
+OF_BODIES = ("settled", "bounces", "airborne")
 NO_CONTACTS = dem.Contacts(*(np.zeros(shape) for shape in ((0, 2), (0, 2), (0, 2), 0, 0)))
+
+Found = TypeVar("Found", bound=dem_run.FoundRun)
 
 
 @dataclass(frozen=True)
@@ -43,8 +48,29 @@ class Task:
         return output_times(self.options.end_time, self.options.output_step)
 
 
+class Job(ABC, Generic[Found]):
+    """Runs of one sort of bodies."""
+
+    @abstractmethod
+    def one(self, k: int, threads: int = 1) -> Found:
+        """A run, however it ends."""
+
+    @abstractmethod
+    def rows(self, found: Found) -> dict[str, np.ndarray]:
+        """The row of a run."""
+
+    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
+        def member(k: int) -> dict[str, np.ndarray]:
+            found = self.one(k, threads)
+            if found.interrupted:
+                raise Cancelled(status_code("cancelled"), "discrete elements interrupted")
+            return self.rows(found)
+
+        return stacked(member, first, count)
+
+
 @dataclass(frozen=True)
-class Runs:
+class Runs(Job[dem.Run]):
     """Member k is tasks[k]; all have as many bodies."""
 
     bodies: list[dem.Bodies]
@@ -63,7 +89,7 @@ class Runs:
         options = replace(task.options, threads=threads if many else 1)
         with (
             dem.Model(bodies, options, shift=task.shift, moves=task.moves) as model,
-            as_motion_set([task.ground or dem.STILL]) as motions,
+            as_motion_set([task.ground or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)
             found = model.run(motions, scale=task.scale, times=task.times, state=state, watch=told)
@@ -76,48 +102,16 @@ class Runs:
         """The row of a run; histories are as long as the longest that was asked for."""
         length = max(len(task.times) for task in self.tasks)
         return {
-            "reason": np.array(found.reason),
+            **recorded(found, length),
             "blamed": np.array([*found.blamed, -1, -1][:2]),
-            "points": np.array(len(found.time)),
-            "time": padded(found.time, length),
-            "place": padded(found.place, length),
-            "rate": padded(found.rate, length),
-            "energy": padded(np.stack([found.energy[name] for name in dem.ENERGIES], axis=-1), length),
-            "settled": found.settled,
-            "bounces": found.bounces,
-            "airborne": found.airborne,
             "effort": np.array(astuple(found.effort), dtype=float),
-            **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
         }
 
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem.Run:
         """The run of row k, but for the forces in its contacts at the end."""
         row = {name: values[k] for name, values in rows.items()}
-        points = int(row["points"])
-        return dem.Run(
-            reason=str(row["reason"]),
-            blamed=[int(b) for b in row["blamed"] if b >= 0],
-            time=row["time"][:points],
-            place=row["place"][:points],
-            rate=row["rate"][:points],
-            energy={name: row["energy"][:points, i] for i, name in enumerate(dem.ENERGIES)},
-            settled=row["settled"],
-            bounces=row["bounces"],
-            airborne=row["airborne"],
-            contacts=NO_CONTACTS,
-            effort=dem.Effort(*(int(v) for v in row["effort"][:-1]), float(row["effort"][-1])),
-            **{name: float(row[name]) for name in NUMBERS},
-            **{name: int(row[name]) for name in COUNTS},
-        )
-
-    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
-        def member(k: int) -> dict[str, np.ndarray]:
-            found = self.one(k, threads)
-            if found.interrupted:
-                raise Cancelled(status_code("cancelled"), "discrete elements interrupted")
-            return self.rows(found)
-
-        return stacked(member, first, count)
+        effort = dem.Effort(*(int(v) for v in row["effort"][:-1]), float(row["effort"][-1]))
+        return dem.Run(**record_of(row), contacts=NO_CONTACTS, effort=effort)
 
 
 @dataclass(frozen=True)
@@ -134,7 +128,7 @@ class SolidTask:
 
 
 @dataclass(frozen=True)
-class SolidRuns:
+class SolidRuns(Job[dem3.Run]):
     """Member k is tasks[k], all of the same bodies."""
 
     bodies: dem3.Solids
@@ -152,7 +146,7 @@ class SolidRuns:
         options = replace(task.options, threads=threads if len(self.bodies.mass) >= SOLIDS_FOR_THREADS else 1)
         with (
             dem3.Model(self.bodies, options) as model,
-            as_motion_set([task.ground or dem.STILL]) as motions,
+            as_motion_set([task.ground or dem_run.STILL]) as motions,
         ):
             told = None if watch is None else partial(watch, model)
             return model.run(motions, times=task.times, state=state, watch=told)
@@ -160,42 +154,44 @@ class SolidRuns:
     def rows(self, found: dem3.Run) -> dict[str, np.ndarray]:
         """The row of a run; histories are as long as the longest that was asked for."""
         length = max(len(task.times) for task in self.tasks)
-        energy = np.stack([found.energy[name] for name in dem3.ENERGIES], axis=-1)
-        histories = {"time": found.time, "place": found.place, "turn": found.turn, "rate": found.rate, "energy": energy}
         return {
-            "reason": np.array(found.reason),
+            **recorded(found, length),
             "blamed": np.array([*found.blamed, -1][:1]),
-            "points": np.array(len(found.time)),
-            **{name: padded(values, length) for name, values in histories.items()},
-            "settled": found.settled,
+            "turn": padded(found.turn, length),
             "settled_turn": found.settled_turn,
-            "bounces": found.bounces,
-            "airborne": found.airborne,
-            **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
         }
 
     def run_of(self, rows: dict[str, np.ndarray], k: int = 0) -> dem3.Run:
         """The run of row k."""
         row = {name: values[k] for name, values in rows.items()}
-        points = int(row["points"])
-        return dem3.Run(
-            reason=str(row["reason"]),
-            blamed=[int(b) for b in row["blamed"] if b >= 0],
-            energy={name: row["energy"][:points, i] for i, name in enumerate(dem3.ENERGIES)},
-            **{name: row[name][:points] for name in ("time", "place", "turn", "rate")},
-            **{name: row[name] for name in ("settled", "settled_turn", "bounces", "airborne")},
-            **{name: float(row[name]) for name in NUMBERS},
-            **{name: int(row[name]) for name in COUNTS},
-        )
+        return dem3.Run(**record_of(row), turn=row["turn"][: int(row["points"])], settled_turn=row["settled_turn"])
 
-    def run(self, first: int, count: int, threads: int) -> dict[str, np.ndarray]:
-        def member(k: int) -> dict[str, np.ndarray]:
-            found = self.one(k, threads)
-            if found.interrupted:
-                raise Cancelled(status_code("cancelled"), "discrete elements interrupted")
-            return self.rows(found)
 
-        return stacked(member, first, count)
+def recorded(found: dem_run.FoundRun, length: int) -> dict[str, np.ndarray]:
+    """What a row tells of a run of any bodies, but for who is to blame."""
+    energy = np.stack([found.energy[name] for name in dem_run.ENERGIES], axis=-1)
+    return {
+        "reason": np.array(found.reason),
+        "points": np.array(len(found.time)),
+        **{name: padded(getattr(found, name), length) for name in HISTORIES},
+        "energy": padded(energy, length),
+        **{name: getattr(found, name) for name in OF_BODIES},
+        **{name: np.array(getattr(found, name)) for name in NUMBERS + COUNTS},
+    }
+
+
+def record_of(row: dict[str, np.ndarray]) -> dict[str, Any]:
+    """The run that `recorded` told of, by the names of core.dem_run.FoundRun."""
+    points = int(row["points"])
+    return {
+        "reason": str(row["reason"]),
+        "blamed": [int(b) for b in row["blamed"] if b >= 0],
+        **{name: row[name][:points] for name in HISTORIES},
+        "energy": {name: row["energy"][:points, i] for i, name in enumerate(dem_run.ENERGIES)},
+        **{name: row[name] for name in OF_BODIES},
+        **{name: float(row[name]) for name in NUMBERS},
+        **{name: int(row[name]) for name in COUNTS},
+    }
 
 
 def output_times(end: float, step: float) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.limit.tables import Imperfections, Supports, Survey, Sweep
+from extrados.analyses.limit.tables import Imperfections, MovingSupports, Survey, Sweep
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.building.files import read
@@ -35,7 +35,7 @@ def _is_whole(model: Table | tuple[Table, ...], table: str, path: str) -> bool:
     held: Any = list(model) if isinstance(model, tuple) else model
     for part in path.split("."):
         if isinstance(held, list):
-            if not part.isdigit() or int(part) >= len(held):
+            if not part.isdecimal() or int(part) >= len(held):
                 raise Refused(f"vary: '{path}': expected a number from 0 to {len(held) - 1} in place of '{part}'", VARY)
             held = held[int(part)]
             place = type(held)
@@ -58,7 +58,7 @@ def _unit(table: type[Table], path: str) -> str:
     place: Any = table
     *way, last = path.split(".")
     for part in way:
-        if part.isdigit():
+        if part.isdecimal():
             continue
         annotation = place.model_fields[part].annotation
         place = next((a for a in getattr(annotation, "__args__", ()) if hasattr(a, "model_fields")), annotation)
@@ -155,7 +155,7 @@ def deviation_of(building: Building, options: Imperfections) -> float:
     return float(deviation)
 
 
-def refuse_still(building: Building, options: Supports) -> None:
+def refuse_still(building: Building, options: MovingSupports) -> None:
     """Refused where the deck moves nothing."""
     if building.initial.movements:
         movements_of(building)

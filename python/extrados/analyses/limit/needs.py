@@ -8,7 +8,7 @@ from extrados.analyses.limit import tables
 from extrados.analyses.limit.asked import deviation_of, refuse_still, sections_of, values_of
 from extrados.analyses.needs import Need, stones_of
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, Key
 from extrados.building.geometry.assembly import Assembly
 
 
@@ -17,6 +17,7 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
     building = context.building
     try:
         if not isinstance(stones_of(building, options), Assembly):
+            yield lambda: _refuse_of_sections(building, options)
             return  # solids have no loads, chains and trains
     except BadGeometry:
         return  # told already
@@ -27,6 +28,8 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
             yield lambda k=k, load=load: pieces(building.blocks(), load, k)
     if getattr(options, "fracture", False):
         yield functools.partial(refuse_fracture, building, options)
+    if getattr(options, "buttress_alone", False):
+        yield lambda: _refuse_alone(building)
     if getattr(options, "chain", None) is not None:
         from extrados.analyses.limit.applied import chain_of
 
@@ -42,8 +45,30 @@ def needs(context: Context, options: tables.BuildingAnalysis) -> Iterator[Need]:
             from extrados.analyses.limit.trains import fitting_train
 
             yield lambda: fitting_train(building, options)
-        case tables.Supports():
+        case tables.MovingSupports():
             yield lambda: refuse_still(building, options)
+
+
+def _refuse_of_sections(building: Building, options: tables.BuildingAnalysis) -> None:
+    """Refused where a deck asks of solids what is known in a plane section alone."""
+    assert isinstance(options, tables.Tilt)  # the others take sections alone
+    asked: dict[str, tuple[bool, Key]] = {
+        "[[ties]]": (bool(building.ties), ("ties", 0)),
+        "loads": (bool(options.load), ("analysis", "load", 0)),
+        "fracture": (options.fracture, ("analysis", "fracture")),
+        'friction_rule = "non-associated"': (options.friction_rule != "associated", ("analysis", "friction_rule")),
+        "crushing": (building.material.compressive_strength is not None, ("material", "compressive_strength")),
+    }
+    for what, (there, key) in asked.items():
+        if there:
+            raise Refused(f"tilt of solids does not reckon with {what}: leave it out, or look at a plane section", key)
+
+
+def _refuse_alone(building: Building) -> None:
+    if not building.blocks().buttresses:
+        raise Refused(
+            "needs a buttress that stands on the ground: a vault or an aisled vault", ("analysis", "buttress_alone")
+        )
 
 
 def refuse_fracture(building: Building, options: tables.LimitAnalysisTable) -> None:

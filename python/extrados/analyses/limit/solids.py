@@ -5,7 +5,6 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import named_places
 from extrados.analyses.limit.tables import Tilt
-from extrados.building.building import Building
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.solids.assembly import SolidAssembly
 from extrados.limit.errors import Immovable
@@ -29,7 +28,6 @@ def run(context: Context, options: Tilt) -> Result:
     """Capacity along a direction and back, the mechanism, the rose of capacities, what certifies them."""
     building = context.building
     assembly = building.solids()
-    _refuse(building, options)
     limit = SolidLimit(assembly, building.friction(assembly))
     word = building.structure.word  # type: ignore[union-attr]
     first = 0.0 if options.direction is None else options.direction
@@ -95,18 +93,6 @@ def scene_arrays(assembly: SolidAssembly) -> dict[str, Array]:
         "solid_centroid": Array(assembly.centroid, ("block", "axis3"), "m", "centroids of the stones"),
         **named_places("block", assembly.block_names, assembly.centroid, "centroids of the stones"),
     }  # fmt: skip
-
-
-def _refuse(building: Building, options: Tilt) -> None:
-    """Refused where the deck asks for what is known in a plane section alone."""
-    asked = {
-        "[[ties]]": bool(building.ties), "load": bool(options.load), "fracture": options.fracture,
-        'friction_rule = "non-associated"': options.friction_rule != "associated",
-        "compressive_strength": building.material.compressive_strength is not None,
-    }  # fmt: skip
-    for what, there in asked.items():
-        if there:
-            raise Refused(f"tilt of solids does not reckon with {what}: leave it out, or look at a plane section")
 
 
 def _stands(found: Programme | Falls | None, assembly: SolidAssembly, word: str) -> Programme:

@@ -7,7 +7,7 @@ import numpy as np
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.asked import movements_of, refuse_still
 from extrados.analyses.limit.common import geometry_arrays, spoken_ties, state_arrays, tie_arrays, tie_rows, ties_of
-from extrados.analyses.limit.tables import Supports
+from extrados.analyses.limit.tables import MovingSupports
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import GROUND, Assembly
 from extrados.building.geometry.chains import in_order, is_stack
@@ -34,7 +34,7 @@ def _place(arch: Assembly, hinge: tuple[int, str]) -> str:
     return place_of(arch, joint, (arch.p if side == "intrados" else arch.q)[joint])
 
 
-def run(context: Context, options: Supports) -> Result:
+def run(context: Context, options: MovingSupports) -> Result:
     """Joints that open; of an arch without ties the states on the way to its fall, how the thrust and the hinges change."""
     assembly = context.building.blocks()
     if context.building.initial.movements:
@@ -59,7 +59,7 @@ def run(context: Context, options: Supports) -> Result:
     touched = np.minimum(last.position, 1.0 - last.position) < 1e-5
     fourth = [int(k) for k in np.flatnonzero(touched) if k not in {h[0] for h in last.hinges}]
     result = Result("supports")
-    r = out.Supports(
+    r = out.MovingSupports(
         movement_at_fall_m=float(movement[-1]),
         movement_at_fall_over_span=float(movement[-1] / span),
         span_change_at_fall_ratio=float(
@@ -111,7 +111,7 @@ def run(context: Context, options: Supports) -> Result:
     return result
 
 
-def _right_support(assembly: Assembly, options: Supports) -> np.ndarray:
+def _right_support(assembly: Assembly, options: MovingSupports) -> np.ndarray:
     """The movement (joints, 3) of the right support: the rightmost joints on the ground, up to the first gap in plan.
 
     Refused where there is one support only.
@@ -159,7 +159,7 @@ def _any_structure(context: Context, movement: np.ndarray) -> Result:
         for j in moving[np.argsort(-wide[moving], kind="stable")].tolist()
     ]  # fmt: skip
     force = found.state.force(assembly)
-    result.results = out.Supports(
+    result.results = out.MovingSupports(
         openings=opened,
         work_J=found.work,
         work_gap_J=found.gap,

@@ -109,5 +109,6 @@ def run(context: Context, options: Survey) -> Result:
             f"; the weakest is {r.weakest} with {r.weakest_collapse_acceleration_g:.4f} g, "
             f"the median {r.median_collapse_acceleration_g:.4f} g"
         )
-    result.answer = text + f". {len(rows) - int(stand.sum())} rows carry a reason in survey.csv."
+    left = len(rows) - int(stand.sum())
+    result.answer = text + (f". Why {left} do{'es' if left == 1 else ''} not is told in survey.csv." if left else ".")
     return result

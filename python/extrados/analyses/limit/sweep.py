@@ -27,6 +27,8 @@ from extrados.limit.motion import finite_motion
 from extrados.results import limit as out
 from extrados.results.model import Array, Result, TableData
 
+#: Of the greatest capacity: by so little capacities differ that are the same but for rounding
+LEVEL = 1e-6
 # Of the range: how closely changes of mechanism and the optimum are found.
 CLOSE = 1e-7
 MOST_CHANGES = 40
@@ -296,13 +298,24 @@ def _examples(
 
 
 def _words(options: Sweep, r: out.Sweep) -> str:
-    best = f"{r.optimum_value:.4g}"
-    where = "an optimum at" if r.optimum_inside else "greatest at the end of the range,"
+    unit = f" {r.unit}" if r.unit else ""
+    best, most = f"{r.optimum_value:.4g}{unit}", r.optimum_collapse_acceleration_g
+    level = [
+        v
+        for v, g in zip(r.values, r.collapse_accelerations_g, strict=True)
+        if g is not None and abs(g - most) <= LEVEL * abs(most)
+    ]
     if r.locked_limits:
-        where = "greatest where it is nearly locked, at"
+        where = f"greatest where it is nearly locked, at {best}"
+    elif len(level) == len(r.values):
+        where = "the same throughout"
+    elif len(level) > 1:
+        where = f"greatest from {level[0]:.4g} to {level[-1]:.4g}{unit}"
+    else:
+        where = f"an optimum at {best}" if r.optimum_inside else f"greatest at the end of the range, {best}"
     text = (
-        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{f' {r.unit}' if r.unit else ''}: {where} {best} with "
-        f"{r.optimum_collapse_acceleration_g:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
+        f"{options.vary} from {r.values[0]:.4g} to {r.values[-1]:.4g}{unit}: {where}, with "
+        f"{most:.4f} g ({r.optimum_tilt_angle_deg:.2f} degrees). "
         f"{len(r.mechanisms)} mechanism{'s' if len(r.mechanisms) != 1 else ''}"
     )
     moves = [f"{c.before} to {c.after} at {c.value:.4g}" for c in r.changes if c.before and c.after]

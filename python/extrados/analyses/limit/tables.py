@@ -124,7 +124,7 @@ class Imperfections(LimitAnalysisTable):
     seed: int = key(1, "seed of the random numbers", ge=0)
 
 
-class Supports(BuildingAnalysis, Animated):
+class MovingSupports(BuildingAnalysis, Animated):
     """Supports that give way: the joints that open in any structure; an arch through its three-hinge states to its fall.
 
     What gives way is said by [[initial.movements]]; without them it is the right support.

@@ -264,7 +264,7 @@ def _told(r: out.NonDilatant) -> str:
     """The bounds and the spread of a state without dilatancy in words."""
     upper = "no load" if r.associated_g is None else f"{r.associated_g:.4f} g"
     lower = (
-        "nothing stands without friction" if r.frictionless_g is None else f"{r.frictionless_g:.4f} g without friction"
+        "nothing stands without friction" if r.frictionless_g is None else f"{r.frictionless_g:z.4f} g without friction"
     )
     return (
         f"Sliding does not dilate: it is the least of {len(r.starts_g)} states found, which spread over {r.spread_g:.4f} g; "

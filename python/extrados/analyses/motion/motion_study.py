@@ -110,8 +110,9 @@ def _run_one(context: Context, options: MotionStudy) -> Result:
     if abs(velocity[-1]) > 0.1 * np.abs(velocity).max() or abs(displacement[-1]) > 0.5 * np.abs(displacement).max(
         initial=1e-300
     ):
+        speed, way = (float(v[-1]) if abs(v[-1]) > 1e-9 * np.abs(v).max() else 0.0 for v in (velocity, displacement))
         result.warnings.append(
-            f"the motion drifts: it ends with {velocity[-1]:.3g} m/s and {displacement[-1]:.3g} m; "
+            f"the motion drifts: it ends with {speed:.3g} m/s and {way:.3g} m; "
             'a baseline correction (baseline = "quadratic") or low_cut takes that out'
         )
     husid = np.concatenate([[0.0], np.cumsum(0.5 * step * (a[1:] ** 2 + a[:-1] ** 2))])

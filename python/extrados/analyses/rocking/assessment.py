@@ -4,7 +4,7 @@ import numpy as np
 
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.rocking.common import rocker_of
-from extrados.analyses.rocking.criterion import Fit, fit_own, interpolated
+from extrados.analyses.rocking.criterion import CAP, Fit, fit_own, interpolated
 from extrados.analyses.rocking.tables import Assessment
 from extrados.building.rockers.arch import ArchModel
 from extrados.building.rockers.rocker import Rocker
@@ -66,11 +66,22 @@ def run(context: Context, options: Assessment) -> Result:
         else None,
     )
     result.results = r
+    beyond = [row for row in rows if row.verdict == "stands" and abs(row.amplitude_g) > CAP * gamma]
+    if beyond:
+        result.warnings.append(
+            f"the criterion follows the failure curve up to {CAP:g} times the acceleration that starts rocking ({CAP * gamma:.3g} g): "
+            f"an impulse of {abs(beyond[0].amplitude_g):.3g} g over {beyond[0].period_s:.3g} s lies above, where one swing may bring "
+            "it down; see `failure-domain`"
+        )
     if run_outcome is not None and (r.verdict == "fails") != (run_outcome == "collapse"):
+        why = (
+            "impulses this strong lie beyond the criterion"
+            if beyond
+            else "the criterion knows single impulses without what comes before and after them"
+        )
         result.warnings.append(
             f"the criterion says that it {r.verdict}, but rocked through the whole motion it "
-            f"{'comes down' if run_outcome == 'collapse' else 'stays up'}: the criterion knows single impulses without "
-            "what comes before and after them; the run (analysis `rocking`) is the better witness"
+            f"{'comes down' if run_outcome == 'collapse' else 'stays up'}: {why}; the run (analysis `rocking`) is the better witness"
         )
     if rows and not isinstance(context.deck.motion, SinePulse):
         first = rows[0]
@@ -145,7 +156,7 @@ def _answer(r: out.Assessment, worst: out.AssessedImpulse | None, what: str) -> 
         "it" if worst.rank == 1 else f"impulse {worst.rank} ({abs(worst.amplitude_g):.3f} g, {worst.period_s:.3f} s)"
     )
     if worst.margin is None:
-        text += f"All impulses are too short to bring the {what} down. "
+        text += f"By the criterion all impulses are too short to bring the {what} down. "
     elif r.verdict == "fails":
         text += f"The {what} is predicted to fail: {which} reaches {1 / worst.margin:.2f} times the failing amplitude. "
     else:

@@ -45,7 +45,7 @@ def structures_of(context: Context, options: tables.FailureCurves) -> list[Struc
     for number, change in enumerate(options.variants or [{}]):
         key = ("analysis", "variants", number)
         if "kind" in change:
-            raise Refused(f"a variant changes keys of a {data['kind']}, not its kind", (*key, "kind"))
+            raise Refused(f"a variant changes keys of '{data['kind']}', not its kind", (*key, "kind"))
         try:
             table = functools.reduce(lambda table, name: changed(table, name, change[name]), change, data)
             found.append(read_table(type(building.structure), table))

@@ -31,10 +31,16 @@ class RockingTable(BuildingAnalysis):
     )
 
     def rests_on(self, building: Building) -> dict[str, str | None]:
-        """On a base that gives way the impact follows from it."""
+        """An energy ratio stands in place of the restitution; on a base that gives way the impact follows from it; a wall
+        throws back what falls against it."""
         found = super().rests_on(building)
+        if building.supports.abutting_wall is not None:
+            found.pop("joints.restitution", None)
+            found["supports.rebound"] = "three impacts" if building.supports.rebound is None else None
+        elif building.joints.energy_ratio is not None:
+            found = {key.replace("restitution", "energy_ratio"): fixed for key, fixed in found.items()}
         if self.soft_base and building.supports.stiffness is not None:
-            del found["joints.restitution"]
+            found.pop("joints.restitution", None)
             found |= {f"supports.{key}": None for key in ("stiffness", "foundation", "damping_ratio")}
         return found
 

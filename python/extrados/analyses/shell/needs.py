@@ -13,6 +13,8 @@ def needs(context: Context, options: Pushover) -> Iterator[Need]:
     """Steps that raise where the deck is wrong, see `analyses.needs`."""
     building = context.building
     yield lambda: _places(building, options)
+    if not isinstance(building.structure, Plan):
+        yield lambda: _refuse_floors(building, options)
     if options.frame is not None:
         yield lambda: pier_strength(building, options)
 
@@ -22,6 +24,15 @@ def _places(building: Building, options: Pushover) -> None:
     from extrados.analyses.shell.model import build
 
     build(building.shell(options.mesh), options.model_copy(update={"pattern": "mass"}))
+
+
+def _refuse_floors(building: Building, options: Pushover) -> None:
+    for k, variant in enumerate(options.variants):
+        for name, what in (("floors", "floors"), ("prestress", "forces on walls")):
+            if getattr(variant, name) != 1.0 and building.structure is not None:
+                raise Refused(
+                    f"a structure of kind '{building.structure.kind}' has no {what}", ("analysis", "variants", k, name)
+                )
 
 
 def pier_strength(building: Building, options: Pushover) -> float:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import Chain
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Context
 from extrados.analyses.shell.frame import capacities
 from extrados.analyses.shell.model import ShellModel, build, first_mode
 from extrados.analyses.shell.needs import pier_strength
@@ -317,7 +317,11 @@ def _variants(context: Context, options: Pushover, result: Result, numbers: dict
     rows, greatest = [], [numbers["greatest_load_N"]]
     once = options.model_copy(update={"directions": options.directions[:1], "variants": [], "states": []})
     for k, variant in enumerate(options.variants, 1):
-        model = build(_varied(context.building, variant).shell(options.mesh), once)
+        mesh = _varied(context.building, variant).shell(options.mesh)
+        if not mesh.walls:  # a vault, or a mesh of shells: as it stands, but thicker
+            parts = [replace(p, thickness=variant.thickness * p.thickness) if p.bends else p for p in mesh.parts]
+            mesh = replace(mesh, parts=parts)
+        model = build(mesh, once)
         curve = _curves(context, model, once)[0]
         d, p = curve.envelope(model.unit)
         found = numbers_of(model, once, curve)["greatest_load_N"]
@@ -343,7 +347,7 @@ def _variants(context: Context, options: Pushover, result: Result, numbers: dict
 
 
 def _varied(building: Building, variant: Variant) -> Building:
-    """The building with other material, thicknesses, floors and forces."""
+    """The building with other material, and of walls on a plan with other thicknesses, floors and forces."""
 
     def material(of):
         scaled = {
@@ -364,11 +368,7 @@ def _varied(building: Building, variant: Variant) -> Building:
         materials={name: material(of) for name, of in building.materials.items()}, _views={},
     )  # fmt: skip
     if not isinstance(plan, Plan):
-        if variant.floors != 1.0 or variant.prestress != 1.0:
-            raise Refused(
-                f"variant '{variant.name}': a structure of kind '{plan.kind}' has no floors and no forces on walls"
-            )
-        return changed.having(structure=plan.model_copy(update={"thickness": variant.thickness * plan.thickness}))
+        return changed
     walls = [
         wall.model_copy(
             update={

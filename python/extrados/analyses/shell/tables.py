@@ -90,7 +90,7 @@ class Variant(Table):
     energy: float = key(1.0, "on their fracture energy", gt=0, le=1000)
     young: float = key(1.0, "on their modulus of elasticity", gt=0, le=100)
     density: float = key(1.0, "on their density", gt=0, le=100)
-    thickness: float = key(1.0, "on the thickness of all walls", gt=0, le=10)
+    thickness: float = key(1.0, "on the thickness of all walls and vaults, not of floors", gt=0, le=10)
     floors: float = key(1.0, "on the stiffness of flexible floors and joists", gt=0, le=1e6)
     prestress: float = key(1.0, "on the forces on top of walls", ge=0, le=100)
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from extrados.analyses.batches import Swept, Unfinished, sweep
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Context
 from extrados.analyses.motion_source import GeneratedSource, ListSource, Source, measures, source_of
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.statistics import cloud
@@ -138,10 +138,6 @@ def run(context: Context, options: Fragility) -> Result:
 def _job(context: Context, options: Fragility, base: Rocker, duration: float | None) -> tuple[EnsembleJob, int, int]:
     source, available = source_of(context, options.seed, duration)
     motions = options.count or available or 1000
-    if available is not None and motions > available and not options.uncertain:
-        raise Refused(
-            f"count is {motions}, but the deck has {available} motion{'s' if available > 1 else ''}: expected at most {available}"
-        )
     made = (
         sampled(context, options, base, motions)
         if options.uncertain

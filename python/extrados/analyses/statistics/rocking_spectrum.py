@@ -6,7 +6,7 @@ Of rectangles, or, where the deck has an arch, of arches of its shape in other s
 import numpy as np
 
 from extrados.analyses.batches import sweep
-from extrados.analyses.context import Context, Refused
+from extrados.analyses.context import Context
 from extrados.analyses.rocking.common import rocker_of
 from extrados.analyses.runs import runs_job
 from extrados.analyses.statistics.tables import RockingSpectrum
@@ -29,10 +29,6 @@ def block_of(period: float, alpha: float, restitution: str | float, linear: bool
 
 def run(context: Context, options: RockingSpectrum) -> Result:
     """Rotation spectra; what overturns has no rotation, its place is marked."""
-    if context.building.supports.stiffness is not None:
-        raise Refused(
-            "[supports] stiffness: spectra are those of structures on rigid ground; leave it out, or ask `rocking` of a block"
-        )
     motion = context.motion
     context.warnings += motion.notes
     periods = np.array(options.periods) if options.periods else np.linspace(0.2, 8.0, 60)

@@ -11,7 +11,7 @@ from extrados.building.mesh.options import LARGEST_MESH
 from extrados.building.mesh.shells import Foot, ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane
 from extrados.building.mesh.triangles import fill_ring
 from extrados.building.properties import Material
-from extrados.building.templates.plan import MEETS, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting
+from extrados.building.templates.plan import MEETS, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting, nearly_meeting
 from extrados.schema.constants import GRAVITY
 
 if TYPE_CHECKING:
@@ -58,6 +58,12 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
         for a, b in itertools.combinations(range(len(plan.walls)), 2)
         if (at := meeting(plan.walls[a], plan.walls[b])) is not None
     }
+    for a, b in itertools.combinations(range(len(plan.walls)), 2):
+        one, two = plan.walls[a], plan.walls[b]
+        if (a, b) not in junctions and (gap := nearly_meeting(one, two)) is not None:
+            warnings.append(
+                f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart and do not meet: nothing joins them"
+            )
     grids = _grids(plan, junctions, size, warnings)
     xyz, number = _join(plan, grids, junctions)
     materials, names = [building.material, *building.materials.values()], list(building.materials)

@@ -257,10 +257,11 @@ def joints_named(assembly: Assembly, names: Sequence[str], what: str, key: Key) 
 def three_impacts(block: BlockModel, side: int) -> float:
     """Rate after over rate before of a block that falls back against a wall on its other side, thrown back to side 0 (+x) or 1.
 
-    Three impacts: the change from the near to the far toe, the blow of the top (as high as twice the centre of mass) on the wall,
-    by the angular momentum about it, and the change from the far to the near toe. For a rectangle (1 - 3/2 sin^2 a)^2
-    |1 - 3/2 cos^2 a|, a the slenderness angle: Sorrentino, AlShawa and Decanini (2011), from memory, to be verified. After the
-    second blow a rigid body would turn about the top, not about the far toe, and come to rest by more blows: an upper bound.
+    Three impacts, each keeping the angular momentum about the corner that is struck: the change from the near to the far toe, the
+    blow of the top (as high as twice the centre of mass) on the wall, and the change from the far to the near toe. For a rectangle
+    (1 - 3/2 sin^2 a)^2 |1 - 3/2 cos^2 a|, a the slenderness angle. Derived here: the form is ascribed to Sorrentino, AlShawa and
+    Decanini (2011), whose print was not at hand. After the second blow a rigid body would turn about the top, not about the far
+    toe, and come to rest by more blows: an upper bound.
     """
     b = block.block
     mass, inertia, h = float(b.mass[0]), float(b.inertia[0]), b.centre_height

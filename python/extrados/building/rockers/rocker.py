@@ -23,6 +23,8 @@ from extrados.schema.constants import GRAVITY
 if TYPE_CHECKING:
     from extrados.building.building import Building
 
+OTHER_RULE = 'the impact rule "thesis" is of circular arches that nothing but their weight holds: "energy-safe" stands in its place'
+
 
 @dataclass(frozen=True)
 class Rocker:
@@ -120,9 +122,10 @@ def make_rocker(
     known = FrameModel if isinstance(stones, FrameAssembly) else MechanismModel
     model = known(stones, "energy-safe" if rule == "thesis" else rule)  # type: ignore[arg-type]
     critical = model.critical
+    told = [OTHER_RULE] if rule == "thesis" else []
     made = Rocker(
         structure.kind, structure.word, model, model.body, min(model.uplift), critical, model.restitution[0],
-        model.time_unit, model.length, ratio * critical[0 if ratio >= 0.0 else 1], tuple(model.warnings),
+        model.time_unit, model.length, ratio * critical[0 if ratio >= 0.0 else 1], (*model.warnings, *told),
     )  # fmt: skip
     return _restrained(made, building)
 

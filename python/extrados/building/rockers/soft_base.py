@@ -78,11 +78,11 @@ class SoftBaseModel:
             sign = base_held(self.core, tried)[2] > 0.0
             stable = np.flatnonzero(~sign[:-1] & sign[1:])
             if not len(stable):
-                raise BadGeometry(self._too_soft)
+                raise BadGeometry(self._too_soft, ("supports", "stiffness"))
             k = stable[np.abs(tried[stable]).argmin()]
             found = float(brentq(self.restoring, tried[k], tried[k + 1], xtol=1e-15))
         if not self._stiffness_at_rest > 0.0:
-            raise BadGeometry(self._too_soft)
+            raise BadGeometry(self._too_soft, ("supports", "stiffness"))
         return found
 
     def turned(self, ratio: float) -> float:
@@ -103,7 +103,7 @@ class SoftBaseModel:
             / (self._stiffness_at_rest + self.weight * self.core.height)
         )
         return (
-            f"supports.stiffness is {self.core.stiffness / self.block.depth:.4g} N/m^3: on a base below about "
+            f"{self.core.stiffness / self.block.depth:.4g} N/m^3: on a base below about "
             f"{least / self.block.depth:.3g} N/m^3 the block falls over by itself"
         )
 
@@ -168,7 +168,7 @@ class SoftBaseModel:
             back = side * base_held(self.core, tried)[2]
             ends = int(np.argmax(back <= 0.0)) if (back <= 0.0).any() else len(tried)
             if ends == 0:
-                raise BadGeometry(self._too_soft)
+                raise BadGeometry(self._too_soft, ("supports", "stiffness"))
             critical = float(tried[-1])
             if ends < len(tried):
                 critical = float(brentq(self.restoring, tried[ends - 1], tried[ends], xtol=1e-15))

@@ -31,6 +31,11 @@ def refuse_words(building: "Building", linear: bool = False) -> None:
             ("supports", "stiffness"),
         )
     block = rocks_as_block(building)
+    if building.joints.energy_ratio is not None and not block:
+        raise NoView(
+            "the energy ratio is that of a block: give restitution, the rate after over before an impact",
+            ("joints", "energy_ratio"),
+        )
     if linear and not block:
         raise NoView('form = "linear" is known of blocks and columns only', ("analysis", "form"))
     if wall is not None and not block and building.supports.rebound is None:

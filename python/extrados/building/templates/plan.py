@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 #: Distance within which two walls meet [m]
 MEETS = 1e-6
+#: Cosine of the angle of walls that run side by side
+PARALLEL = 0.99
 PlanPoint = Annotated[list[Length], Field(min_length=2, max_length=2)]
 Place = Annotated[list[Length], Field(min_length=3, max_length=3)]
 
@@ -254,21 +256,36 @@ class Plan(Structure):
         return mesh_plan(self, building, options)
 
 
+def nearly_meeting(one: PlanWall, two: PlanWall) -> float | None:
+    """How far an end of one of two walls that do not meet stays from the middle of the other [m], where their thicknesses
+    reach over that; None elsewhere, and of walls side by side."""
+    if abs(float(np.dot(one.direction, two.direction))) > PARALLEL:
+        return None
+    gaps = []
+    for wall, other in ((one, two), (two, one)):
+        for end in (wall.start, wall.end):
+            along = np.clip(float(np.subtract(end, other.start) @ other.direction), 0.0, other.length)
+            gaps.append(float(np.hypot(*(np.asarray(other.start) + along * other.direction - end))))
+    reach = 0.5 * sum(max([wall.thickness or 0.0, *wall.thicknesses]) for wall in (one, two))
+    return min(gaps) if min(gaps) < reach else None
+
+
 def meeting(one: PlanWall, two: PlanWall) -> tuple[float, float] | None:
     """Distances along two walls from their starts to where they meet [m]; None where they do not."""
     a, b = np.asarray(one.start), np.asarray(two.start)
     d, e = one.direction, two.direction
     cross = d[0] * e[1] - d[1] * e[0]
-    if abs(cross) < 1e-9:  # in one line: end to end
+    if abs(cross) < 1e-9:  # side by side, or in one line: end to end
+        low, high = sorted((float((b - a) @ d), float((np.asarray(two.end) - a) @ d)))
+        aside = abs((b - a)[0] * d[1] - (b - a)[1] * d[0])
+        if aside < MEETS and min(high, one.length) - max(low, 0.0) > MEETS:
+            raise BadGeometry(
+                f"walls '{one.name}' and '{two.name}' lie on each other on the plan; one wall may have `thicknesses` by storey"
+            )
         for s, p in ((0.0, one.start), (one.length, one.end)):
             for t, q in ((0.0, two.start), (two.length, two.end)):
                 if np.hypot(*np.subtract(p, q)) < MEETS:
                     return s, t
-        overlap = [
-            s for s in (float((b - a) @ d), float((np.asarray(two.end) - a) @ d)) if MEETS < s < one.length - MEETS
-        ]
-        if overlap and abs((b - a)[0] * d[1] - (b - a)[1] * d[0]) < MEETS:
-            raise BadGeometry(f"walls '{one.name}' and '{two.name}' lie on each other on the plan")
         return None
     gap = b - a
     s, t = (gap[0] * e[1] - gap[1] * e[0]) / cross, (gap[0] * d[1] - gap[1] * d[0]) / cross

@@ -217,6 +217,7 @@ def polygon(ax: Axes, polygons: dict[str, np.ndarray], colours: tuple[str, ...] 
     ax.plot(0.0, 0.0, "o", color="black", markersize=3)
     ax.annotate("pole", (0.0, 0.0), textcoords="offset points", xytext=(-4, -9), ha="right", fontsize=7)
     ax.set_aspect("equal", adjustable="datalim")
+    ax.xaxis.set_major_locator(style.InnerLocator())
     ax.set_xlabel("horizontal [kN/m]")
     ax.set_ylabel("vertical [kN/m]")
     ax.legend(loc="best")

@@ -1,0 +1,206 @@
+!> Runs of discrete elements, of the plane (built by api_dem) or of space (api_dem3).
+!>
+!> options; then start and run, as often as wanted; then summary and history tell the last run. A run that pauses goes
+!> on where run is called again; its state can be kept, and taken back by resume instead of start.
+module api_dem_run
+   use, intrinsic :: iso_c_binding, only : c_double, c_int, c_int64_t
+   implicit none
+   private
+   public :: options, start, run, state_size, state, resume, summary, history
+
+contains
+
+   !> How to run
+   subroutine options(handle, limits, settle_steps, stop_at_rest, threads, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, model_take, set_options
+      use dem_run, only : run_options
+      integer(c_int64_t), intent(in) :: handle
+      !> End time [s], step [s] or 0, fraction of the critical step, settling tolerance, farthest settlement [m] or 0,
+      !> collapse [m] or 0, limit of the energy residual
+      real(c_double), intent(in) :: limits(7)
+      integer(c_int), intent(in) :: settle_steps              !! at most; 0: no settling
+      integer(c_int), intent(in) :: stop_at_rest              !! 1: end once all is quiet
+      integer(c_int), intent(in) :: threads
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      call set_options(built, run_options(limits(1), limits(2), limits(3), limits(4), limits(5), limits(6), limits(7), &
+         int(settle_steps), stop_at_rest /= 0, int(threads)), status)
+      call handle_leave(handle)
+   end subroutine options
+
+   !> A run that has not begun, instead of the last one
+   subroutine start(handle, nt, wanted, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, model_take, new_run
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nt
+      real(c_double), intent(in) :: wanted(nt)                !! output times [s]
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      call new_run(built, wanted, status)
+      call handle_leave(handle)
+   end subroutine start
+
+   !> Settle, shake, record: begin, or go on where it has paused, under the same motion
+   subroutine run(handle, motions, motion, scale, steps, paused, time, status)
+      use common_handles, only : handle_leave
+      use common_motion_set, only : motion_set, motion_set_take, motion_signal
+      use common_signal, only : signal
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, model_take, run_built
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int64_t), intent(in) :: motions               !! handle of a set of motions
+      integer(c_int), intent(in) :: motion                    !! its number in the set, 1-based
+      real(c_double), intent(in) :: scale                     !! factor on the motion
+      integer(c_int), intent(in) :: steps                     !! after which it pauses; 0: it does not
+      integer(c_int), intent(out) :: paused                   !! 1: it can go on
+      real(c_double), intent(out) :: time                     !! that it has come to [s]
+      integer(c_int), intent(out) :: status                   !! cancelled leaves what was recorded
+      class(built_model), pointer :: built
+      type(motion_set), pointer :: set
+      type(signal) :: ground
+      logical :: waits
+      !f2py threadsafe
+      paused = 0
+      time = 0.0_c_double
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      call motion_set_take(motions, .false., set, status)
+      if (status == status_ok) then
+         call motion_signal(set, motion, scale, ground, status)
+         if (status == status_ok) then
+            call run_built(built, ground, int(steps), waits, time, status)
+            paused = merge(1_c_int, 0_c_int, waits)
+         end if
+         call handle_leave(motions)
+      end if
+      call handle_leave(handle)
+   end subroutine run
+
+   !> Words that the state of a run takes that has paused
+   subroutine state_size(handle, words, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : paused_run_take
+      use dem_run, only : simulation
+      use dem_state, only : state_words
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int64_t), intent(out) :: words
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      words = 0
+      call paused_run_take(handle, run, status)
+      if (status /= status_ok) return
+      words = state_words(run)
+      call handle_leave(handle)
+   end subroutine state_size
+
+   !> That state, for this build alone
+   subroutine state(handle, words, word, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : paused_run_take
+      use dem_run, only : simulation
+      use dem_state, only : state_save
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: words                     !! see state_size
+      integer(c_int64_t), intent(out) :: word(words)
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      word = 0
+      call paused_run_take(handle, run, status)
+      if (status /= status_ok) return
+      call state_save(run, word, status)
+      call handle_leave(handle)
+   end subroutine state
+
+   !> Instead of a start: take a state back. It must be undamaged: invalid where its head is of another model or build
+   subroutine resume(handle, nt, wanted, words, word, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_handle, only : built_model, model_take, resume_run
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nt
+      real(c_double), intent(in) :: wanted(nt)                !! output times [s]
+      integer(c_int), intent(in) :: words
+      integer(c_int64_t), intent(in) :: word(words)
+      integer(c_int), intent(out) :: status
+      class(built_model), pointer :: built
+      call model_take(handle, built, status)
+      if (status /= status_ok) return
+      call resume_run(built, wanted, word, status)
+      call handle_leave(handle)
+   end subroutine resume
+
+   !> How the last run ended
+   subroutine summary(handle, counts, measures, status)
+      use common_handles, only : handle_leave
+      use common_status, only : status_ok
+      use dem_clock, only : model_clock
+      use dem_handle, only : run_take
+      use dem_run, only : simulation
+      integer(c_int64_t), intent(in) :: handle
+      !> Points, reason (list dem_stop), two bodies that caused it, settling steps, searches, most pairs, steps
+      integer(c_int), intent(out) :: counts(8)
+      real(c_double), intent(out) :: measures(4)              !! least step, critical step, stop time [s], residual
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      type(model_clock), pointer :: clock
+      counts = 0
+      measures = 0.0_c_double
+      call run_take(handle, run, status)
+      if (status /= status_ok) return
+      clock => run%clock()
+      associate (record => run%record)
+         counts = [int(record%points, c_int), record%reason, int(record%blamed, c_int), int(record%settling, c_int), &
+            int(record%searches, c_int), int(max(record%most_pairs, record%pairs), c_int), int(clock%steps, c_int)]
+         measures = [record%least_step, record%critical, record%stop_time, record%residual]
+      end associate
+      call handle_leave(handle)
+   end subroutine summary
+
+   !> What the last run recorded
+   subroutine history(handle, nb, nrate, nt, time, place, rate, energy, status)
+      use common_handles, only : handle_leave
+      use common_lists, only : dem_energy_count
+      use common_status, only : status_ok, status_invalid_argument
+      use dem_handle, only : run_take
+      use dem_run, only : simulation
+      integer(c_int64_t), intent(in) :: handle
+      integer(c_int), intent(in) :: nb                        !! bodies
+      integer(c_int), intent(in) :: nrate                     !! rates of a body: 3 in the plane, 6 in space
+      integer(c_int), intent(in) :: nt                        !! points, see summary
+      real(c_double), intent(out) :: time(nt)                 !! [s]
+      real(c_double), intent(out) :: place(3, nb, nt)         !! plane: x, y [m], rotation [rad]; space: centroids [m]
+      real(c_double), intent(out) :: rate(nrate, nb, nt)      !! velocity, spin [m/s, rad/s]
+      real(c_double), intent(out) :: energy(9, nt)            !! [J], rows of the list dem_energy
+      integer(c_int), intent(out) :: status
+      class(simulation), pointer :: run
+      time = 0.0_c_double
+      place = 0.0_c_double
+      rate = 0.0_c_double
+      energy = 0.0_c_double
+      call run_take(handle, run, status)
+      if (status /= status_ok) return
+      associate (record => run%record)
+         status = status_invalid_argument
+         if (nb == size(record%place, 2) .and. nrate == size(record%rate, 1) .and. nt <= record%points &
+             .and. dem_energy_count == size(energy, 1)) then
+            status = status_ok
+            time = record%time(1:nt)
+            place = record%place(:, :, 1:nt)
+            rate = record%rate(:, :, 1:nt)
+            energy = record%energy(:, 1:nt)
+         end if
+      end associate
+      call handle_leave(handle)
+   end subroutine history
+
+end module api_dem_run

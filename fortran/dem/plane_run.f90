@@ -1,0 +1,432 @@
+!> What a run of blocks of the plane is made of: the hooks of dem_run.
+module dem_plane_run
+   use common_cancel, only : cancel_requested
+   use common_kinds, only : wp
+   use common_lists, only : stop_end => dem_stop_end, stop_collapse => dem_stop_collapse, &
+      stop_left => dem_stop_left, stop_overlap => dem_stop_overlap
+   use common_status, only : status_ok, status_cancelled, status_invalid_argument, status_not_finite, &
+      status_out_of_memory
+   use dem_bodies, only : body
+   use dem_clock, only : model_clock
+   use dem_contacts, only : contact_pair, overlap, measure
+   use dem_energy, only : energy_terms, energy_residual
+   use dem_law, only : elastic_energy
+   use dem_model, only : block_model, advance, critical_step
+   use dem_moreau, only : advance_rigid, rigid_step
+   use dem_run, only : simulation, any_step, energy_from_nowhere, model_sizes, rest_by_damping, several
+   use dem_search, only : search
+   use dem_tape, only : tape
+   use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
+   implicit none
+   private
+   public :: block_simulation
+
+   type, extends(simulation) :: block_simulation
+      type(block_model) :: model
+      real(wp) :: domain(4) = 0.0_wp         !! left, right, bottom, top of the scene [m]
+   contains
+      procedure :: clock => clock_of
+      procedure :: search => find_pairs
+      procedure :: stable_step
+      procedure :: advance => take_steps
+      procedure :: energy => energy_now
+      procedure :: agitation
+      procedure :: unbalanced
+      procedure :: least_balanced
+      procedure :: fastest
+      procedure :: limits
+      procedure :: mark_rest
+      procedure :: stop_all
+      procedure :: forget_settling
+      procedure :: put_down
+      procedure :: sizes
+      procedure :: make_room
+      procedure :: walk
+      procedure :: find_rest
+      procedure :: missing
+   end type block_simulation
+
+contains
+
+   function clock_of(run) result(clock)
+      class(block_simulation), intent(inout), target :: run
+      type(model_clock), pointer :: clock
+      clock => run%model%model_clock
+   end function clock_of
+
+   subroutine find_pairs(run, first_time, status)
+      class(block_simulation), intent(inout) :: run
+      logical, intent(in) :: first_time
+      integer(c_int), intent(out) :: status
+      associate (model => run%model)
+         status = status_not_finite
+         if (.not. all(abs(model%set%item%x) + abs(model%set%item%y) <= huge(1.0_wp))) return
+         if (first_time) model%contacts%skin = 0.02_wp * model%set%size
+         call search(model%set, model%contacts, first_time, status)
+         run%record%pairs = model%contacts%pairs
+      end associate
+      if (first_time .and. status == status_ok) call refuse_overlaps(run)
+   end subroutine find_pairs
+
+   !> Any step is stable where contacts have no springs
+   subroutine stable_step(run, stable, suitable, status)
+      class(block_simulation), intent(inout) :: run
+      real(wp), intent(out) :: stable           !! [s]
+      real(wp), intent(out) :: suitable         !! [s]
+      integer(c_int), intent(out) :: status
+      if (run%model%rigid%used) then
+         status = status_ok
+         stable = any_step
+         suitable = rigid_step(run%model)
+      else
+         call critical_step(run%model, stable, status)
+         suitable = run%options%fraction * stable
+      end if
+   end subroutine stable_step
+
+   subroutine take_steps(run, count, status)
+      class(block_simulation), intent(inout) :: run
+      integer, intent(in) :: count
+      integer(c_int), intent(out) :: status
+      status = status_ok
+      if (run%model%rigid%used) then
+         call advance_rigid(run%model, count, status)
+      else
+         call advance(run%model, count, run%options%threads)
+      end if
+   end subroutine take_steps
+
+   !> Ledger at the time of the last forces
+   function energy_now(run) result(now)
+      class(block_simulation), intent(in) :: run
+      type(energy_terms) :: now
+      integer :: k
+      real(wp) :: vx, vy, spin, ax, ay, turn, cut, span
+
+      associate (model => run%model)
+         ! The first step takes half a kick from the initial velocity; steps never grow after it.
+         span = max(model%kick, model%step)
+         cut = 0.5_wp * model%mass_damping * span
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               if (b%fixed) cycle
+               ax = b%fx * b%inverse_mass + model%pull(1)
+               ay = b%fy * b%inverse_mass + model%pull(2)
+               turn = b%moment * b%inverse_inertia
+               vx = (b%vx * (1.0_wp + cut) - span * ax) / (1.0_wp - cut)
+               vy = (b%vy * (1.0_wp + cut) - span * ay) / (1.0_wp - cut)
+               spin = (b%spin * (1.0_wp + cut) - span * turn) / (1.0_wp - cut)
+               now%leapfrog = now%leapfrog + 0.5_wp * (b%mass * (b%vx * vx + b%vy * vy) + b%inertia * b%spin * spin)
+               now%kinetic = now%kinetic + 0.125_wp * (b%mass * ((b%vx + vx - 2.0_wp * model%base(1))**2 &
+                  + (b%vy + vy - 2.0_wp * model%base(2))**2) + b%inertia * (b%spin + spin)**2)
+               now%potential = now%potential - b%mass * (model%gravity(1) * (b%x - model%drift * b%vx - b%rest_x) &
+                  + model%gravity(2) * (b%y - model%drift * b%vy - b%rest_y))
+               now%mass_damping = now%mass_damping + b%mass_loss
+               now%work = now%work + b%work
+            end associate
+         end do
+         now%friction = model%contacts%friction_loss
+         now%damping = model%contacts%damping_loss
+         now%work = now%work + model%contacts%support_work
+         do k = 1, model%contacts%pairs
+            associate (pair => model%contacts%pair(k))
+               if (.not. model%rigid%used) now%elastic = now%elastic + elastic_energy(model%law(pair%law), pair)
+               now%friction = now%friction + pair%loss_before(1) + sum(pair%point%friction_loss)
+               now%damping = now%damping + pair%loss_before(2) + sum(pair%point%damping_loss)
+               now%work = now%work + pair%support_work
+            end associate
+         end do
+      end associate
+   end function energy_now
+
+   !> Energy that came from nowhere, over the energy that went round; what rigid contacts take they must not give back,
+   !> or it came from nowhere too. Without inertia there is no ledger
+   function missing(run, energy) result(ratio)
+      class(block_simulation), intent(inout) :: run
+      type(energy_terms), intent(in) :: energy
+      real(wp) :: ratio
+      real(wp) :: still
+      ratio = 0.0_wp
+      if (run%model%quasi_static) return
+      if (.not. run%model%rigid%used) then
+         ratio = energy_from_nowhere(run, energy)
+         return
+      end if
+      associate (record => run%record, model => run%model)
+         ! Energy below which rigid contacts do not move: a fall by a millionth of the smallest block
+         still = 1.0e-6_wp * model%set%size * hypot(model%gravity(1), model%gravity(2)) &
+            * sum(model%set%item%mass)
+         record%taken = max(record%taken, energy%damping)
+         ratio = (abs(energy_residual(energy, record%start)) + record%taken - energy%damping) &
+            / max(record%round, record%start%elastic, still, tiny(1.0_wp))
+      end associate
+   end function missing
+
+   !> Twice the kinetic energy of the half step [J]
+   function agitation(run) result(energy)
+      class(block_simulation), intent(in) :: run
+      real(wp) :: energy
+      associate (b => run%model%set%item)
+         energy = sum(b%mass * (b%vx**2 + b%vy**2) + b%inertia * b%spin**2)
+      end associate
+   end function agitation
+
+   !> Greatest unbalanced force over weight, and moment over weight times radius
+   function unbalanced(run) result(ratio)
+      class(block_simulation), intent(in) :: run
+      real(wp) :: ratio
+      real(wp) :: g
+      integer :: k
+      associate (model => run%model)
+         g = max(hypot(model%gravity(1), model%gravity(2)), 1.0e-3_wp)
+         ratio = 0.0_wp
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               if (b%fixed) cycle
+               ratio = max(ratio, abs(b%fx / b%mass + model%gravity(1)) / g, &
+                  abs(b%fy / b%mass + model%gravity(2)) / g, abs(b%moment) / (b%mass * g * b%radius))
+            end associate
+         end do
+      end associate
+   end function unbalanced
+
+   function least_balanced(run) result(number)
+      class(block_simulation), intent(in) :: run
+      integer :: number
+      associate (b => run%model%set%item)
+         number = maxloc(abs(b%fx * b%inverse_mass) + abs(b%fy * b%inverse_mass + run%model%gravity(2)), &
+            mask=.not. b%fixed, dim=1)
+      end associate
+   end function least_balanced
+
+   function fastest(run) result(number)
+      class(block_simulation), intent(in) :: run
+      integer :: number
+      associate (b => run%model%set%item)
+         number = maxloc(b%vx**2 + b%vy**2, mask=.not. b%fixed, dim=1)
+      end associate
+   end function fastest
+
+   !> Has a body collapsed or left the domain?
+   subroutine limits(run, collapse)
+      class(block_simulation), intent(inout) :: run
+      real(wp), intent(in) :: collapse
+      integer :: k
+      real(wp) :: x, y
+      associate (model => run%model, record => run%record, domain => run%domain)
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               if (b%fixed) cycle
+               x = b%x - model%base_place(1)
+               y = b%y - model%base_place(2)
+               if (collapse > 0.0_wp) then
+                  if (hypot(x - b%rest_x, y - b%rest_y) > collapse) record%reason = stop_collapse
+               end if
+               if (x < domain(1) .or. x > domain(2) .or. y < domain(3) .or. y > domain(4)) record%reason = stop_left
+               if (record%reason == stop_end) cycle
+               record%blamed(1) = k
+               return
+            end associate
+         end do
+      end associate
+   end subroutine limits
+
+   !> Bodies that overlap deeper than half the skin were drawn so
+   subroutine refuse_overlaps(run)
+      class(block_simulation), intent(inout) :: run
+      integer :: k
+      type(overlap) :: now
+      associate (set => run%model%set, contacts => run%model%contacts)
+         do k = 1, contacts%pairs
+            associate (pair => contacts%pair(k))
+               call measure(pair, set%item(pair%bodies(1)), set%item(pair%bodies(2)), now)
+               if (now%width <= 0.5_wp * contacts%skin .or. maxval(now%gap) > -0.5_wp * contacts%skin) cycle
+               run%record%reason = stop_overlap
+               run%record%blamed = pair%bodies
+               return
+            end associate
+         end do
+      end associate
+   end subroutine refuse_overlaps
+
+   subroutine mark_rest(run)
+      class(block_simulation), intent(inout) :: run
+      associate (b => run%model%set%item)
+         b%rest_x = b%x
+         b%rest_y = b%y
+         b%rest_angle = b%angle
+      end associate
+   end subroutine mark_rest
+
+   subroutine stop_all(run)
+      class(block_simulation), intent(inout) :: run
+      associate (b => run%model%set%item)
+         b%vx = 0.0_wp
+         b%vy = 0.0_wp
+         b%spin = 0.0_wp
+      end associate
+   end subroutine stop_all
+
+   subroutine forget_settling(run)
+      class(block_simulation), intent(inout) :: run
+      integer :: k, i
+      associate (contacts => run%model%contacts, b => run%model%set%item, rigid => run%model%rigid)
+         do k = 1, contacts%pairs
+            do i = 1, 2
+               associate (point => contacts%pair(k)%point(i))
+                  point%dash_n = 0.0_wp
+                  point%dash_s = 0.0_wp
+                  point%friction_loss = 0.0_wp
+                  point%damping_loss = 0.0_wp
+               end associate
+            end do
+            contacts%pair(k)%loss_before = 0.0_wp
+            contacts%pair(k)%support_work = 0.0_wp
+         end do
+         contacts%friction_loss = 0.0_wp
+         contacts%damping_loss = 0.0_wp
+         contacts%support_work = 0.0_wp
+         b%work = 0.0_wp
+         b%mass_loss = 0.0_wp
+         b%bounces = 0
+         b%airborne = 0.0_wp
+         rigid%steps = 0
+         rigid%factors = 0
+         rigid%most_rounds = 0
+         rigid%open_steps = 0
+         rigid%residual = 0.0_wp
+      end associate
+   end subroutine forget_settling
+
+   subroutine put_down(run)
+      class(block_simulation), intent(inout) :: run
+      integer :: k
+      real(wp) :: half
+      associate (model => run%model, place => run%record%place(:, :, run%record%points), &
+                 rate => run%record%rate(:, :, run%record%points))
+         half = 0.5_wp * model%drift
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               place(:, k) = [b%x - model%drift * b%vx, b%y - model%drift * b%vy, b%angle - model%drift * b%spin]
+               rate(:, k) = [b%vx, b%vy, b%spin]
+               if (.not. b%fixed) rate(:, k) = rate(:, k) &
+                  - half * [b%fx / b%mass + model%pull(1), b%fy / b%mass + model%pull(2), b%moment / b%inertia]
+            end associate
+            place(1:2, k) = place(1:2, k) - (model%base_place - model%drift * model%base)
+            rate(1:2, k) = rate(1:2, k) - model%base
+         end do
+      end associate
+   end subroutine put_down
+
+   !> By kinetic damping on springs, or without inertia where contacts are rigid
+   subroutine find_rest(run, rests, status)
+      class(block_simulation), intent(inout), target :: run
+      logical, intent(out) :: rests
+      integer(c_int), intent(out) :: status
+      if (run%model%rigid%used) then
+         call rest_by_waiting(run, rests, status)
+      else
+         call rest_by_damping(run, rests, status)
+      end if
+   end subroutine find_rest
+
+   !> Steps without inertia, until gravity moves nothing any more; gaps close meanwhile
+   subroutine rest_by_waiting(run, rests, status)
+      class(block_simulation), intent(inout), target :: run
+      logical, intent(out) :: rests
+      integer(c_int), intent(out) :: status
+      integer, parameter :: most = 20000
+      logical :: quasi_static
+      real(wp) :: speed
+
+      rests = .false.
+      status = status_ok
+      quasi_static = run%model%quasi_static
+      run%model%quasi_static = .true.
+      do while (run%record%settling < min(most, run%options%settle_steps))
+         call several(run, 1, status)
+         if (status /= status_ok) return
+         run%record%settling = run%record%settling + 1
+         associate (b => run%model%set%item)
+            speed = maxval(abs(b%vx) + abs(b%vy) + b%radius * abs(b%spin))
+         end associate
+         if (.not. speed <= huge(speed)) then
+            status = status_not_finite
+            return
+         end if
+         rests = speed < run%options%settle_tolerance * run%model%kick &
+            * hypot(run%model%gravity(1), run%model%gravity(2))
+         if (rests) exit
+         call run%limits(run%options%settlement)
+         if (run%record%reason /= stop_end) exit
+         if (cancel_requested()) then
+            status = status_cancelled
+            return
+         end if
+      end do
+      run%model%quasi_static = quasi_static
+      call run%stop_all()
+   end subroutine rest_by_waiting
+
+   function sizes(run) result(told)
+      class(block_simulation), intent(in) :: run
+      integer(c_int64_t) :: told(model_sizes)
+      type(body) :: one
+      type(contact_pair) :: pair
+      associate (set => run%model%set, contacts => run%model%contacts)
+         told = int([storage_size(one), storage_size(pair), size(set%item), size(set%parts), size(contacts%pair), &
+            size(contacts%spare), size(contacts%sequence), size(contacts%colour_first)], c_int64_t)
+      end associate
+   end function sizes
+
+   subroutine make_room(run, sizes, most, status)
+      class(block_simulation), intent(inout) :: run
+      integer(c_int64_t), intent(in) :: sizes(model_sizes)
+      integer(c_int64_t), intent(in) :: most
+      integer(c_int), intent(out) :: status
+      integer :: parts, failed
+      status = status_invalid_argument
+      if (any(sizes(5:8) < 0) .or. any(sizes(5:8) > most)) return
+      parts = size(run%model%set%parts)
+      associate (contacts => run%model%contacts)
+         allocate (contacts%pair(sizes(5)), contacts%spare(sizes(6)), contacts%row(parts + 1), &
+            contacts%sequence(sizes(7)), contacts%sweep(parts), contacts%box(4, parts), &
+            contacts%used(size(run%model%set%item)), contacts%colour_first(sizes(8)), stat=failed)
+      end associate
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+   end subroutine make_room
+
+   subroutine walk(run, on, status)
+      class(block_simulation), intent(inout), target :: run
+      type(tape), intent(inout) :: on
+      integer(c_int), intent(out) :: status
+      status = status_ok
+      associate (model => run%model, rigid => run%model%rigid, contacts => run%model%contacts)
+         call on%pass(model%set%item, storage_size(model%set%item))
+         call on%pass(model%pull, storage_size(model%pull))
+         call on%pass(model%pull_before, storage_size(model%pull_before))
+         call on%pass(model%base, storage_size(model%base))
+         call on%pass(model%base_place, storage_size(model%base_place))
+         call on%pass(rigid%steps, storage_size(rigid%steps))
+         call on%pass(rigid%factors, storage_size(rigid%factors))
+         call on%pass(rigid%most_rounds, storage_size(rigid%most_rounds))
+         call on%pass(rigid%open_steps, storage_size(rigid%open_steps))
+         call on%pass(rigid%residual, storage_size(rigid%residual))
+         call on%pass(contacts%pairs, storage_size(contacts%pairs))
+         call on%pass(contacts%pair, storage_size(contacts%pair))
+         call on%pass(contacts%row, storage_size(contacts%row))
+         call on%pass(contacts%sequence, storage_size(contacts%sequence))
+         call on%pass(contacts%colours, storage_size(contacts%colours))
+         call on%pass(contacts%alone, storage_size(contacts%alone))
+         call on%pass(contacts%colour_first, storage_size(contacts%colour_first))
+         call on%pass(contacts%sweep, storage_size(contacts%sweep))
+         call on%pass(contacts%box, storage_size(contacts%box))
+         call on%pass(contacts%used, storage_size(contacts%used))
+         call on%pass(contacts%skin, storage_size(contacts%skin))
+         call on%pass(contacts%friction_loss, storage_size(contacts%friction_loss))
+         call on%pass(contacts%damping_loss, storage_size(contacts%damping_loss))
+         call on%pass(contacts%support_work, storage_size(contacts%support_work))
+      end associate
+   end subroutine walk
+
+end module dem_plane_run

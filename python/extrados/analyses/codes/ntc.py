@@ -1,0 +1,102 @@
+"""Local mechanisms by NTC 2018 with Circolare 7/2019: the checks of C8.7.1.2.1, and the floor spectrum of C7.2.3."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.codes.code_rules import Line
+from extrados.motions.code_spectra import damping_factor
+from extrados.schema.constants import GRAVITY
+
+#: Pseudo-acceleration [m/s^2] over period [s] and damping ratio
+Spectrum = Callable[[float, float], float]
+
+#: Of the displacement d_0 at which the capacity vanishes: d_SLV and d_SLC (C8.7.1.2.1.6)
+SLV, SLC = 0.4, 0.6
+#: T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) [C8.7.1.10], and the damping of the mechanism there (C8.7.1.2.1.8)
+PERIOD, DAMPING = 1.68, 0.08
+#: Of the floor spectrum: a and b between which it is greatest, and the damping of the building [%] (C7.2.3)
+A, B, BUILDING_DAMPING = 0.8, 1.1, 5.0
+#: Periods up to T_SLV at which the demand is looked for
+GRID = 60
+
+
+def equivalent_period(a0: float, d0: float) -> float:
+    """T_SLV [s] on the straight capacity curve from a0 [m/s^2] to 0 at d0 [m]."""
+    return float(PERIOD * np.pi * np.sqrt(SLV * d0 / (a0 * (1.0 - SLV))))
+
+
+def displacement(spectrum: Spectrum, period: float, damping: float = DAMPING, peak: float | None = None) -> float:
+    """Spectral displacement [m]: the greatest up to the period, since that of a record may fall again (C8.7.1.2.1.8).
+
+    peak: a period [s] at which a floor spectrum begins to fall [C8.7.1.12].
+    """
+    periods = (period * np.arange(1, GRID + 1) / GRID).tolist()
+    if peak is not None and peak < period:
+        periods.append(peak)
+    return max(spectrum(t, damping) * (t / (2.0 * np.pi)) ** 2 for t in periods)
+
+
+@dataclass(frozen=True)
+class Floor:
+    """The spectrum at a height of a building that sways in its first mode: period T_1 [s], gamma_1 psi_1(z)."""
+
+    ground: Spectrum
+    first: float
+    part: float
+
+    @property
+    def acceleration(self) -> float:
+        """a_Z(z) [m/s^2], [C7.2.7]."""
+        xi = BUILDING_DAMPING
+        return self.ground(self.first, 0.01 * xi) * abs(self.part) * float(np.sqrt(1.0 + 4e-4 * xi**2))
+
+    def __call__(self, period: float, damping: float) -> float:
+        """S_eZ(T, xi, z) [m/s^2], [C7.2.6], from T_1 on not below that of the ground [C7.2.5]."""
+        top = 1.1 / np.sqrt(BUILDING_DAMPING) * damping_factor(damping) * self.acceleration
+        rise = 1.1 / np.sqrt(BUILDING_DAMPING) * damping_factor(damping) - 1.0
+        if period < A * self.first:
+            return float(top / (1.0 + rise * (1.0 - period / (A * self.first)) ** 1.6))
+        if period >= B * self.first:
+            top = top / (1.0 + rise * (period / (B * self.first) - 1.0) ** 1.2)
+        return float(top if period <= self.first else max(top, self.ground(period, damping)))
+
+
+def floor(ground: Spectrum, height: float, building: float, storeys: int, period: float | None) -> Floor:
+    """Of a place at `height` in a building so high [m], with so many storeys: psi_1 = z/H, gamma_1 = 3 n/(2 n + 1)
+    [C7.2.10]; T_1 = 0.05 H^0.75 where none is known."""
+    return Floor(ground, period or 0.05 * building**0.75, height / building * 3.0 * storeys / (2.0 * storeys + 1.0))
+
+
+def checks(
+    a0: float, d0: float | None, q: float, peak: float | None, spectrum: Spectrum | None, note: str, at_height: Floor | None = None,
+    alone: float | None = None,
+) -> list[Line]:  # fmt: skip
+    """The linear check with q and the nonlinear one, of which either suffices; at a height both ask the floor.
+
+    a0: alpha_0 g/(e* FC) [m/s^2]; d0 [m]: where the capacity vanishes, None where it does not; peak: a_g S [m/s^2];
+    alone: a0 of the curve to d0 where it is another, without ties that may not last to collapse.
+    """
+    demand, where, quantity = peak, "at the ground", "a_g S"
+    if at_height is not None:
+        # near the ground the first mode alone would ask for less than the ground itself does
+        demand = max(at_height.acceleration, peak or 0.0)
+        where, quantity = "at height z", "a_Z"
+    lines = [
+        Line(f"NTC linear ({where})", quantity, q * a0 / GRAVITY, None if demand is None else demand / GRAVITY, "g",
+             "NTC 2018, Circ. 7/2019 C8.7.1.2.1.7: q alpha_0 g/(e* FC) >= a_Z, at the ground a_g S; [C8.7.1.8], [C7.2.8]", note, "NTC 2018"),
+    ]  # fmt: skip
+    if d0 is not None:
+        period = equivalent_period(a0 if alone is None else alone, d0)
+        asked = None
+        if at_height is not None:
+            asked = displacement(at_height, period, peak=B * at_height.first)
+        elif spectrum is not None:
+            asked = displacement(spectrum, period)
+        lines.append(
+            Line("NTC nonlinear", "displacement", SLV * d0, asked, "m",
+                 "NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_SLV = 0.4 d_0 >= S_D(T_SLV) at 8 %, T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) "
+                 "[C8.7.1.10], [C8.7.1.12]", f"T_SLV = {period:.3f} s", "NTC 2018")
+        )  # fmt: skip
+    return lines

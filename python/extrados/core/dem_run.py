@@ -1,0 +1,200 @@
+"""Runs of discrete elements in the core (fortran/dem/run.f90), of the plane (core.dem) or of space (core.dem3): from rest to
+the end of a motion."""
+
+import hashlib
+import time
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar, Generic, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from extrados import _core
+from extrados.core import lists
+from extrados.core.calls import interruptible, long_call, real, room_for, thread_count
+from extrados.core.errors import check, status_code
+from extrados.core.ground import Ground, MotionSet
+from extrados.core.handles import Owner
+
+#: Why a run ended, by the number the core gives.
+REASONS = tuple(lists.words("dem_stop").values())
+#: Rows of the energy ledger [J].
+ENERGIES = tuple(lists.words("dem_energy").values())
+#: Between two pauses of a run that is watched: about so long [s]; the first one comes after a few steps.
+PAUSE_SECONDS, FIRST_PAUSE = 0.5, 256
+_DIGEST = 4  # words of a state that hold its SHA-256
+
+#: No motion of the ground
+STILL = Ground(breaks=np.array([0.0, 1.0]), linear=np.zeros((1, 1, 2)), harmonic=np.zeros((1, 1, 0, 4)))
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """How to run. step [s]: 0 takes `fraction` of the critical step. settle_steps 0 starts without settling under gravity;
+    settlement: displacement by which a body falls instead of settling [m], 0 none. collapse: displacement that counts as
+    collapse [m], 0 none. residual_limit: of the energy that went round, above it the run is stopped. stop_at_rest: end once
+    all rests and the ground is still."""
+
+    end_time: float
+    output_step: float = 0.01
+    step: float = 0.0
+    fraction: float = 0.3
+    settle_steps: int = 400_000
+    settle_tolerance: float = 1e-6
+    settlement: float = 0.0
+    collapse: float = 0.0
+    residual_limit: float = 0.1
+    stop_at_rest: bool = False
+    threads: int = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class FoundRun:
+    """A run. reason: see REASONS; blamed: the bodies that caused the stop.
+
+    time (t) [s]; place (t, n, 3): x, y [m] and rotation [rad] relative to the ground, or in space the centroids [m]; rate
+    (t, n, 3 or 6); energy: see ENERGIES, each (t) [J]; settled (n, 3): place after settling; residual: greatest energy from
+    nowhere over the energy that went round; bounces and airborne time [s] of each body.
+    """
+
+    reason: str
+    blamed: list[int]
+    time: np.ndarray
+    place: np.ndarray
+    rate: np.ndarray
+    energy: dict[str, np.ndarray]
+    settled: np.ndarray
+    stop_time: float
+    steps: int
+    settling_steps: int
+    searches: int
+    most_pairs: int
+    step: float
+    critical_step: float
+    residual: float
+    bounces: np.ndarray
+    airborne: np.ndarray
+    interrupted: bool = False
+
+
+Found = TypeVar("Found", bound=FoundRun)
+
+
+class BodyModel(Owner, ABC, Generic[Found]):
+    """Bodies and options in the core; runs under any number of motions, each from the same start."""
+
+    #: Velocities of a body, and values that tell where it is and how it moves, by which answers are kept within bounds
+    rates: ClassVar[int]
+    values: ClassVar[int]
+    count: int
+    options: RunOptions
+
+    def _put_options(self, settle: bool) -> None:
+        o = self.options
+        if not (o.end_time > 0.0 and o.output_step > 0.0 and 0.0 < o.fraction <= 1.0):
+            raise ValueError("end time, output step and the fraction of the critical step must be positive")
+        limits = [o.end_time, o.step, o.fraction, o.settle_tolerance, o.settlement, o.collapse, o.residual_limit]
+        status = _core.api_dem_run.options(
+            self.handle, real("limits", limits, (7,)), int(o.settle_steps) if settle else 0, int(o.stop_at_rest),
+            thread_count(o.threads),
+        )  # fmt: skip
+        check(status, "options of the run")
+
+    def run(
+        self,
+        motions: MotionSet,
+        motion: int = 0,
+        *,
+        scale: float = 1.0,
+        times: npt.ArrayLike | None = None,
+        state: np.ndarray | None = None,
+        watch: Callable[[float], None] | None = None,
+    ) -> Found:
+        """Settle under gravity, then move the ground by `scale` times a motion of the set.
+
+        times: ascending output times [s] instead of every output_step. state: goes on where a run of this model, these
+        times and this motion had paused. watch: the run pauses now and then, and when it is interrupted, tells the time
+        it has come to [s], and may be asked for its `state`. Neither changes a bit of the result.
+        """
+        o = self.options
+        if times is None:
+            room_for(self.values, self.count, int(min(o.end_time / o.output_step, 1e12)) + 1)
+            times = np.arange(round(o.end_time / o.output_step * (1 - 1e-12)) + 1) * o.output_step
+        wanted = real("times", times, (None,))
+        if not len(wanted) or np.any(np.diff(wanted) < 0.0):
+            raise ValueError("output times must ascend, and there must be one")
+        if not 0 <= motion < len(motions):
+            raise IndexError(f"motion {motion} is not in the set of {len(motions)}")
+        if not np.isfinite(scale):
+            raise ValueError(f"scale is {scale}, expected a number")
+        where = (self.handle, motions.handle, int(motion) + 1, float(scale))
+        steps = FIRST_PAUSE if watch else 0
+        with interruptible():
+            if state is None:
+                check(_core.api_dem_run.start(self.handle, wanted), self.what)
+            else:
+                self._resume(state, wanted)
+            paused, reached, status = long_call(_core.api_dem_run.run, *where, steps)
+            while paused and watch:
+                watch(reached)
+                if status != status_code("ok"):
+                    break
+                begin = time.perf_counter()
+                paused, reached, status = long_call(_core.api_dem_run.run, *where, steps)
+                ideal = steps * PAUSE_SECONDS / max(time.perf_counter() - begin, 1e-6)
+                steps = int(min(max(1.0, ideal), 8.0 * steps, 1e9))
+        interrupted = status == status_code("cancelled")
+        if not interrupted:
+            check(status, self.what)
+        return self._last_run(interrupted)
+
+    def state(self) -> np.ndarray:
+        """The whole state of a run that has paused, for `run` of this build alone; HandleError where none has."""
+        words, status = _core.api_dem_run.state_size(self.handle)
+        check(status, "state of a run that has paused")
+        state, status = _core.api_dem_run.state(self.handle, int(words))
+        check(status, "state of the run")
+        return np.concatenate([state, state_digest(state)])
+
+    def _resume(self, state: np.ndarray, wanted: np.ndarray) -> None:
+        """ValueError where the state is damaged or none of this model, these times and this build."""
+        status = _core.api_dem_run.resume(self.handle, wanted, state_words(state))
+        if status == status_code("out_of_memory"):
+            check(status, "state of the run")
+        if status != status_code("ok"):
+            raise ValueError("the state is of a run of another model, of other times or of another build")
+
+    @abstractmethod
+    def _last_run(self, interrupted: bool) -> Found:
+        """What the core has of the last run."""
+
+    def _recorded(self, interrupted: bool) -> dict[str, Any]:
+        """What the core tells of the last run of any bodies, by the names of FoundRun."""
+        counts, measures, status = _core.api_dem_run.summary(self.handle)
+        check(status, "how the run ended")
+        points, reason, first, second, settling, searches, pairs, steps = (int(k) for k in counts)
+        when, place, rate, energy, status = _core.api_dem_run.history(self.handle, self.count, self.rates, points)
+        check(status, "history of the run")
+        least_step, critical_step, stop_time, residual = (float(value) for value in measures)
+        return {
+            "reason": REASONS[reason], "blamed": [k - 1 for k in (first, second) if k > 0], "time": when, "place": place.T,
+            "rate": rate.T, "energy": dict(zip(ENERGIES, energy, strict=True)), "stop_time": stop_time, "steps": steps,
+            "settling_steps": settling, "searches": searches, "most_pairs": pairs, "step": least_step,
+            "critical_step": critical_step, "residual": residual, "interrupted": interrupted,
+        }  # fmt: skip
+
+
+def state_words(state: np.ndarray) -> np.ndarray:
+    """The words of a state that was kept with its digest; ValueError where they are damaged."""
+    state = np.ascontiguousarray(state, dtype=np.int64)
+    words = state[:-_DIGEST]
+    if state.ndim != 1 or not np.array_equal(state[-_DIGEST:], state_digest(words)):
+        raise ValueError("the state of the run is damaged")
+    return words
+
+
+def state_digest(words: np.ndarray) -> np.ndarray:
+    """What tells a damaged state."""
+    return np.frombuffer(hashlib.sha256(words.tobytes()).digest(), dtype=np.int64)

@@ -1,0 +1,304 @@
+"""The rules that say why strategies differ: each with numbers that show it, and with each of them taken away, when it is silent."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from extrados.analyses.assess.reasons import HEADLINES, RULES, Facts, explained
+from extrados.building.building import Building
+from extrados.decks.reader import make_deck
+from extrados.motions import pulses
+from extrados.results.assess import StrategyVerdict
+from extrados.results.codes import Check, CodeChecks
+from extrados.results.dem import DemRun
+from extrados.results.limit import Fracture, Tilt
+from extrados.results.model import Array, Result
+from extrados.results.rocking import Assessment, Rocking
+from extrados.schema.constants import GRAVITY
+
+COLUMN = {"kind": "column", "width": 1.2, "height": 6.0, "drums": 3}
+PANEL = {"kind": "panel", "width": 4.8, "height": 3.2, "thickness": 0.4, "unit_length": 0.8, "unit_height": 0.4}
+PEAK = 0.4
+
+
+def building(**tables: dict) -> Building:
+    return make_deck({"structure": COLUMN, **tables, "analysis": [{"kind": "tilt"}]}).building
+
+
+def row(strategy: str, outcome: str, **more: object) -> StrategyVerdict:
+    keys = {
+        "label": strategy, "part": None, "status": "ok", "reason": "", "axis": "acceleration", "unit": "g", "capacity": None,
+        "demand": None, "margin": None, "margin_at_least": None, "margin_below": None, "parameters": "", "assumes": "", "statement": "",
+    }  # fmt: skip
+    return StrategyVerdict(strategy=strategy, outcome=outcome, **(keys | more))
+
+
+# Results with no more than what a rule reads: one that reads more fails at once.
+
+
+def rocking(outcome: str = "recovery", ratio: float = 0.3, arrays: dict | None = None, **more: object) -> Result:
+    keys = {"outcome": outcome, "peak_rotation_ratio": ratio, "outcomes_by_rule": [], "decided_by_last_digits": False}
+    return Result("rocking", results=Rocking.model_construct(**(keys | more)), arrays=arrays or {})
+
+
+def dem(outcome: str = "recovery", moved: float = 0.1, slip: float = 0.0) -> Result:
+    keys = {"outcome": outcome, "peak_displacement_m": moved, "collapse_displacement_m": 1.0, "peak_slip_m": slip}
+    return Result("dem", results=DemRun.model_construct(**keys))
+
+
+def tilt(right: float, left: float | None = None, fracture: Fracture | None = None) -> Result:
+    keys = {
+        "collapse_acceleration_g": right,
+        "collapse_acceleration_opposite_g": right if left is None else left,
+        "fracture": fracture,
+    }
+    return Result("tilt", results=Tilt.model_construct(**keys))
+
+
+def checked(capacity: float, demand: float | None = 0.3) -> Result:
+    check = Check(capacity=capacity, demand=demand, unit="g", verdict="", source="", note="", code="NTC 2018")
+    return Result("code-checks", results=CodeChecks.model_construct(checks={"NTC linear (at the ground)": check}))
+
+
+def criterion(verdict: str) -> Result:
+    impulse = {"amplitude_g": 0.3, "period_s": 0.5, "goodness_of_fit": 0.6}
+    sine = type("Impulse", (), impulse)()
+    return Result("assessment", results=Assessment.model_construct(verdict=verdict, primary_impulse=sine))
+
+
+def facts(rows: list[StrategyVerdict], results: dict[str, Result] | None = None, **more: object) -> Facts:
+    keys = {"building": building(), "motion": pulses.sine_pulse(PEAK * GRAVITY, 1.2), "peak_g": PEAK, "apart": 1.5}
+    return Facts(rows={r.strategy: r for r in rows}, results=results or {}, **(keys | more))
+
+
+def having(f: Facts, **changed: Result | None) -> Facts:
+    """The same with other results of strategies; None: without."""
+    results = {**f.results, **changed}
+    return replace(f, results={name: r for name, r in results.items() if r is not None})
+
+
+def probed(f: Facts, **changed: Result | None) -> Facts:
+    probes = {**f.probes, **{name.replace("_", "-"): r for name, r in changed.items()}}
+    return replace(f, probes={name: r for name, r in probes.items() if r is not None})
+
+
+def rated(f: Facts, *rows: StrategyVerdict) -> Facts:
+    return replace(f, rows={**f.rows, **{r.strategy: r for r in rows}})
+
+
+def by_rule(*outcomes: str) -> list:
+    made = zip(("thesis", "inelastic"), (0.9, 0.6), outcomes, strict=True)
+    return [type("Outcome", (), {"rule": rule, "restitution": c, "outcome": outcome})() for rule, c, outcome in made]
+
+
+# Each scenario shows its rule; each of its spoils takes one number away.
+
+FALLS, STANDS = row("tilt", "falls", capacity=0.2, demand=PEAK, margin=0.5), row("rocking", "stands")
+DYNAMIC = [row("rocking", "stands"), row("dem", "falls")]
+
+
+def outside(share: float, far: float = 0.3) -> dict:
+    """A thrust line that lies outside the stones in a share of a hundred states."""
+    position = np.full((100, 4), 0.5)
+    position[: round(100 * share), 1] = 1.0 + far
+    return {"thrust_position": Array(position, ("time", "joint"), "")}
+
+
+Spoil = Callable[[Facts], Facts]
+SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
+    "a push too short": (
+        "static-peak",
+        lambda: facts([FALLS, STANDS], {"rocking": rocking()}, needed_s=lambda a: 0.5),
+        {
+            "the excursion is long enough": lambda f: replace(f, needed_s=lambda a: 0.39),
+            "statics says no less": lambda f: rated(f, row("tilt", "stands", capacity=0.5, margin=1.25)),
+            "its capacity is not known": lambda f: rated(f, row("tilt", "falls", margin=0.5)),
+        },
+    ),
+    "stones that hardly move in that time": (
+        "static-peak",
+        lambda: facts([FALLS, row("dem", "stands")], {"dem": dem(moved=0.1)}),
+        {
+            "they nearly fell": lambda f: having(f, dem=dem(moved=0.6)),
+            "they fell": lambda f: having(f, dem=dem("collapse", 0.1)),
+            "the motion never passes the capacity": lambda f: replace(f, motion=pulses.sine_pulse(0.1 * GRAVITY, 1.2)),
+            "rocking knows a needed time": lambda f: having(f, rocking=rocking()),
+        },
+    ),
+    "a cracked buttress": (
+        "crack",
+        lambda: facts([FALLS, STANDS], {"tilt": tilt(0.5, fracture=Fracture(collapse_acceleration_g=0.2))}),
+        {
+            "it was not asked to crack": lambda f: having(f, tilt=tilt(0.5)),
+            "it would fall in one piece too": lambda f: having(f, tilt=tilt(0.35, fracture=Fracture(collapse_acceleration_g=0.2))),
+            "the crack takes nothing": lambda f: having(f, tilt=tilt(0.5, fracture=Fracture(collapse_acceleration_g=0.5))),
+            "limit analysis is the one that stands": lambda f: rated(f, row("tilt", "stands"), row("rocking", "falls")),
+        },
+    ),
+    "ties that others leave out": (
+        "left-out",
+        lambda: facts([STANDS, row("dem", "falls")], {"rocking": rocking(ratio=0.1)}, bare={"dem": ("[[ties]]",)},
+                      probes={"without-restraints": rocking("collapse", 2.0)}),
+        {
+            "none is left out": lambda f: replace(f, bare={}),
+            "without them it turns no farther": lambda f: probed(f, without_restraints=rocking(ratio=0.11)),
+            "nobody tried it without": lambda f: probed(f, without_restraints=None),
+        },
+    ),
+    "ties of statics": (
+        "left-out",
+        lambda: facts([row("tilt", "stands", capacity=0.5, margin=1.25), row("sla", "falls", capacity=0.3, margin=0.75)],
+                      bare={"sla": ("[[ties]]",)}, probes={"tilt-without": tilt(0.31)}),
+        {
+            "without them it says otherwise than the elements": lambda f: probed(f, tilt_without=tilt(0.42)),
+            "a wall lets only the other sense count": lambda f: replace(
+                probed(f, tilt_without=tilt(0.42, 0.31)),
+                building=building(structure={"kind": "block", "width": 1.0, "height": 5.0}, supports={"abutting_wall": "left"}),
+            ),
+            "the elements know them": lambda f: replace(f, bare={}),
+        },
+    ),
+    "impact rules": (
+        "impact-rule",
+        lambda: facts(DYNAMIC, {"rocking": rocking(outcomes_by_rule=by_rule("collapse", "recovery"))}),
+        {
+            "all rules stand": lambda f: having(f, rocking=rocking(outcomes_by_rule=by_rule("recovery", "recovery"))),
+            "all rules fall": lambda f: having(f, rocking=rocking(outcomes_by_rule=by_rule("collapse", "collapse"))),
+            "rocking differs from statics alone": lambda f: replace(f, rows={r.strategy: r for r in (FALLS, STANDS)}),
+        },
+    ),
+    "last digits of rocking": (
+        "last-digits",
+        lambda: facts(DYNAMIC, {"rocking": rocking(decided_by_last_digits=True)}),
+        {"they do not decide": lambda f: having(f, rocking=rocking())},
+    ),
+    "last digits of elements": (
+        "last-digits",
+        lambda: facts([STANDS, row("dem", "open")], {"dem": dem()}, probes={"dem-nudged": dem("collapse", 2.0)}),
+        {
+            "the nudged motion ends alike": lambda f: probed(f, dem_nudged=None),
+            "elements say as the others do": lambda f: rated(f, row("dem", "stands")),
+        },
+    ),
+    "one sine for the whole motion": (
+        "sine-for-record",
+        lambda: facts([row("assessment", "stands"), row("rocking", "falls")],
+                      {"assessment": criterion("stands"), "rocking": rocking("collapse", 2.0)}, probes={"sine": rocking(ratio=0.2)}),
+        {
+            "under the sine it falls, against the criterion": lambda f: probed(f, sine=rocking("collapse", 2.0)),
+            "the motion turns it no farther than the sine": lambda f: probed(
+                having(f, rocking=rocking(ratio=0.21)), sine=rocking(ratio=0.2)
+            ),
+            "nobody tried the sine": lambda f: probed(f, sine=None),
+        },
+    ),
+    "stones that slide": (
+        "sliding",
+        lambda: facts(DYNAMIC, {"rocking": rocking(), "dem": dem("collapse", 1.0, slip=0.1)}, probes={"no-sliding": dem(moved=0.1)}),
+        {
+            "they hardly slid": lambda f: having(f, dem=dem("collapse", 1.0, slip=0.005)),
+            "without sliding they end alike": lambda f: probed(f, no_sliding=dem("collapse", 0.9)),
+            "nobody tried without": lambda f: probed(f, no_sliding=None),
+            "the run is one draw of many": lambda f: probed(f, dem_nudged=dem()),
+        },
+    ),
+    "stones apart": (
+        "drums",
+        lambda: facts(DYNAMIC, {"rocking": rocking(), "dem": dem("collapse", 1.0)}, probes={"monolith": dem(moved=0.1)}),
+        {
+            "as one body they fall too": lambda f: probed(f, monolith=dem("collapse", 1.0)),
+            "nobody tried one body": lambda f: probed(f, monolith=None),
+            "the run is one draw of many": lambda f: probed(f, dem_nudged=dem()),
+        },
+    ),
+    "hinges elsewhere": (
+        "hinges-elsewhere",
+        lambda: facts(DYNAMIC, {"rocking": rocking(arrays=outside(0.2)), "dem": dem("collapse")}),
+        {
+            "the thrust line leaves them rarely": lambda f: having(f, rocking=rocking(arrays=outside(0.05))),
+            "by nothing": lambda f: having(f, rocking=rocking(arrays=outside(0.2, far=0.005))),
+            "it is not known": lambda f: having(f, rocking=rocking()),
+        },
+    ),
+    "a wall of elements that cannot slide": (
+        "membrane-without-sliding",
+        lambda: facts([FALLS, row("sla", "stands", capacity=0.55, margin=1.4)], {"tilt": tilt(0.2)},
+                      building=building(structure=PANEL), probes={"tilt-no-sliding": tilt(0.6)}),
+        {
+            "sliding takes nothing": lambda f: probed(f, tilt_no_sliding=tilt(0.205)),
+            "the elements are nearer to what slides": lambda f: probed(f, tilt_no_sliding=tilt(2.0)),
+            "the elements are the stones": lambda f: replace(f, building=building()),
+        },
+    ),
+    "elements that bear tension": (
+        "tension",
+        lambda: facts([FALLS, row("sla", "stands", capacity=0.55, margin=1.4)], {"tilt": tilt(0.2)},
+                      building=building(structure=PANEL, material={"tensile_strength": 1e5, "fracture_energy": 10.0})),
+        {
+            "they bear none": lambda f: replace(f, building=building(structure=PANEL)),
+            "they bear less than the stones": lambda f: having(f, tilt=tilt(0.6)),
+        },
+    ),
+    "mortar": (
+        "mortar",
+        lambda: facts([STANDS, row("dem", "stands", margin_at_least=3.0), FALLS],
+                      building=building(joints={"tension": 1e5, "cohesion": 1e5})),
+        {
+            "joints are dry": lambda f: replace(f, building=building()),
+            "the elements bear less": lambda f: rated(f, row("dem", "falls"), row("tilt", "stands", margin=1.25)),
+        },
+    ),
+    "factors of codes": (
+        "code-factors",
+        lambda: facts([FALLS, row("code-checks", "stands", margin=1.2)], {"tilt": tilt(0.2), "code-checks": checked(0.36)}),
+        {
+            "they cancel": lambda f: having(f, **{"code-checks": checked(0.205)}),
+            "the code asks nothing": lambda f: having(f, **{"code-checks": checked(0.36, None)}),
+            "both agree": lambda f: rated(f, row("code-checks", "falls", margin=0.55)),
+        },
+    ),
+    "chance": (
+        "chance",
+        lambda: facts([STANDS, row("probability", "open", demand=0.4, capacity=0.05, parameters="64 buildings (coefficients)")]),
+        {
+            "all fall": lambda f: rated(f, row("probability", "falls", demand=0.99)),
+            "none falls": lambda f: rated(f, row("probability", "stands", demand=0.01), row("rocking", "falls")),
+            "it differs from statics alone": lambda f: replace(f, rows={r.strategy: r for r in (FALLS, f.rows["probability"])}),
+        },
+    ),
+}  # fmt: skip
+
+
+def said(f: Facts) -> set[str]:
+    return {one.rule for one in explained(f)[0]}
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_a_rule_speaks_where_its_numbers_show_it(name: str) -> None:
+    rule, make, _ = SCENARIOS[name]
+    found, _ = explained(make())
+    (one,) = [r for r in found if r.rule == rule]
+    assert one.headline == HEADLINES[rule] and one.text and one.explains
+    pairs = make().pairs()
+    assert all(tuple(p) in pairs for p in one.explains), "of pairs that do not agree"
+
+
+@pytest.mark.parametrize(
+    ("name", "spoil"), [(name, spoil) for name, (_, _, spoils) in SCENARIOS.items() for spoil in spoils]
+)
+def test_it_is_silent_where_one_of_them_is_missing(name: str, spoil: str) -> None:
+    rule, make, spoils = SCENARIOS[name]
+    assert rule not in said(spoils[spoil](make()))
+
+
+def test_every_rule_has_its_scenario() -> None:
+    assert {rule for rule, _, _ in SCENARIOS.values()} == set(HEADLINES)
+    spoken = {name: [r for r in RULES if r(make(), make().pairs())] for name, (_, make, _) in SCENARIOS.items()}
+    assert {rule for rules in spoken.values() for rule in rules} == set(RULES), "each function speaks in one at least"
+
+
+def test_a_pair_without_a_reason_is_told_as_unexplained() -> None:
+    f = facts([FALLS, STANDS], {"rocking": rocking()}, needed_s=lambda a: 0.1)
+    assert explained(f) == ([], [("tilt", "rocking")])
