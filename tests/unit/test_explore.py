@@ -606,6 +606,17 @@ def test_the_map_gets_finer_and_is_kept(session: Session, monkeypatch: pytest.Mo
     assert len(do(session, do="domain")) == 1, "the same building: nothing to compute"
 
 
+def test_the_map_of_a_base_that_gives_way_begins_with_few_cells(
+    session: Session, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each of them takes long: the first reply is not to wait for a hundred."""
+    monkeypatch.setattr("extrados.explore.rocking.PATIENCE", 0.0)
+    do(session, do="open", preset="rocking/soft-base")
+    first = next(session.answer({"do": "domain"}))
+    assert first.words["domain"]["part"]
+    assert 0 < (first.arrays["codes"] < 255).sum() <= 10
+
+
 def test_films_are_films_or_refused() -> None:
     import io
 

@@ -23,8 +23,9 @@ MOST_PICTURES, MOST_POINTS = 600, 1600
 MOST_OUTPUTS = 20_000
 #: What each round of the map adds: every 4th, every 2nd, every cell
 STRIDES = (4, 2, 1)
-#: Cells of the map that are run at once to begin with, how long those run at once may take [s], and how fast they may grow
-CELLS, PATIENCE, GROWTH = 4, 0.06, 4.0
+#: Cells of the map that are run at once to begin with, and on a base that gives way, where each takes long; how long those run
+#: at once may take [s], and how fast their number may grow
+CELLS, FEW, PATIENCE, GROWTH = 100, 4, 0.06, 4.0
 #: Shares of the sampling at which a motion is drawn
 CURVE = 1200
 
@@ -160,7 +161,8 @@ def domain(
         "outcomes": ["does not rock", "recovers", "collapses after an impact (Mode I)", "collapses at once (Mode II)"],
     }  # fmt: skip
     axes = {"duration": durations, "amplitude": amplitudes / GRAVITY}
-    drawn, count, last = (STRIDES[0], codes), CELLS, time.perf_counter()
+    drawn, count = (STRIDES[0], codes), CELLS if building.supports.stiffness is None else FEW
+    last = time.perf_counter()
     for stride in STRIDES:
         half = stride // 2
         chosen = np.zeros(codes.shape, dtype=bool)

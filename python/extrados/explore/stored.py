@@ -162,6 +162,15 @@ class _Maker:
             if name in self.arrays:
                 self.out[name] = self.arrays[name][keep]
 
+    def _draw(
+        self, title: str, x: dict[str, Any], y: dict[str, Any], series: list[dict[str, Any]], **more: Any
+    ) -> None:
+        self.charts.append(_chart(title, x, y, series, **more))
+
+    def _pulses(self, title: str, x: dict[str, Any], series: list[dict[str, Any]], **more: Any) -> None:
+        """A chart of amplitudes [g] over the lengths of pulses."""
+        self._draw(title, x, _axis("", "amplitude", "g"), series, least=0.0, **more)
+
     def _over_time(self, count: int) -> slice:
         return slice(None, None, max(1, -(-count // MOST_POINTS)))
 
@@ -210,10 +219,7 @@ class _Maker:
         }
         if len(self.arrays["rose_direction"]) > 2:
             self.send("rose_direction", "rose_capacity")
-            self.charts.append(
-                _chart("Capacity over the direction of the push", _axis("rose_direction", "direction in plan", "deg"),
-                       _axis("", "collapse acceleration", "g"), [_series("rose_capacity", "capacity", sort="both")], least=0.0)
-            )  # fmt: skip
+            self._draw("Capacity over the direction of the push", _axis("rose_direction", "direction in plan", "deg"), _axis("", "collapse acceleration", "g"), [_series("rose_capacity", "capacity", sort="both")], least=0.0)  # fmt: skip
 
     def pushover(self) -> None:
         """Base shear over displacement of every sense or stage, and the building as it cracks under the first of them."""
@@ -229,9 +235,7 @@ class _Maker:
                 self.send(f"{prefix}envelope_load", x)
                 series.append(_series(f"{prefix}envelope_load", label, x=x, factor=1e-3, dashed=k % 2 == 1))
         axis = _axis("envelope_displacement", "displacement", "mm", 1e3)
-        self.charts.append(
-            _chart("Base shear and displacement", axis, _axis("", "base shear", "kN"), series, trace="state")
-        )
+        self._draw("Base shear and displacement", axis, _axis("", "base shear", "kN"), series, trace="state")
         if "state_event" not in self.arrays:
             return
         events = self.arrays["state_event"]
@@ -279,10 +283,7 @@ class _Maker:
         if "collapse_friction" in self.arrays:
             self.out["joint"] = np.arange(len(self.arrays["collapse_friction"]))
             self.send("collapse_friction", "collapse_normal")
-            self.charts.append(
-                _chart("Friction needed at collapse", _axis("joint", "joint", ""), _axis("", "coefficient of friction", ""),
-                       [_series("collapse_friction", "needed", sort="points")])
-            )  # fmt: skip
+            self._draw("Friction needed at collapse", _axis("joint", "joint", ""), _axis("", "coefficient of friction", ""), [_series("collapse_friction", "needed", sort="points")])  # fmt: skip
 
     def thrust(self) -> None:
         self._stones()
@@ -335,24 +336,22 @@ class _Maker:
             for i in self.arrays["tracked"][:6].tolist():
                 self.out[f"turn_{i}"] = np.linalg.norm(self.arrays["turn"][fine, i], axis=1)
                 rows.append(_series(f"turn_{i}", f"stone {i + 1}", factor=1e3))
-            self.charts.append(_chart("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True))
+            self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
         if "rotation" in self.arrays:
             tracked = self.arrays["tracked"][:6]
             rows = []
             for i, label in zip(tracked.tolist(), list(self.run[self.name].peak_rotation_rad), strict=False):
                 self.out[f"rotation_{i}"] = self.arrays["rotation"][fine, i]
                 rows.append(_series(f"rotation_{i}", label, factor=1e3))
-            self.charts.append(_chart("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True))
+            self._draw("Rotation", axis, _axis("", "rotation", "mrad"), rows, cursor=True)
         if "ground" in self.arrays:
             self.out["ground"] = self.arrays["ground"][fine]
-            self.charts.append(
-                _chart(
-                    "Ground",
-                    axis,
-                    _axis("", "acceleration", "g"),
-                    [_series("ground", "ground", factor=1 / GRAVITY)],
-                    cursor=True,
-                )
+            self._draw(
+                "Ground",
+                axis,
+                _axis("", "acceleration", "g"),
+                [_series("ground", "ground", factor=1 / GRAVITY)],
+                cursor=True,
             )
         energies = [
             k
@@ -362,14 +361,12 @@ class _Maker:
         for kind in energies:
             self.out[f"{kind}_energy"] = self.arrays[f"{kind}_energy"][fine]
         if energies:
-            self.charts.append(
-                _chart(
-                    "Energy",
-                    axis,
-                    _axis("", "energy", "kJ"),
-                    [_series(f"{k}_energy", k, factor=1e-3) for k in energies],
-                    cursor=True,
-                )
+            self._draw(
+                "Energy",
+                axis,
+                _axis("", "energy", "kJ"),
+                [_series(f"{k}_energy", k, factor=1e-3) for k in energies],
+                cursor=True,
             )
 
     def supports(self) -> None:
@@ -377,14 +374,12 @@ class _Maker:
             self.send("movement")
             self.out["force_x"], self.out["force_y"] = self.arrays["force"].T
             rows = [_series("force_x", "horizontal", factor=1e-3), _series("force_y", "vertical", factor=1e-3)]
-            self.charts.append(
-                _chart(
-                    "Force on the support",
-                    _axis("movement", "movement of the support", "mm", 1e3),
-                    _axis("", "force", "kN"),
-                    rows,
-                    cursor=True,
-                )
+            self._draw(
+                "Force on the support",
+                _axis("movement", "movement of the support", "mm", 1e3),
+                _axis("", "force", "kN"),
+                rows,
+                cursor=True,
             )
         film = next((f for f in (FILM, SHOWN) if f"{f[0]}_movement" in self.arrays), None)
         if film is not None:
@@ -457,7 +452,7 @@ class _Maker:
                     sort="band",
                 )
             )
-        self.charts.append(_chart("Load and displacement", axis, _axis("", "load", "kN"), series, trace="state"))
+        self._draw("Load and displacement", axis, _axis("", "load", "kN"), series, trace="state")
 
     def fragility(self) -> None:
         a = self.arrays
@@ -484,15 +479,13 @@ class _Maker:
                 rows.append(
                     _series("stripe_collapse_probability", "share that came down", x="stripe_level", sort="points")
                 )
-            self.charts.append(
-                _chart(
-                    "Fragility",
-                    _axis("grid", about or "intensity", unit),
-                    _axis("", "probability", ""),
-                    rows,
-                    least=0.0,
-                    most=1.0,
-                )
+            self._draw(
+                "Fragility",
+                _axis("grid", about or "intensity", unit),
+                _axis("", "probability", ""),
+                rows,
+                least=0.0,
+                most=1.0,
             )
         if "duration" in a and "lower" in a:
             self.send("duration", "lower", "upper")
@@ -501,30 +494,17 @@ class _Maker:
                 if key not in ("duration", "lower", "upper") and np.shape(a[key]) == np.shape(a["duration"]):
                     self.send(key)
                     rows.append(_series(key, key.replace("_", " "), sort="both"))
-            self.charts.append(
-                _chart(
-                    "Over durations",
-                    _axis("duration", "duration", "s"),
-                    _axis("", "share", ""),
-                    rows,
-                    least=0.0,
-                    most=1.0,
-                )
+            self._draw(
+                "Over durations", _axis("duration", "duration", "s"), _axis("", "share", ""), rows, least=0.0, most=1.0
             )
         if "bin_edge" in a and "bin_count" in a:
             self.out["bin_middle"] = 0.5 * (a["bin_edge"][1:] + a["bin_edge"][:-1])
             self.send("bin_count")
-            self.charts.append(
-                _chart("Greatest rotations", _axis("bin_middle", "greatest rotation over the critical one", ""),
-                       _axis("", "runs", ""), [_series("bin_count", "runs", sort="bars")], least=0.0)
-            )  # fmt: skip
+            self._draw("Greatest rotations", _axis("bin_middle", "greatest rotation over the critical one", ""), _axis("", "runs", ""), [_series("bin_count", "runs", sort="bars")], least=0.0)  # fmt: skip
         if "pga" in a and "peak_ratio" in a:
             keep = self._over_time(len(a["pga"]))
             self.send("pga", "peak_ratio", keep=keep)
-            self.charts.append(
-                _chart("Members", _axis("pga", "peak ground acceleration", "g"), _axis("", "rotation over critical", ""),
-                       [_series("peak_ratio", "members", sort="points")])
-            )  # fmt: skip
+            self._draw("Members", _axis("pga", "peak ground acceleration", "g"), _axis("", "rotation over critical", ""), [_series("peak_ratio", "members", sort="points")])  # fmt: skip
 
     def failure_domain(self) -> None:
         self.send("duration", "mode_I", "mode_II")
@@ -534,16 +514,7 @@ class _Maker:
             self.out["codes"] = self.arrays["outcome"].astype(np.uint8)
             self.send("amplitude")
             heat = {"codes": "codes", "x": "duration", "y": "amplitude"}
-        self.charts.append(
-            _chart(
-                "Failure domain",
-                _axis("duration", "duration of the pulse", "s"),
-                _axis("", "amplitude", "g"),
-                rows,
-                heat=heat,
-                least=0.0,
-            )
-        )
+        self._pulses("Failure domain", _axis("duration", "duration of the pulse", "s"), rows, heat=heat)
 
     def dem_domain(self) -> None:
         rows = []
@@ -555,15 +526,7 @@ class _Maker:
                 self.send(mode)
                 rows.append(_series("amplitude", f"four hinges, {mode.replace('_', ' ')}", x=mode, dashed=True))
         self.send("amplitude")
-        self.charts.append(
-            _chart(
-                "Shortest failing pulses",
-                _axis("shortest_0", "duration", "s"),
-                _axis("", "amplitude", "g"),
-                rows,
-                least=0.0,
-            )
-        )
+        self._pulses("Shortest failing pulses", _axis("shortest_0", "duration", "s"), rows)
 
     def sweep(self) -> None:
         self.send("value", "gamma", "fractured", "buttress_alone")
@@ -573,16 +536,11 @@ class _Maker:
         kind = (self.run.summary["deck"]["resolved"].get("structure") or {}).get("kind")
         unit = unit_of(table("structure", kind), key.split("."))[0] if kind in STRUCTURES else ""
         about = key.replace("_", " ")
-        self.charts.append(
-            _chart("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
-        )
+        self._draw("Capacity", _axis("value", about, unit), _axis("", "collapse acceleration", "g"), rows)
 
     def moving_load(self) -> None:
         self.send("place", "capacity")
-        self.charts.append(
-            _chart("Load that brings it down", _axis("place", "place of the first axle", "m"), _axis("", "load", "kN"),
-                   [_series("capacity", "capacity", factor=1e-3)])
-        )  # fmt: skip
+        self._draw("Load that brings it down", _axis("place", "place of the first axle", "m"), _axis("", "load", "kN"), [_series("capacity", "capacity", factor=1e-3)])  # fmt: skip
         if "mechanism_pose" in self.arrays and "outline" in self.arrays:
             rest = np.column_stack([self.arrays["centroid"], np.zeros(len(self.arrays["centroid"]))])
             share = np.linspace(0.0, 1.0, 24)
@@ -591,9 +549,7 @@ class _Maker:
     def assessment(self) -> None:
         """The motion, and its primary impulses beside the pulses that bring the structure down."""
         self.out |= {"time": self.arrays["time"], "ground": self.arrays["ground"] / GRAVITY}
-        self.charts.append(
-            _chart("Ground", _axis("time", "time", "s"), _axis("", "acceleration", "g"), [_series("ground", "ground")])
-        )
+        self._draw("Ground", _axis("time", "time", "s"), _axis("", "acceleration", "g"), [_series("ground", "ground")])
         self.send(
             "period",
             "failing_amplitude",
@@ -609,15 +565,7 @@ class _Maker:
             _series("impulse_amplitude", "impulses of the motion", x="impulse_period", sort="points"),
         ]  # fmt: skip
         rows = [r for r in known if np.isfinite(np.asarray(self.out.get(r["array"], np.nan), dtype=float)).any()]
-        self.charts.append(
-            _chart(
-                "Pulses that bring it down",
-                _axis("period", "period", "s"),
-                _axis("", "amplitude", "g"),
-                rows,
-                least=0.0,
-            )
-        )
+        self._pulses("Pulses that bring it down", _axis("period", "period", "s"), rows)
 
     def failure_curves(self) -> None:
         """The lowest failing amplitude of each structure, and the primary impulses of the motions."""
@@ -633,28 +581,20 @@ class _Maker:
             self.out["impulse_period"] = np.array([i.period_s for i in r.impulses])
             self.out["impulse_amplitude"] = np.array([abs(i.amplitude_g) for i in r.impulses])
             rows.append(_series("impulse_amplitude", "impulses of motions", x="impulse_period", sort="points"))
-        self.charts.append(
-            _chart(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), _axis("", "amplitude", "g"), rows, least=0.0)
-        )  # fmt: skip
+        self._pulses(f"Lowest failing {r.pulse} pulse", _axis("duration_0", "duration", "s"), rows)  # fmt: skip
 
     def local_mechanism(self) -> None:
         if "displacement" not in self.arrays:
             return
         self.send("displacement", "acceleration")
-        self.charts.append(
-            _chart("Capacity of the mechanism as it moves", _axis("displacement", "displacement", "m"),
-                   _axis("", "acceleration", "g"), [_series("acceleration", "capacity")], least=0.0)
-        )  # fmt: skip
+        self._draw("Capacity of the mechanism as it moves", _axis("displacement", "displacement", "m"), _axis("", "acceleration", "g"), [_series("acceleration", "capacity")], least=0.0)  # fmt: skip
 
     def survey(self) -> None:
         """The capacity of each section, the weakest first."""
         names, gamma = self.arrays["section_name"].astype(str), self.arrays["gamma"]
         order = np.argsort(np.where(np.isfinite(gamma), gamma, np.inf), kind="stable")
         self.out |= {"rank": np.arange(1, len(order) + 1), "capacity": gamma[order]}
-        self.charts.append(
-            _chart("Capacity of the sections, the weakest first", _axis("rank", "rank", ""),
-                   _axis("", "collapse acceleration", "g"), [_series("capacity", "capacity", sort="points")], least=0.0)
-        )  # fmt: skip
+        self._draw("Capacity of the sections, the weakest first", _axis("rank", "rank", ""), _axis("", "collapse acceleration", "g"), [_series("capacity", "capacity", sort="points")], least=0.0)  # fmt: skip
         rows = [[str(names[k]), float(gamma[k]) if np.isfinite(gamma[k]) else None] for k in order.tolist()]
         self.tables.append(
             {"title": "sections", "columns": ["section", "capacity [g]"], "rows": rows[:MOST_ROWS], "left_out": max(0, len(rows) - MOST_ROWS)}
@@ -678,9 +618,5 @@ class _Maker:
             for unit in dict.fromkeys(found[n].unit for n in rows):
                 some = [n for n in rows if found[n].unit == unit][:6]
                 self.send(axis, *some, keep=keep)
-                self.charts.append(
-                    _chart(", ".join(n.replace("_", " ") for n in some), _axis(axis, axis.replace("_", " "), about.unit),
-                           _axis("", some[0].replace("_", " ") if len(some) == 1 else "", unit),
-                           [_series(n, n.replace("_", " ")) for n in some])
-                )  # fmt: skip
+                self._draw(", ".join(n.replace("_", " ") for n in some), _axis(axis, axis.replace("_", " "), about.unit), _axis("", some[0].replace("_", " ") if len(some) == 1 else "", unit), [_series(n, n.replace("_", " ")) for n in some])  # fmt: skip
         self.charts = self.charts[:12]

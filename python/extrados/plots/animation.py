@@ -90,7 +90,11 @@ def gif(images: list[Image.Image], rate: int) -> bytes:
     strip = Image.new("RGB", (width, height * len(some)))
     for k, image in enumerate(some):
         strip.paste(image.reduce(2), (0, k * height))
-    palette = strip.quantize(128, method=Image.Quantize.MAXCOVERAGE)  # thin lines keep their colours
+    # half for what covers most, exactly; half for all colours that there are, or thin lines would lose theirs
+    counted = sorted(strip.getcolors(strip.width * strip.height), reverse=True)[:64]
+    spread = strip.quantize(64, method=Image.Quantize.MAXCOVERAGE).getpalette()[: 3 * 64]
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([value for _, colour in counted for value in colour] + spread)
     first, *rest = [image.quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
     out = io.BytesIO()
     first.save(

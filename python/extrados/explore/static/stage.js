@@ -196,9 +196,9 @@ export function stage(box, hands) {
         const [x, y] = screenOf(...j.at);
         parts.push({ tag: "path", class: `slide ${name}`, d: `M${x - 6} ${y}h12m-4 -4l4 4l-4 4`, title: `slides: ${j.name}` });
       }
-      for (const name of ["least", "most"]) if (layers[name]) for (const at of scene[`${name}_touches`] ?? []) {
-        const [x, y] = screenOf(...at);
-        parts.push({ tag: "rect", class: `touch ${name}`, x: x - 3, y: y - 3, width: 6, height: 6 });
+      for (const name of ["least", "most"]) if (layers[name] && scene[`${name}_touches`]?.length) {
+        const squares = scene[`${name}_touches`].map((at) => screenOf(...at).map((v) => (v - 3).toFixed(1)).join(" "));
+        parts.push({ tag: "path", class: `touch ${name}`, d: squares.map((at) => `M${at}h6v6h-6Z`).join("") });
       }
     }
     if (layers.reactions && !shownPose) for (const r of scene.reactions ?? []) {
