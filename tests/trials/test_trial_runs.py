@@ -80,7 +80,6 @@ def differs(one: Path, two: Path) -> str:
     return next((p.name for p in one.glob("*.csv") if p.read_bytes() != (two / p.name).read_bytes()), "")
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGINT], ids=["killed", "interrupted"])
 def test_stopped_at_any_time_and_resumed(tmp_path, number) -> None:
     """Stopped again and again at random times; when it has ended, its bytes are those of a run that was left alone."""

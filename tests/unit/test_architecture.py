@@ -137,14 +137,13 @@ def test_core_never_stops_the_process() -> None:
     def nm(*options: str) -> str:
         return subprocess.run(["nm", *options, _core.__file__], capture_output=True, text=True, check=True).stdout
 
-    if "__gcov_init" in nm():
-        pytest.skip("in a build that counts lines gcov's own code may do all that")
-    bad = re.findall(
+    found = re.findall(
         r"\b(_gfortran_(?:stop|error_stop|os_error|st_write|st_read|st_open|exit)\w*|exit|abort|printf|system)\b",
         nm("-D", "--undefined-only"),
     )
-    # numpy's own fortranobject.c refers to none of these either
-    assert not bad
+    # numpy's own fortranobject.c refers to none of these either; the code that counts lines for coverage does, in C
+    counts = "__gcov_init" in nm()
+    assert not [name for name in found if name.startswith("_gfortran_") or not counts]
 
 
 def test_no_evaluation_of_code() -> None:

@@ -268,7 +268,6 @@ count = {count}
 """
 
 
-@pytest.mark.skipif(os.name != "posix", reason="SIGKILL is POSIX")
 def test_resume_after_kill_gives_the_same_bytes(tmp_path: Path) -> None:
     deck = tmp_path / "deck.toml"
     deck.write_text(FRAGILITY.format(count=12000))

@@ -88,7 +88,6 @@ def test_small_commands(tmp_path) -> None:
     assert call("report", str(tmp_path)).exit_code == 3
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 def test_ctrl_c_in_a_compiled_loop(tmp_path) -> None:
     """A long response answers Ctrl-C, keeps what it has and exits with 130."""
     text = (
@@ -193,7 +192,6 @@ MOMENTS = {
 }
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("moment", MOMENTS)
 def test_signals_while_modules_are_loaded(tmp_path, moment, number) -> None:
@@ -220,7 +218,6 @@ main()
         assert (tmp_path / "o" / "summary.json").exists()
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize(
     "becomes", ["SystemExit(130)", "SystemExit(1)", "ImportError('initialization failed')", "KeyboardInterrupt"]
@@ -242,7 +239,6 @@ cli.main()
     assert run.returncode == 128 + number and "Traceback" not in run.stderr, run.stderr
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 def test_ctrl_c_ends_a_computation_in_another_thread() -> None:
     """Python answers it in the main thread; the computation does not go on unseen, and the handlers come back."""
     code = """

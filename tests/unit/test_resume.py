@@ -1,7 +1,6 @@
 """Runs that are killed or interrupted go on to the same bytes: in every kind of analysis that takes long."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -282,7 +281,6 @@ def run(deck: Path, out: Path, **context) -> None:
     run_to(Context(read_deck(deck), **context), out, figures=False)
 
 
-@pytest.mark.skipif(os.name != "posix", reason="SIGKILL is POSIX")
 @pytest.mark.parametrize("kind", DECKS)
 def test_killed_and_resumed(kind: str, tmp_path: Path) -> None:
     deck, one, two = written(kind, tmp_path), tmp_path / "a", tmp_path / "b"
@@ -475,7 +473,6 @@ def test_a_new_factor_forgets_the_history(tmp_path: Path) -> None:
         assert getattr(ends[0], name).tobytes() == getattr(ends[1], name).tobytes(), name
 
 
-@pytest.mark.skipif(os.name != "posix", reason="folders are held by POSIX locks")
 def test_two_runs_do_not_share_their_batches(tmp_path) -> None:
     """The second into a folder is refused in words, whether it resumes or not, and the batches of the first are left."""
     path, out = tmp_path / "deck.toml", tmp_path / "out"

@@ -97,7 +97,6 @@ def test_in_memory_there_are_no_batches() -> None:
     assert context.out is None and context.checkpoint is None
 
 
-@pytest.mark.skipif(os.name != "posix", reason="signals are POSIX")
 def test_ctrl_c_while_results_are_written(tmp_path, monkeypatch) -> None:
     write = store.write
 
