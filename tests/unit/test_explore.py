@@ -43,6 +43,7 @@ class Page:
         self.thread = threading.Thread(target=self.server.run, kwargs={"sockets": [self.socket]}, daemon=True)
         self.thread.start()
         while not self.server.started:
+            assert self.thread.is_alive(), "the server did not start"
             time.sleep(0.01)
 
     def close(self) -> None:
@@ -283,9 +284,13 @@ def test_there_are_sixty_hostile_requests_and_more() -> None:
     assert len(HOSTILE_REQUESTS) + len(HOSTILE_SOCKETS) + len(HOSTILE_MESSAGES) >= 60
 
 
-def test_too_many_messages_end_a_page_and_not_the_others(page: Page) -> None:
+@pytest.mark.parametrize("pause", [0.0, 1.0], ids=["at once", "after answers that nobody reads"])
+def test_too_many_messages_end_a_page_and_not_the_others(page: Page, pause: float) -> None:
     with page.open() as other, page.open() as link:
         with pytest.raises(WebSocketException):
+            for _ in range(40):
+                link.send('{"do": "list"}')
+            time.sleep(pause)
             for _ in range(20_000):
                 link.send('{"do": "list"}')
             for _ in range(20_000):
