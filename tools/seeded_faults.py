@@ -52,13 +52,15 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], str]] = {
     "fortran/dem": (
         ("test_dem",), ("unit/test_dem_core.py", "unit/test_dem_rules.py", "unit/test_dem_analysis.py"), "dem/",
     ),
+    "fortran/dem3": ((), ("unit/test_dem3_core.py", "unit/test_dem_solids.py"), "solid/dem"),
+    "fortran/nonsmooth": ((), ("unit/test_dem_nonsmooth.py",), "dem/nonsmooth"),
     "fortran/limit": (
         (),
         ("unit/test_vertex.py", "unit/test_limit_arches.py", "unit/test_limit_vaults.py", "unit/test_limit_loads.py"),
         "limit/ or bridge/",
     ),
     "fortran/sla": (
-        ("test_sla",),
+        ("test_sla", "test_sla_margin"),
         ("unit/test_sla_elements.py", "unit/test_sla_teeth.py", "unit/test_sla_joints.py", "unit/test_sla_events.py",
          "unit/test_sla_stones.py", "unit/test_sla_walls.py"),
         "sla/",
