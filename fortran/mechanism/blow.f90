@@ -26,9 +26,9 @@ contains
       real(wp), intent(in) :: inertia(:)       !! (n) about the centroids [kg m^2]
       real(wp), intent(in) :: centroid(:, :)   !! (2, n) [m]
       integer(c_int), intent(in) :: side(:, :) !! (2, joints) blocks on both sides, 1 to n, 0 for the ground; not alike
-      real(wp), intent(in) :: ends(:, :, :)    !! (2, 2, joints) x, y of both ends of the joints [m]
-      real(wp), intent(in) :: normal(:, :)     !! (2, joints) unit, into the first block
-      real(wp), intent(in) :: tangent(:, :)    !! (2, joints) unit
+      real(wp), intent(in), contiguous :: ends(:, :, :)    !! (2, 2, joints) x, y of both ends of the joints [m]
+      real(wp), intent(in), contiguous :: normal(:, :)     !! (2, joints) unit, into the first block
+      real(wp), intent(in), contiguous :: tangent(:, :)    !! (2, joints) unit
       real(wp), intent(in) :: before(:, :)     !! (3, n) velocity x, y, spin
       real(wp), intent(out) :: after(:, :)     !! (3, n)
       integer(c_int), intent(out) :: status    !! status_no_pattern where no impulses were found
@@ -36,7 +36,7 @@ contains
       type(impulse_effort) :: effort
       integer, allocatable :: link(:, :)
       real(wp) :: speed
-      integer :: j, k, at, links, failed
+      integer :: j, k, at, links, failed, both(2)
 
       after = 0.0_wp
       status = status_bad_index
@@ -63,8 +63,9 @@ contains
       end do
       problem%rate(:) = problem%free
       do j = 1, size(side, 2)
+         both = int(side(:, j))
          do k = 1, 2
-            call touch(problem, 2 * (j - 1) + k, int(side(:, j)), centroid, ends(:, k, j), normal(:, j), tangent(:, j))
+            call touch(problem, 2 * (j - 1) + k, both, centroid, ends(:, k, j), normal(:, j), tangent(:, j))
          end do
       end do
       speed = sqrt(sum(problem%mass * problem%free**2) / sum(mass))

@@ -106,12 +106,12 @@ contains
          status = status_out_of_memory
          return
       end if
-      built%mass = mass
-      built%centroid = centroid
-      built%inertia = inertia
-      built%side = side
-      built%point = point
-      built%row = row
+      built%mass(:) = mass
+      built%centroid(:, :) = centroid
+      built%inertia(:) = inertia
+      built%side(:, :) = side
+      built%point(:, :) = point
+      built%row(:, :) = row
       built%size = max(maxval(centroid(1, :)), maxval(point(1, :))) - min(minval(centroid(1, :)), minval(point(1, :)))
       built%size = max(built%size, max(maxval(centroid(2, :)), maxval(point(2, :))) &
          - min(minval(centroid(2, :)), minval(point(2, :))))

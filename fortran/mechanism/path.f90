@@ -39,8 +39,8 @@ contains
       type(linkage), intent(in) :: mechanism
       type(linkage_state), intent(in) :: rest
       integer(c_int), intent(in) :: sort(:)    !! (count), see sort_length
-      integer(c_int), intent(in) :: ends(:, :)  !! (2, count) parts at both ends, 0 = ground
-      real(wp), intent(in) :: point(:, :, :)   !! (2, 2, count) x, y of both ends at rest [m]
+      integer(c_int), intent(in) :: ends(:, :)              !! (2, count) parts at both ends, 0 = ground
+      real(wp), intent(in), contiguous :: point(:, :, :)    !! (2, 2, count) x, y of both ends at rest [m]
       real(wp), intent(in) :: last             !! greatest rotation of the table [rad]
       real(wp), intent(in) :: scale            !! L [rad]
       type(path_table), intent(out) :: table
@@ -48,6 +48,7 @@ contains
       real(wp) :: angle(degree + 1), w, width
       real(wp), allocatable :: value(:, :)
       type(linkage_state) :: here
+      integer(c_int) :: both(2)
       integer :: i, j, k, stat
 
       status = status_invalid_argument
@@ -69,7 +70,8 @@ contains
             call mechanism%carry(here, scale * w * (2.0_wp - w), status)
             if (status /= status_ok) return
             do j = 1, table%count
-               value(j, k) = measured(mechanism, here, sort(j), ends(:, j), point(:, :, j))
+               both = ends(:, j)
+               value(j, k) = measured(mechanism, here, sort(j), both, point(:, :, j))
             end do
          end do
          call fit(angle, value, table%coefficient(:, :, i))
@@ -104,12 +106,13 @@ contains
       end select
    end function measured
 
-   !> All paths and their derivatives by q
-   pure subroutine at(table, q, u, du)
+   !> One path and its derivative by q
+   pure subroutine at(table, path, q, u, du)
       class(path_table), intent(in) :: table
+      integer, intent(in) :: path    !! its number
       real(wp), intent(in) :: q      !! [rad]
-      real(wp), intent(out) :: u(:)   !! (count)
-      real(wp), intent(out) :: du(:)  !! (count) by q
+      real(wp), intent(out) :: u     !! [m] or [rad]
+      real(wp), intent(out) :: du    !! by q
       real(wp) :: w, t, dw
       integer :: i, k
 
@@ -117,11 +120,11 @@ contains
       w = 1.0_wp - sqrt(max(1.0e-6_wp, 1.0_wp - q / table%scale))
       i = max(1, min(panels, 1 + int(w * table%per_panel)))
       t = max(lowest, min(-lowest, 2.0_wp * (w * table%per_panel - real(i - 1, wp)) - 1.0_wp))
-      u = table%coefficient(:, degree, i)
+      u = table%coefficient(path, degree, i)
       du = 0.0_wp
       do k = degree - 1, 0, -1
          du = du * t + u
-         u = u * t + table%coefficient(:, k, i)
+         u = u * t + table%coefficient(path, k, i)
       end do
       dw = 0.5_wp / (table%scale * (1.0_wp - w))
       du = 2.0_wp * table%per_panel * dw * du

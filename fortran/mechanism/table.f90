@@ -260,8 +260,8 @@ contains
       real(wp), intent(in) :: angle(:)            !! (degree + 1)
       real(wp), intent(in) :: value(:, :)         !! (quantities, degree + 1)
       real(wp), intent(out) :: polynomial(:, 0:)  !! (quantities, 0:degree) coefficients of the powers of t
-      real(wp) :: chebyshev(0:degree, 0:degree), weight, wave(size(value, 1))
-      integer :: j, k
+      real(wp) :: chebyshev(0:degree, 0:degree), cosine(degree + 1), weight, wave
+      integer :: i, j, k
 
       ! Powers of t in each Chebyshev polynomial
       chebyshev = 0.0_wp
@@ -274,12 +274,17 @@ contains
       polynomial = 0.0_wp
       do j = 0, degree
          weight = merge(1.0_wp, 2.0_wp, j == 0) / real(degree + 1, wp)
-         wave = 0.0_wp
          do k = 1, degree + 1
-            wave = wave + value(:, k) * cos(real(j, wp) * angle(k))
+            cosine(k) = cos(real(j, wp) * angle(k))
          end do
-         do k = 0, degree
-            polynomial(:, k) = polynomial(:, k) + weight * chebyshev(k, j) * wave
+         do i = 1, size(value, 1)
+            wave = 0.0_wp
+            do k = 1, degree + 1
+               wave = wave + value(i, k) * cosine(k)
+            end do
+            do k = 0, degree
+               polynomial(i, k) = polynomial(i, k) + weight * chebyshev(k, j) * wave
+            end do
          end do
       end do
    end subroutine fit

@@ -203,7 +203,7 @@ contains
    !> Solve with the factors: right-hand side in, solution out
    pure subroutine skyline_solve(matrix, x)
       type(skyline), intent(in) :: matrix
-      real(wp), intent(inout) :: x(:)
+      real(wp), intent(inout), contiguous :: x(:)
       integer :: i
       do i = 1, matrix%n
          associate (row => matrix%start(i), first => matrix%first(i))

@@ -96,16 +96,15 @@ module rocking_modes
       end function fallen
 
       !> What is stored of a state
-      function row(body, t, y, loss, rows) result(values)
+      subroutine row(body, t, y, loss, values)
          import :: mode_rocker, wp
          implicit none (type, external)
          class(mode_rocker), intent(in) :: body
          real(wp), intent(in) :: t
          real(wp), intent(in) :: y(:)
-         real(wp), intent(in) :: loss     !! energy lost at impacts so far [J]
-         integer, intent(in) :: rows
-         real(wp) :: values(rows)
-      end function row
+         real(wp), intent(in) :: loss      !! energy lost at impacts so far [J]
+         real(wp), intent(out) :: values(:)
+      end subroutine row
    end interface
 
 contains
@@ -389,7 +388,7 @@ contains
          do while (history%points < size(history%time))
             if (history%time(history%points + 1) > t) exit
             history%points = history%points + 1
-            history%state(:, history%points) = body%row(t, y, history%loss, size(history%state, 1))
+            call body%row(t, y, history%loss, history%state(:, history%points))
          end do
       end subroutine write_out
 

@@ -149,7 +149,7 @@ contains
          end if
       end do
       call run%conclude()
-      if (present(history) .and. allocated(run%problem%memory)) history%memory = run%problem%memory
+      if (present(history)) call move_alloc(run%problem%memory, history%memory)
       answer = run%answer
       status = run%status
    end subroutine respond

@@ -72,7 +72,7 @@ contains
       integer, intent(in) :: count                 !! restraints, at least one
       type(restraint_set), intent(out) :: set
       integer(c_int), intent(out) :: status
-      real(wp) :: u(count), du(count), reach(count)
+      real(wp) :: u, du, reach
       integer :: i, k, n, first, stat
 
       status = status_invalid_argument
@@ -87,15 +87,15 @@ contains
       allocate (set%law(count), stat=stat)
       status = status_out_of_memory
       if (stat /= 0) return
-      reach = 0.0_wp
-      do i = 1, 2
-         do k = 0, 16
-            call set%path(i)%at(0.5_wp * set%path(i)%scale * real(k, wp) / 16.0_wp, u, du)
-            reach = max(reach, abs(u))
-         end do
-      end do
       status = status_invalid_argument
       do k = 1, count
+         reach = 0.0_wp
+         do i = 1, 2
+            do n = 0, 16
+               call set%path(i)%at(k, 0.5_wp * set%path(i)%scale * real(n, wp) / 16.0_wp, u, du)
+               reach = max(reach, abs(u))
+            end do
+         end do
          associate (row => list((k - 1) * law_numbers + 1:k * law_numbers), law => set%law(k))
             law%stiffness = row(1)
             law%prestress = row(2)
@@ -108,7 +108,7 @@ contains
             if (.not. (row(4) <= row(2) .and. row(2) <= row(3) .and. row(4) < row(3))) return
             ! bounds without a spring have no elongation at which they are left
             if (.not. row(1) > 0.0_wp .and. max(row(3), -row(4)) < huge(1.0_wp)) return
-            law%slop = rounding * (law%stiffness * reach(k) + abs(law%prestress))
+            law%slop = rounding * (law%stiffness * reach + abs(law%prestress))
             if (law%most < huge(1.0_wp)) law%slop = law%slop + rounding * abs(law%most)
             if (law%least > -huge(1.0_wp)) law%slop = law%slop + rounding * abs(law%least)
          end associate
@@ -122,13 +122,13 @@ contains
       integer, intent(in) :: i                           !! 1 to +x, 2 to -x
       real(wp), intent(in) :: q                          !! [rad]
       type(restraint_state), intent(out) :: state(:)
-      real(wp) :: u(set%count), du(set%count)
+      real(wp) :: u, du
       integer :: k
-      call set%path(i)%at(q, u, du)
-      state%least = set%law%prestress
-      state%most = set%law%prestress
       do k = 1, set%count
-         call go(set%law(k), state(k), 0.0_wp, u(k))
+         call set%path(i)%at(k, q, u, du)
+         state(k)%least = set%law(k)%prestress
+         state(k)%most = set%law(k)%prestress
+         call go(set%law(k), state(k), 0.0_wp, u)
       end do
    end subroutine fresh
 
@@ -167,13 +167,25 @@ contains
       real(wp), intent(in) :: v                      !! [rad/s]
       type(restraint_state), intent(in) :: state(:)
       real(wp), intent(out) :: f(:)
-      real(wp) :: u(set%count), du(set%count)
       integer :: k
-      call set%path(i)%at(q, u, du)
       do k = 1, set%count
-         f(k) = spring_force(set%law(k), state(k), u(k)) + dashpot(set%law(k), du(k) * v)
+         f(k) = force(set, i, k, q, v, state(k))
       end do
    end subroutine forces
+
+   !> Force of one restraint, spring and dashpot
+   pure function force(set, i, k, q, v, state) result(f)
+      class(restraint_set), intent(in) :: set
+      integer, intent(in) :: i                       !! 1 to +x, 2 to -x
+      integer, intent(in) :: k                       !! which
+      real(wp), intent(in) :: q                      !! [rad]
+      real(wp), intent(in) :: v                      !! [rad/s]
+      type(restraint_state), intent(in) :: state
+      real(wp) :: f
+      real(wp) :: u, du
+      call set%path(i)%at(k, q, u, du)
+      f = spring_force(set%law(k), state, u) + dashpot(set%law(k), du * v)
+   end function force
 
    !> Force of the dashpot at a rate
    pure function dashpot(law, rate) result(f)
@@ -194,12 +206,12 @@ contains
       real(wp), intent(in) :: v                      !! [rad/s]
       type(restraint_state), intent(in) :: state(:)
       real(wp) :: m
-      real(wp) :: u(set%count), du(set%count)
+      real(wp) :: u, du
       integer :: k
-      call set%path(i)%at(q, u, du)
       m = 0.0_wp
       do k = 1, set%count
-         m = m + (spring_force(set%law(k), state(k), u(k)) + dashpot(set%law(k), du(k) * v)) * du(k)
+         call set%path(i)%at(k, q, u, du)
+         m = m + (spring_force(set%law(k), state(k), u) + dashpot(set%law(k), du * v)) * du
       end do
    end function moment
 
@@ -210,12 +222,12 @@ contains
       real(wp), intent(in) :: q
       type(restraint_state), intent(in) :: state(:)  !! fresh
       real(wp) :: m
-      real(wp) :: u(set%count), du(set%count)
+      real(wp) :: u, du
       integer :: k
-      call set%path(i)%at(q, u, du)
       m = 0.0_wp
       do k = 1, set%count
-         m = m + min(set%law(k)%most, max(set%law(k)%least, set%law(k)%trial(state(k), u(k)))) * du(k)
+         call set%path(i)%at(k, q, u, du)
+         m = m + min(set%law(k)%most, max(set%law(k)%least, set%law(k)%trial(state(k), u))) * du
       end do
    end function first_moment
 
@@ -239,12 +251,12 @@ contains
       real(wp), intent(in) :: q
       type(restraint_state), intent(in) :: state(:)
       real(wp) :: e
-      real(wp) :: u(set%count), du(set%count)
+      real(wp) :: u, du
       integer :: k
-      call set%path(i)%at(q, u, du)
       e = 0.0_wp
       do k = 1, set%count
-         e = e + set%law(k)%stored(state(k), u(k))
+         call set%path(i)%at(k, q, u, du)
+         e = e + set%law(k)%stored(state(k), u)
       end do
    end function energy
 
@@ -256,12 +268,12 @@ contains
       real(wp), intent(in) :: v
       type(restraint_state), intent(in) :: state(:)
       real(wp) :: p
-      real(wp) :: u(set%count), du(set%count), rate
+      real(wp) :: u, du, rate
       integer :: k
-      call set%path(i)%at(q, u, du)
       p = 0.0_wp
       do k = 1, set%count
-         rate = du(k) * v
+         call set%path(i)%at(k, q, u, du)
+         rate = du * v
          p = p + dashpot(set%law(k), rate) * rate
          if (state(k)%mode == yields_up) p = p + set%law(k)%most * rate
          if (state(k)%mode == yields_down) p = p + set%law(k)%least * rate
@@ -299,48 +311,43 @@ contains
       type(restraint_state), intent(in) :: state(:)
       real(wp), intent(out) :: fraction
       integer, intent(out) :: which                  !! 0: none
-      real(wp) :: low, high, middle, g(set%count)
-      integer :: k, n
+      real(wp) :: low, high, middle
+      integer :: n
 
       fraction = 0.0_wp
       which = 0
       do n = 1, looks
          high = until * real(n, wp) / real(looks, wp)
-         g = at_fraction(high)
-         if (any(g > 0.0_wp)) exit
+         if (last_beyond(high) > 0) exit
       end do
       if (n > looks) return
       low = until * real(n - 1, wp) / real(looks, wp)
       do n = 1, 60
          middle = 0.5_wp * (low + high)
          if (middle <= low .or. middle >= high) exit
-         g = at_fraction(middle)
-         if (any(g > 0.0_wp)) then
+         if (last_beyond(middle) > 0) then
             high = middle
          else
             low = middle
          end if
       end do
-      g = at_fraction(high)
-      do k = 1, set%count
-         if (g(k) > 0.0_wp) which = k
-      end do
+      which = last_beyond(high)
       fraction = high
 
    contains
 
-      !> How far all restraints are beyond their modes at a fraction of the step
-      function at_fraction(s) result(far)
+      !> The last restraint that is beyond its mode at a fraction of the step, 0 where none is
+      function last_beyond(s) result(last)
          real(wp), intent(in) :: s
-         real(wp) :: far(set%count)
-         real(wp) :: u(set%count), du(set%count), v
-         integer :: j
+         integer :: last
+         real(wp) :: q, v, u, du
          v = step%rate(s)
-         call set%path(i)%at(step%coordinate(s), u, du)
-         do j = 1, set%count
-            far(j) = beyond(set%law(j), state(j), u(j), du(j) * v)
+         q = step%coordinate(s)
+         do last = set%count, 1, -1
+            call set%path(i)%at(last, q, u, du)
+            if (beyond(set%law(last), state(last), u, du * v) > 0.0_wp) return
          end do
-      end function at_fraction
+      end function last_beyond
 
    end subroutine leaves
 
@@ -351,16 +358,16 @@ contains
       real(wp), intent(in) :: q
       integer, intent(in) :: k                        !! which
       type(restraint_state), intent(inout) :: state(:)
-      real(wp) :: u(set%count), du(set%count)
-      call set%path(i)%at(q, u, du)
+      real(wp) :: u, du
+      call set%path(i)%at(k, q, u, du)
       associate (law => set%law(k), one => state(k))
          select case (one%mode)
          case (yields_up, yields_down)
-            call keep_set(law, one, u(k))
+            call keep_set(law, one, u)
          case (slack)
             one%mode = elastic
          case default
-            if (law%trial(one, u(k)) - law%most > law%least - law%trial(one, u(k))) then
+            if (law%trial(one, u) - law%most > law%least - law%trial(one, u)) then
                one%mode = merge(slack, yields_up, law%slack < 0)
             else
                one%mode = merge(slack, yields_down, law%slack > 0)
@@ -384,11 +391,11 @@ contains
       integer, intent(in) :: i
       real(wp), intent(in) :: q                         !! [rad]
       type(restraint_state), intent(inout) :: state(:)
-      real(wp) :: u(set%count), du(set%count)
+      real(wp) :: u, du
       integer :: k
-      call set%path(i)%at(q, u, du)
       do k = 1, set%count
-         if (state(k)%mode == yields_up .or. state(k)%mode == yields_down) call keep_set(set%law(k), state(k), u(k))
+         call set%path(i)%at(k, q, u, du)
+         if (state(k)%mode == yields_up .or. state(k)%mode == yields_down) call keep_set(set%law(k), state(k), u)
       end do
    end subroutine settle
 
@@ -399,10 +406,13 @@ contains
       real(wp), intent(in) :: q
       real(wp), intent(in) :: v
       type(restraint_state), intent(inout) :: state(:)
-      real(wp) :: f(set%count)
-      call set%forces(i, q, v, state, f)
-      state%least = min(state%least, f)
-      state%most = max(state%most, f)
+      real(wp) :: f
+      integer :: k
+      do k = 1, set%count
+         f = force(set, i, k, q, v, state(k))
+         state(k)%least = min(state(k)%least, f)
+         state(k)%most = max(state(k)%most, f)
+      end do
    end subroutine note_forces
 
    !> Least work against the springs on the way from q to q_there [J]; the way to the other side leads over rest.
@@ -416,20 +426,20 @@ contains
       real(wp), intent(in) :: q_there
       type(restraint_state), intent(in) :: state(:)
       real(wp) :: work
-      real(wp) :: u(set%count), du(set%count), u_there(set%count)
+      real(wp) :: u, du, u_there
       type(restraint_state) :: one
       integer :: k
-      call set%path(i)%at(q, u, du)
-      call set%path(i_there)%at(q_there, u_there, du)
       work = 0.0_wp
       do k = 1, set%count
+         call set%path(i)%at(k, q, u, du)
+         call set%path(i_there)%at(k, q_there, u_there, du)
          one = state(k)
          if (i == i_there) then
-            work = work + set%law(k)%resisted(one, u(k), u_there(k))
+            work = work + set%law(k)%resisted(one, u, u_there)
          else
-            work = work + set%law(k)%resisted(one, u(k), 0.0_wp)
-            call go(set%law(k), one, u(k), 0.0_wp)
-            work = work + set%law(k)%resisted(one, 0.0_wp, u_there(k))
+            work = work + set%law(k)%resisted(one, u, 0.0_wp)
+            call go(set%law(k), one, u, 0.0_wp)
+            work = work + set%law(k)%resisted(one, 0.0_wp, u_there)
          end if
       end do
    end function work_to

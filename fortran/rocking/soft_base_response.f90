@@ -257,13 +257,12 @@ contains
    end function fallen
 
    !> What is stored of a state, see soft_base_rows
-   function row(body, t, y, loss, rows) result(values)
+   subroutine row(body, t, y, loss, values)
       class(soft_base_rocker), intent(in) :: body
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
       real(wp), intent(in) :: loss
-      integer, intent(in) :: rows
-      real(wp) :: values(rows)
+      real(wp), intent(out) :: values(:)
       type(base_contact) :: base
       real(wp) :: shaking(2), a(2), x(2)
       shaking = body%ground(t)
@@ -271,9 +270,16 @@ contains
          base = contact_of(block, y)
          a = accelerations(block, y, base, shaking)
          x = lever(block, y(1))
-         values = [y(1:4), shaking, energies(block, y, base), y(5) - y(6) - loss, &
-            block%mass * (x(1) * a(1) + x(2) * y(3)**2 + shaking(1)), base%force, base%range, base%most, a(1)]
+         values(1:4) = y(1:4)
+         values(5:6) = shaking
+         values(7:8) = energies(block, y, base)
+         values(9) = y(5) - y(6) - loss
+         values(10) = block%mass * (x(1) * a(1) + x(2) * y(3)**2 + shaking(1))
+         values(11) = base%force
+         values(12:13) = base%range
+         values(14) = base%most
+         values(15) = a(1)
       end associate
-   end function row
+   end subroutine row
 
 end module rocking_soft_base_response

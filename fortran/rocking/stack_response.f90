@@ -199,18 +199,21 @@ contains
    end subroutine renew
 
    !> What is stored of a state, see stack_rows
-   function row(body, t, y, loss, rows) result(values)
+   subroutine row(body, t, y, loss, values)
       class(stack_rocker), intent(in) :: body
       real(wp), intent(in) :: t
       real(wp), intent(in) :: y(:)
       real(wp), intent(in) :: loss
-      integer, intent(in) :: rows
-      real(wp) :: values(rows)
+      real(wp), intent(out) :: values(:)
       real(wp) :: shaking(2), a(2)
       shaking = body%ground(t)
       a = solved(motion_about(body%body, body%s, y(1:2), y(3:4), shaking), body%s)
-      values = [y(1:4), shaking, energies(body%body, body%s, y(1:2), y(3:4)), y(5) - loss, real(body%s, wp), &
-         contact_forces(body%body, body%s, y(1:2), y(3:4), a, shaking)]
-   end function row
+      values(1:4) = y(1:4)
+      values(5:6) = shaking
+      values(7:8) = energies(body%body, body%s, y(1:2), y(3:4))
+      values(9) = y(5) - loss
+      values(10:11) = real(body%s, wp)
+      values(12:15) = contact_forces(body%body, body%s, y(1:2), y(3:4), a, shaking)
+   end subroutine row
 
 end module rocking_stack_response
