@@ -8,7 +8,7 @@ module dem3_bodies
    use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
-   public :: body, part, body_set, body_set_new, place, turn_freely, world_inverse, cross, spin_of
+   public :: body, part, body_set, body_set_new, copy_bodies, place, turn_freely, world_inverse, cross, spin_of
 
    !> A rigid body. Velocity and swing are those of the half step before the current time (leap-frog).
    type :: body
@@ -80,7 +80,7 @@ contains
       type(body_set), intent(out) :: set
       integer(c_int), intent(out) :: status
       integer :: b, f, k, failed
-      real(wp) :: across(3), extent(3)
+      real(wp) :: across(3), extent(3), corner(3), one_side(3), next_side(3)
 
       status = status_invalid_argument
       if (size(face_first) /= size(owner) + 1 .or. size(vertex_first) /= size(owner) + 1) return
@@ -115,9 +115,11 @@ contains
       end do
       do f = 1, size(set%normal, 2)
          across = 0.0_wp
+         corner = vertex(:, loop(loop_first(f)))
          do k = loop_first(f) + 1, loop_first(f + 1) - 2
-            across = across + cross(vertex(:, loop(k)) - vertex(:, loop(loop_first(f))), &
-               vertex(:, loop(k + 1)) - vertex(:, loop(loop_first(f))))
+            one_side = vertex(:, loop(k)) - corner
+            next_side = vertex(:, loop(k + 1)) - corner
+            across = across + cross(one_side, next_side)
          end do
          if (.not. norm2(across) > 0.0_wp) return
          set%normal(:, f) = across / norm2(across)
@@ -147,6 +149,29 @@ contains
       if (set%size > 0.5_wp * huge(1.0_wp)) return
       status = status_ok
    end subroutine body_set_new
+
+   !> A copy of some bodies. The assignment of the language would end the process where memory fails.
+   subroutine copy_bodies(from, to, status)
+      type(body_set), intent(in) :: from
+      type(body_set), intent(out) :: to
+      integer(c_int), intent(out) :: status        !! status_out_of_memory, else ok
+      integer :: failed
+      allocate (to%item(size(from%item)), to%parts(size(from%parts)), to%vertex(3, size(from%vertex, 2)), &
+         to%here(3, size(from%here, 2)), to%normal(3, size(from%normal, 2)), to%level(size(from%level)), &
+         to%area(size(from%area)), to%loop_first(size(from%loop_first)), to%loop(size(from%loop)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
+      to%item(:) = from%item
+      to%parts(:) = from%parts
+      to%vertex(:, :) = from%vertex
+      to%here(:, :) = from%here
+      to%normal(:, :) = from%normal
+      to%level(:) = from%level
+      to%area(:) = from%area
+      to%loop_first(:) = from%loop_first
+      to%loop(:) = from%loop
+      to%size = from%size
+   end subroutine copy_bodies
 
    !> Vertices of a part in space
    pure subroutine place(set, number)

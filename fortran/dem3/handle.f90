@@ -6,7 +6,7 @@ module dem3_handle
       status_out_of_memory, status_wrong_handle
    use dem_handle, only : built_model, model_register, model_take
    use dem_run, only : run_record_new
-   use dem3_bodies, only : body_set, body_set_new
+   use dem3_bodies, only : body_set, body_set_new, copy_bodies
    use dem3_law, only : joint_law
    use dem3_run, only : solid_simulation
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
@@ -161,9 +161,13 @@ contains
       call run_record_new(size(built%set%item), 6, .true., wanted, run%record, status)
       if (status /= status_ok) return
       associate (model => run%model)
-         model%set = built%set
-         model%law = built%law
-         model%law_of = built%law_of
+         call copy_bodies(built%set, model%set, status)
+         if (status /= status_ok) return
+         allocate (model%law(size(built%law)), model%law_of(3, size(built%law_of, 2)), stat=failed)
+         if (failed /= 0) status = status_out_of_memory
+         if (failed /= 0) return
+         model%law(:) = built%law
+         model%law_of(:, :) = built%law_of
          model%gravity = built%gravity
          model%way = built%way
          do k = 1, size(model%set%item)

@@ -13,8 +13,10 @@
 !> D = -beta k a u* / (1 + beta k a dt w), with u* the velocity after the step without it and w that of a unit impulse.
 module dem3_law
    use common_kinds, only : wp
+   use common_status, only : status_ok
    use dem3_bodies, only : body, body_set, cross
    use dem3_patch, only : feature, measure, meet, patch
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: joint_law, contact_point, contact_pair, act, find_points, elastic_energy, drop_points
@@ -68,6 +70,7 @@ contains
       type(contact_point), allocatable :: before(:)
       type(patch) :: found
       real(wp) :: place(3), turn(3, 3)
+      integer(c_int) :: status
       integer :: i, old, failed
       logical, allocatable :: taken(:)
 
@@ -82,7 +85,9 @@ contains
       end associate
       pair%place = place
       pair%turn = turn
-      call meet(set, pair%part(1), pair%part(2), margin, pair%reference, found)
+      call meet(set, pair%part(1), pair%part(2), margin, pair%reference, found, status)
+      pair%lacks_memory = pair%lacks_memory .or. status /= status_ok
+      if (status /= status_ok) return
       if (found%reference > 0) pair%reference = found%reference
       if (found%points == 0 .and. pair%points == 0) return
       pair%points = 0
@@ -314,11 +319,13 @@ contains
       real(wp), intent(in) :: force(3)          !! [N]
       real(wp), intent(in) :: impulse(3)        !! change of the force times the step [N s]
       real(wp), intent(in) :: arm(3)            !! [m]
+      real(wp) :: swing(3)
       if (b%fixed) return
       b%force = b%force + force
       b%moment = b%moment + cross(arm, force)
       b%p = b%p + b%inverse_mass * impulse
-      b%pspin = b%pspin + matmul(b%inverse, cross(arm, impulse))
+      swing = cross(arm, impulse)
+      b%pspin = b%pspin + matmul(b%inverse, swing)
    end subroutine give
 
    !> Energy in the springs of a point [J]

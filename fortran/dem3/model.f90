@@ -5,7 +5,7 @@ module dem3_model
    use dem_clock, only : model_clock, begin_step, end_step
    use dem_energy, only : energy_terms
    use dem3_bodies, only : body, body_set, cross, place, spin_of, turn_freely
-   use dem3_law, only : act, contact_pair, drop_points, elastic_energy, find_points, joint_law
+   use dem3_law, only : act, contact_pair, contact_point, drop_points, elastic_energy, find_points, joint_law
    use dem3_patch, only : measure
    use, intrinsic :: iso_c_binding, only : c_int, c_int64_t
    implicit none
@@ -41,15 +41,17 @@ contains
       type(solid_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       type(contact_pair), allocatable :: found(:)
+      type(contact_point), allocatable :: points(:)
       real(wp), allocatable :: low(:, :), high(:, :)
-      integer, allocatable :: order(:)
+      real(wp) :: extent(3)
+      integer, allocatable :: order(:), work(:)
       integer :: i, j, k, n, count, failed, room, axis, old
 
       do k = 1, size(model%set%parts)
          call place(model%set, k)
       end do
       n = size(model%set%parts)
-      allocate (low(3, n), high(3, n), order(n), stat=failed)
+      allocate (low(3, n), high(3, n), order(n), work(n), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       do i = 1, n
@@ -58,8 +60,11 @@ contains
             high(:, i) = maxval(model%set%here(:, one%vertex_first:one%vertex_last), dim=2)
          end associate
       end do
-      axis = maxloc(maxval(high, dim=2) - minval(low, dim=2), dim=1)
-      call sorted(low(axis, :), order)
+      do axis = 1, 3
+         extent(axis) = maxval(high(axis, :)) - minval(low(axis, :))
+      end do
+      axis = maxloc(extent, dim=1)
+      call sorted(low(axis, :), work, order)
       do room = 1, 2   ! count, then fill
          count = 0
          do k = 1, n
@@ -82,7 +87,8 @@ contains
          status = merge(status_ok, status_out_of_memory, failed == 0)
          if (failed /= 0) return
       end do
-      call by_number(found)
+      call by_number(found, status)
+      if (status /= status_ok) return
       old = 1
       do k = 1, count
          do while (old <= model%pairs)
@@ -92,7 +98,10 @@ contains
          end do
          if (old <= model%pairs) then
             if (all(model%pair(old)%part == found(k)%part)) then
+               ! its points are handed over: copies of them may lack memory
+               call move_alloc(model%pair(old)%point, points)
                found(k) = model%pair(old)
+               call move_alloc(points, found(k)%point)
                old = old + 1
                cycle
             end if
@@ -139,12 +148,14 @@ contains
       type(solid_model), intent(inout) :: model
       integer(c_int), intent(out) :: status
       integer, parameter :: most = 62
-      integer(c_int64_t) :: used(size(model%set%item)), bits
+      integer(c_int64_t), allocatable :: used(:)
+      integer(c_int64_t) :: bits
       integer, allocatable :: of(:)
       integer :: count(most + 1), k, c, side, who, failed
       if (allocated(model%sweep)) deallocate (model%sweep)
       if (allocated(model%colour_first)) deallocate (model%colour_first)
-      allocate (model%sweep(model%pairs), of(model%pairs), model%colour_first(most + 2), stat=failed)
+      allocate (model%sweep(model%pairs), of(model%pairs), model%colour_first(most + 2), &
+         used(size(model%set%item)), stat=failed)
       status = merge(status_ok, status_out_of_memory, failed == 0)
       if (failed /= 0) return
       used = 0
@@ -215,12 +226,15 @@ contains
    end function before
 
    !> Order of values, by merging
-   pure subroutine sorted(value, order)
+   pure subroutine sorted(value, work, order)
       real(wp), intent(in) :: value(:)
+      integer, intent(out) :: work(:)         !! as long as the values
       integer, intent(out) :: order(:)
-      integer :: work(size(value)), width, n, i, a, b, k, last_a, last_b
+      integer :: width, n, i, a, b, k, last_a, last_b
       n = size(value)
-      order = [(i, i = 1, n)]
+      do i = 1, n
+         order(i) = i
+      end do
       width = 1
       do while (width < n)
          do i = 1, n, 2 * width
@@ -250,15 +264,20 @@ contains
    end subroutine sorted
 
    !> Pairs by their numbers
-   pure subroutine by_number(found)
+   pure subroutine by_number(found, status)
       type(contact_pair), intent(inout) :: found(:)
-      real(wp) :: value(size(found))
-      integer :: order(size(found)), parts(2, size(found)), k
+      integer(c_int), intent(out) :: status   !! status_out_of_memory, else ok
+      real(wp), allocatable :: value(:)
+      integer, allocatable :: order(:), work(:), parts(:, :)
+      integer :: k, failed
+      allocate (value(size(found)), order(size(found)), work(size(found)), parts(2, size(found)), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
       do k = 1, size(found)
          parts(:, k) = found(k)%part
          value(k) = real(found(k)%part(1), wp) * 1.0e7_wp + found(k)%part(2)
       end do
-      call sorted(value, order)
+      call sorted(value, work, order)
       do k = 1, size(found)
          found(k)%part = parts(:, order(k))
       end do

@@ -10,7 +10,9 @@
 !> plane problem drawn out has the points of the plane, twice.
 module dem3_patch
    use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
    use dem3_bodies, only : body, body_set, cross
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: feature, patch, most_points, meet, measure
@@ -55,18 +57,22 @@ module dem3_patch
 contains
 
    !> Features of parts one and two that are nearer than a margin
-   pure subroutine meet(set, one, two, margin, before, found)
+   pure subroutine meet(set, one, two, margin, before, found, status)
       type(body_set), intent(in) :: set
       integer, intent(in) :: one
       integer, intent(in) :: two
       real(wp), intent(in) :: margin             !! [m]
       integer, intent(in) :: before              !! reference of before, 0 none
       type(patch), intent(out) :: found
-      real(wp) :: here_one(3, set%parts(one)%vertex_last - set%parts(one)%vertex_first + 1)
-      real(wp) :: here_two(3, set%parts(two)%vertex_last - set%parts(two)%vertex_first + 1)
+      integer(c_int), intent(out) :: status      !! status_out_of_memory, else ok
+      real(wp), allocatable :: here_one(:, :), here_two(:, :)
       real(wp) :: least_one, least_two, size, handicap
-      integer :: face_one, face_two
+      integer :: face_one, face_two, failed
 
+      allocate (here_one(3, set%parts(one)%vertex_last - set%parts(one)%vertex_first + 1), &
+         here_two(3, set%parts(two)%vertex_last - set%parts(two)%vertex_first + 1), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
       associate (a => set%item(set%parts(one)%owner), b => set%item(set%parts(two)%owner))
          call in_space(set, one, a, here_one)
          call in_space(set, two, b, here_two)

@@ -116,20 +116,35 @@ contains
    function least_balanced(run) result(number)
       class(solid_simulation), intent(in) :: run
       integer :: number
+      real(wp) :: greatest, rate
       integer :: k
-      associate (model => run%model)
-         number = maxloc([(norm2(model%set%item(k)%force * model%set%item(k)%inverse_mass + model%gravity), &
-            k = 1, size(model%set%item))], mask=.not. model%set%item%fixed, dim=1)
-      end associate
+      number = 0
+      greatest = 0.0_wp
+      do k = 1, size(run%model%set%item)
+         associate (b => run%model%set%item(k))
+            if (b%fixed) cycle
+            rate = norm2(b%force * b%inverse_mass + run%model%gravity)
+            if (rate > greatest .or. number == 0) number = k
+            greatest = max(greatest, rate)
+         end associate
+      end do
    end function least_balanced
 
    function fastest(run) result(number)
       class(solid_simulation), intent(in) :: run
       integer :: number
+      real(wp) :: greatest, speed
       integer :: k
-      associate (b => run%model%set%item)
-         number = maxloc([(norm2(b(k)%v), k = 1, size(b))], mask=.not. b%fixed, dim=1)
-      end associate
+      number = 0
+      greatest = 0.0_wp
+      do k = 1, size(run%model%set%item)
+         associate (b => run%model%set%item(k))
+            if (b%fixed) cycle
+            speed = norm2(b%v)
+            if (speed > greatest .or. number == 0) number = k
+            greatest = max(greatest, speed)
+         end associate
+      end do
    end function fastest
 
    !> Has a body moved farther than what counts as collapse, or, once it is shaken, left the scene?
