@@ -389,7 +389,7 @@ contains
       real(wp), intent(in) :: a(3, 3, most_points), b(3, 3, most_points), d(3, 3, most_points), g(2, 2, most_points)
       real(wp), intent(in) :: v(6, most_corners)
       real(wp), intent(inout) :: f(6, most_corners)
-      real(wp) :: middle(3), curved(3), spin, pull
+      real(wp) :: middle(3), curved(3), sheared(2), spin, pull
       integer :: i, k
       do k = 1, group%rule%points
          middle = membrane(group, e, k, v)
@@ -400,7 +400,8 @@ contains
          curved = curvature(group, e, k, v)
          call add_membrane(group, e, k, matmul(a(:, :, k), middle) + matmul(b(:, :, k), curved), f)
          call add_product(group%bend(:, :, k, e), matmul(b(:, :, k), middle) + matmul(d(:, :, k), curved), f)
-         call add_product(group%shear(:, :, k, e), matmul(g(:, :, k), shearing(group, e, k, v)), f)
+         sheared = shearing(group, e, k, v)
+         call add_product(group%shear(:, :, k, e), matmul(g(:, :, k), sheared), f)
       end do
       if (.not. any(group%tie(:, e) > 0.0_wp)) return
       spin = 0.0_wp
