@@ -179,9 +179,8 @@ contains
       else if (info /= 0) then
          status = status_out_of_memory
       else
-         call bar_group_new(reshape(gradient, [int(ways * per), int(elements)]), property(1, :), property(2, :), &
-            choice(1, :), choice(2, :), merge(-1_c_int, choice(3, :), choice(3, :) == 2), model%teeth, model%options, &
-            new_bars, bad, status)
+         call bar_group_new(gradient, property(1, :), property(2, :), choice(1, :), choice(2, :), choice(3, :), &
+            model%teeth, model%options, new_bars, bad, status)
       end if
       call move_alloc(new_bars, group)
       call group_added(handle, model, connect, int(ways), group, status)

@@ -53,49 +53,52 @@ module sla_bar
 contains
 
    !> Bars without damage
-   subroutine bar_group_new(gradient, volume, young, table, crush_table, sense, teeth, options, group, bad, status)
-      real(wp), intent(in) :: gradient(:, :)       !! (freedoms, elements) strain per displacement [1/m]
+   subroutine bar_group_new(gradient, volume, young, table, crush_table, bears, teeth, options, group, bad, status)
+      real(wp), intent(in) :: gradient(:, :, :)    !! (ways, nodes of a bar, elements) strain per displacement [1/m]
       real(wp), intent(in) :: volume(:)            !! [m^3]
       real(wp), intent(in) :: young(:)             !! [Pa]
       integer(c_int), intent(in) :: table(:)
       integer(c_int), intent(in) :: crush_table(:)
-      integer(c_int), intent(in) :: sense(:)       !! 1 bears tension alone, -1 pressure alone, 0 both
+      integer(c_int), intent(in) :: bears(:)       !! 0 both, 1 tension alone, 2 pressure alone
       type(tooth_tables), intent(in) :: teeth
       type(material_options), intent(in) :: options
       type(bar_group), intent(out) :: group
       integer(c_int), intent(out) :: bad
       integer(c_int), intent(out) :: status
-      integer :: e, n, info
+      integer :: e, i, n, ways, info
 
-      n = size(gradient, 2)
+      n = size(gradient, 3)
+      ways = size(gradient, 1)
       bad = 0
       status = status_out_of_memory
       group%elements = n
       group%points = n
-      group%freedoms = size(gradient, 1)
+      group%freedoms = ways * size(gradient, 2)
       group%directions = 1
       group%options = options
       call tooth_tables_copy(teeth, group%teeth, status)
       if (status /= status_ok) return
       status = status_out_of_memory
-      allocate (group%gradient(size(gradient, 1), n), group%volume(n), group%young(n), group%table(n), &
+      allocate (group%gradient(group%freedoms, n), group%volume(n), group%young(n), group%table(n), &
          group%crush_table(n), group%sense(n), group%tooth(2, n), group%taut(n), group%changes(n), group%modulus(n), &
          stat=info)
       if (info /= 0) return
-      group%gradient(:, :) = gradient
+      do i = 1, size(gradient, 2)
+         group%gradient(ways * (i - 1) + 1:ways * i, :) = gradient(:, i, :)
+      end do
       group%volume(:) = volume
       group%young(:) = young
       group%modulus(:) = young
       group%table(:) = table
       group%crush_table(:) = crush_table
-      group%sense(:) = real(sense, wp)
+      group%sense(:) = merge(-1.0_wp, real(bears, wp), bears == 2)
       group%tooth = 1
       group%taut = 1
       group%changes = 0
       status = status_bad_geometry
       do e = 1, n
          bad = int(e, c_int)
-         if (.not. (any(abs(gradient(:, e)) > 0.0_wp) .and. maxval(abs(gradient(:, e))) < unbounded .and. &
+         if (.not. (any(abs(gradient(:, :, e)) > 0.0_wp) .and. maxval(abs(gradient(:, :, e))) < unbounded .and. &
                     volume(e) > 0.0_wp)) return
       end do
       bad = 0
@@ -230,7 +233,7 @@ contains
       real(wp), intent(in) :: ub(0:)
       type(event_vectors), intent(out) :: event
       integer, intent(out) :: tooth
-      real(wp) :: before
+      real(wp) :: before, local(most_entries)
       integer :: k
       associate (unused_load => lambda, unused_a => ua, unused_b => ub)   ! a bar's axis is known beforehand
       end associate
@@ -248,8 +251,9 @@ contains
       if (.not. abs(before - group%modulus(point)) > 0.0_wp) return
       event%rank = 1
       event%sign(1) = sign(1.0_wp, before - group%modulus(point))
-      call group%spread(point, sqrt(group%volume(point) * abs(before - group%modulus(point))) &
-         * group%gradient(:, point), event, 1)
+      local(1:group%freedoms) = sqrt(group%volume(point) * abs(before - group%modulus(point))) &
+         * group%gradient(:, point)
+      call group%spread(point, local, event, 1)
    end subroutine bar_damage
 
    !> Modulus of a bar from its damage

@@ -45,21 +45,21 @@ contains
       type(event_vectors), intent(in) :: event !! by which the factor changed since the last balance
       type(c_ptr), intent(in) :: handle        !! of the factor
       logical, intent(in) :: fresh             !! solve with a new factor of `value`
-      real(wp), intent(in) :: value(:)         !! of the stiffness
+      real(wp), intent(in), contiguous :: value(:)  !! of the stiffness
       integer, intent(in) :: n                 !! equations
       real(wp), intent(inout) :: ua(0:)        !! under the constant loads; beyond n supports that move [m]
       real(wp), intent(inout) :: ub(0:)        !! per unit multiplier [m]
       real(wp), intent(inout) :: fh(0:, :)     !! (0:, 2) forces of friction, constant and per unit multiplier [N]
       integer(c_int), intent(out) :: status    !! not_positive_definite: what slides is a mechanism; nothing was changed
       type(slider), allocatable :: point(:)
-      real(wp), allocatable :: coupling(:, :), change(:, :), force(:, :)
+      real(wp), allocatable :: coupling(:, :), change(:, :), force(:, :), answer(:, :)
       integer, allocatable :: at(:)
       integer :: i, j, m, info
 
       call find_sliders(holders, point, status)
       if (status /= status_ok) return
       m = size(point)
-      allocate (coupling(m, m), change(m, 2), force(size(ua) - 1, 2), at(m), stat=info)
+      allocate (coupling(m, m), change(m, 2), force(size(ua) - 1, 2), answer(n, 2), at(m), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
       call friction_flexibility(store, point, event, handle, fresh, value, n, at, status)
@@ -86,9 +86,10 @@ contains
          end select
       end do
       fh(1:, :) = fh(1:, :) + force
-      call solve(handle, fresh, value, force(1:n, :), status)
-      ua(1:n) = ua(1:n) + force(1:n, 1)
-      ub(1:n) = ub(1:n) + force(1:n, 2)
+      answer(:, :) = force(1:n, :)
+      call solve(handle, fresh, value, answer, status)
+      ua(1:n) = ua(1:n) + answer(:, 1)
+      ub(1:n) = ub(1:n) + answer(:, 2)
    end subroutine friction_balance
 
    !> The points of all groups that slide
@@ -124,7 +125,7 @@ contains
       type(event_vectors), intent(in) :: event
       type(c_ptr), intent(in) :: handle
       logical, intent(in) :: fresh
-      real(wp), intent(in) :: value(:)
+      real(wp), intent(in), contiguous :: value(:)
       integer, intent(in) :: n                 !! equations
       integer, intent(out) :: at(:)            !! (points)
       integer(c_int), intent(out) :: status
@@ -161,7 +162,9 @@ contains
          where (at == k) at = count
       end do
       i = count
-      count = count + size(pack(at, at == 0))
+      do k = 1, size(at)
+         if (at(k) == 0) count = count + 1
+      end do
       allocate (all_of(count), jump(2, count, count), x(n, 2), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
@@ -199,11 +202,11 @@ contains
       type(event_vectors), intent(in) :: event
       type(c_ptr), intent(in) :: handle
       logical, intent(in) :: fresh
-      real(wp), intent(in) :: value(:)
+      real(wp), intent(in), contiguous :: value(:)
       integer, intent(in) :: n                 !! equations
       integer(c_int), intent(out) :: status
-      real(wp), allocatable :: z(:, :), moved(:, :, :)
-      real(wp) :: small(most_rank, most_rank), left(most_rank)
+      real(wp), allocatable :: z(:, :), moved(:, :, :), copy(:, :), left(:, :)
+      real(wp) :: small(most_rank, most_rank)
       integer :: i, j, k, m, r, info
 
       status = status_ok
@@ -211,7 +214,7 @@ contains
       store%known = .false.      ! until it has succeeded
       r = event%rank
       m = size(store%point)
-      allocate (z(n, max(r, 1)), moved(2, r, m), stat=info)
+      allocate (z(n, max(r, 1)), moved(2, r, m), copy(r, r), left(r, 1), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
       z = 0.0_wp
@@ -224,8 +227,10 @@ contains
       if (status /= status_ok) return
       do k = 1, r
          do i = 1, r
-            small(i, k) = sum(event%w(1:event%entries, i) * z(min(event%index(1:event%entries), n), k), &
-               mask=event%index(1:event%entries) <= n)
+            small(i, k) = 0.0_wp
+            do j = 1, event%entries
+               if (event%index(j) <= n) small(i, k) = small(i, k) + event%w(j, i) * z(event%index(j), k)
+            end do
          end do
          small(k, k) = small(k, k) + event%sign(k)
          do i = 1, m
@@ -234,12 +239,13 @@ contains
          end do
       end do
       do j = 1, m
-         left(1:r) = moved(2, :, j)
-         call eliminate_one(small(1:r, 1:r), left(1:r), status)
+         copy(:, :) = small(1:r, 1:r)
+         left(:, 1) = moved(2, :, j)
+         call eliminate(copy, left, status)
          if (status /= status_ok) return
          do i = 1, m
             do k = 1, r
-               store%jump(:, i, j) = store%jump(:, i, j) + moved(:, k, i) * left(k)
+               store%jump(:, i, j) = store%jump(:, i, j) + moved(:, k, i) * left(k, 1)
             end do
          end do
       end do
@@ -251,7 +257,7 @@ contains
    subroutine solve(handle, fresh, value, x, status)
       type(c_ptr), intent(in) :: handle
       logical, intent(in) :: fresh
-      real(wp), intent(in) :: value(:)
+      real(wp), intent(in), contiguous :: value(:)
       real(wp), intent(inout), contiguous :: x(:, :)
       integer(c_int), intent(out) :: status
       integer :: j, last
@@ -292,18 +298,6 @@ contains
          if (point%index(i) > 0 .and. point%index(i) <= size(u)) total = total + entries(i) * u(point%index(i))
       end do
    end function product_of
-
-   !> See eliminate, for one right side; the matrix stays
-   pure subroutine eliminate_one(a, b, status)
-      real(wp), intent(in) :: a(:, :)
-      real(wp), intent(inout) :: b(:)
-      integer(c_int), intent(out) :: status
-      real(wp) :: copy(size(a, 1), size(a, 1)), side(size(b), 1)
-      copy = a
-      side(:, 1) = b
-      call eliminate(copy, side, status)
-      b = side(:, 1)
-   end subroutine eliminate_one
 
    !> Gaussian elimination with row pivots, column by column; the right sides become the answers
    pure subroutine eliminate(a, b, status)

@@ -208,7 +208,7 @@ contains
             if (equation(i) > 0 .and. equation(i) <= n) model%watched(model%tree%of(equation(i))) = .true.
          end do
       end do
-      model%wanted = model%watched
+      model%wanted(:) = model%watched
    end subroutine watch
 
    !> The regions beside moved supports are brought up to date in each event

@@ -185,7 +185,7 @@ contains
       integer(c_int), intent(out) :: status
       integer(c_int64_t), allocatable :: order(:)
       integer(c_int), allocatable :: new(:)
-      integer :: n, m, i, e, g, info
+      integer :: n, m, i, k, e, g, info
 
       n = model%equations
       m = size(model%moved, 1)
@@ -206,7 +206,9 @@ contains
          new(i) = int(i, c_int)
       end do
       do i = 1, model%nodes
-         model%equation(:, i) = new(model%equation(:, i))
+         do k = 1, size(model%equation, 1)
+            model%equation(k, i) = new(model%equation(k, i))
+         end do
       end do
       do g = 1, size(model%holders)
          associate (group => model%holders(g)%group)

@@ -577,11 +577,12 @@ contains
       class(plane_points), intent(inout) :: group
       integer, intent(in) :: e
       integer, intent(in) :: p
-      real(wp) :: stretch
+      real(wp) :: stretch, normal(2)
       integer :: k
       do k = 1, 2
-         stretch = kept(group, p, k) * between(group%bed(e), normal_of(group, p, k), group%bed(e)%strength)**2 &
-            / between(group%bed(e), normal_of(group, p, k), group%bed(e)%energy)
+         normal = normal_of(group, p, k)
+         stretch = kept(group, p, k) * between(group%bed(e), normal, group%bed(e)%strength)**2 &
+            / between(group%bed(e), normal, group%bed(e)%energy)
          group%pair(k, p) = group%teeth%nearest_band(group%ladder(1, e), group%ladder(2, e), &
             stretch * width_across(group, e, group%turn(:, p)))
       end do

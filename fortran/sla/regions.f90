@@ -454,7 +454,7 @@ contains
       logical, intent(in) :: path
       real(wp), intent(inout) :: ua(0:)
       real(wp), intent(inout) :: ub(0:)
-      real(wp), intent(inout) :: z(:, :)             !! (n, 2), work
+      real(wp), intent(inout), contiguous :: z(:, :)   !! (n, 2), work
       integer(c_int), intent(out) :: status
       call move(tree, tree%part(k), handle, path, ua, ub, z, status)
       call keep(tree, tree%part(k), ua, ub)
@@ -469,7 +469,7 @@ contains
       logical, intent(in) :: path
       real(wp), intent(inout) :: ua(0:)
       real(wp), intent(inout) :: ub(0:)
-      real(wp), intent(inout) :: z(:, :)
+      real(wp), intent(inout), contiguous :: z(:, :)
       integer(c_int), intent(out) :: status
       integer :: i, q
       do i = part%edge + 1, part%edge + part%edges
@@ -500,7 +500,7 @@ contains
       type(c_ptr), intent(in) :: handle
       real(wp), intent(inout) :: ua(0:)              !! copies
       real(wp), intent(inout) :: ub(0:)
-      real(wp), intent(inout) :: z(:, :)
+      real(wp), intent(inout), contiguous :: z(:, :)
       integer(c_int), intent(out) :: status
       integer :: k
       status = status_ok

@@ -30,7 +30,7 @@ contains
       type(event_vectors), intent(in) :: event           !! by which the factor changed since the last balance
       type(c_ptr), intent(in) :: handle                  !! of the factor
       logical, intent(in) :: fresh                       !! solve with a new factor of `value`
-      real(wp), intent(in) :: value(:)
+      real(wp), intent(in), contiguous :: value(:)
       integer, intent(in) :: n                           !! equations
       real(wp), intent(in) :: lambda
       real(wp), intent(in) :: ua(0:)
@@ -154,8 +154,9 @@ contains
       integer(c_int), intent(out) :: status
       integer, parameter :: rounds = 20
       real(wp), allocatable :: table(:, :)
+      integer, allocatable :: basis(:)
       real(wp) :: ratio, least, unit
-      integer :: basis(size(q)), m, i, enters, leaves, row, pivots, info
+      integer :: m, i, enters, leaves, row, pivots, info
 
       m = size(q)
       status = status_ok
@@ -163,7 +164,7 @@ contains
       found = .true.
       if (all(q >= 0.0_wp)) return
       ! Columns: w 1 to m, z m + 1 to 2 m, the artificial one, the right side
-      allocate (table(m, 2 * m + 2), stat=info)
+      allocate (table(m, 2 * m + 2), basis(m), stat=info)
       if (info /= 0) status = status_out_of_memory
       if (info /= 0) return
       table = 0.0_wp
