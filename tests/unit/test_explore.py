@@ -543,6 +543,46 @@ def test_a_line_has_the_thrust_that_it_is_given(session: Session, gamma: float) 
     assert "chosen" not in reply.words["scene"]
 
 
+HELD = """[structure]
+kind = "block"
+width = 1.0
+height = 4.0
+
+[[ties]]
+start = [0.4, 3.5]
+ground = [2.0, 0.0]
+works_in = "both"
+
+[[analysis]]
+kind = "tilt"
+"""
+
+
+def test_what_nothing_brings_down_is_not_said_to_fall(session: Session) -> None:
+    (reply,) = do(session, do="open", text=HELD)
+    assert reply.words["scene"]["stands"] is True
+    assert "no such load brings it down" in reply.words["scene"]["immovable"]
+    list(session.answer({"do": "rest"}))
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ('[supports]\nabutting_wall = "left"\n', "[supports] abutting_wall"),
+        ("[[dampers]]\nstart = [0.4, 3.0]\nground = [3.0, 0.0]\ndamping = 1e5\n", "[[dampers]]"),
+    ],
+)
+def test_the_page_has_no_answer_where_a_run_refuses_one(session: Session, more: str, told: str) -> None:
+    text = HELD[: HELD.index("[[ties]]")] + more + HELD[HELD.index("[[analysis]]") :]
+    (reply,) = do(session, do="open", text=text)
+    scene = reply.words["scene"]
+    assert (scene["stands"], "capacity" in scene) == (None, False)
+    assert f"does not reckon with {told}" in scene["unknown"]
+    (refused,) = extrados.run(session.live.deck.data).results
+    assert refused.status == "refused" and told in refused.reason
+    do(session, do="rest")
+
+
 PRESETS = sorted(
     p.relative_to(CASES).with_suffix("").as_posix()
     for p in CASES.rglob("*.toml")

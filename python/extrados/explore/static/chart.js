@@ -131,7 +131,7 @@ export function chart(box, options = {}) {
     const named = rows.filter((r) => r.label && rows.length > 1 && !r.unnamed);
     legend.replaceChildren(...named.map((r) => h("span", { class: `key c${colour(r, rows)}${r.dashed ? " dashed" : ""}` }, h("i"), r.label)));
     title.textContent = spec.title;
-    set(title, { x: MARGIN.left, y: 15 });
+    set(title, { x: Math.max(4, Math.min(MARGIN.left, width - 7.2 * spec.title.length)), y: 15 });
     const legendHeight = named.length ? legend.offsetHeight : 0;
     if (Math.abs(box.clientHeight - legendHeight - height) > 2 && box.clientHeight - legendHeight >= 60) { height = box.clientHeight - legendHeight; if (!it.again) { it.again = true; draw(spec, given); it.again = false; } }
     options.ondraw?.(it);
