@@ -63,23 +63,6 @@ export function quantity(value, unit, digits = 4) {
   return unit ? `${number(value, digits)} ${unit}` : number(value, digits);
 }
 
-let grip = null;
-/** A handle that is moved by a mouse as soon as it moves. Chromium keeps movements for the next frame, and so has begun that one
- * before the answer to them is there to be drawn in it; but not those of a press upon a canvas that asks for little delay. */
-export function quick(handle) {
-  handle.addEventListener("pointerenter", (event) => {
-    if (event.pointerType !== "mouse" || event.buttons) return;
-    if (!grip) {
-      const canvas = h("canvas", { width: 30, height: 30 });
-      canvas.getContext("2d", { desynchronized: true });
-      grip = s("foreignObject", { class: "grip", x: -15, y: -15, width: 30, height: 30, "aria-hidden": true }, canvas);
-    }
-    handle.append(grip);
-  });
-  handle.addEventListener("pointerleave", () => grip?.remove());
-  return handle;
-}
-
 export const degrees = (gamma) => (Math.atan(gamma) * 180) / Math.PI;
 
 export function download(blob, name) {

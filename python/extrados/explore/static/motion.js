@@ -1,6 +1,6 @@
 // Motion: the pulse or record, the rocking response over earlier ones, the map of pulses, energy, friction, and play.
 import { chart } from "./chart.js";
-import { h, number, quantity, quick, s, set } from "./dom.js";
+import { h, number, quantity, s, set } from "./dom.js";
 
 const SPEEDS = [[1, "real time"], [0.5, "half"], [0.2, "a fifth"], [0.05, "a twentieth"]];
 
@@ -188,7 +188,7 @@ export function motionPanel(app, lower, frame) {
       let knob = c.knobs[name];
       if (!knob) {
         const tag = s("text", { class: "knob-tag", x: 10, y: -8 });
-        knob = c.knobs[name] = quick(s("g", { class: "knob pulse", role: "slider", tabindex: "0", "aria-label": label, "data-handle": `pulse-${name}` }, s("circle", { class: "hit", r: 13 }), s("path", { class: "arrows", d: name === "amplitude" ? "M0 -9L-5 -4H5ZM0 9L-5 4H5Z" : "M-9 0L-4 -5V5ZM9 0L4 -5V5Z" }), s("circle", { class: "dot", r: 4 }), tag));
+        knob = c.knobs[name] = s("g", { class: "knob pulse", role: "slider", tabindex: "0", "aria-label": label, "data-handle": `pulse-${name}` }, s("circle", { class: "hit", r: 13 }), s("path", { class: "arrows", d: name === "amplitude" ? "M0 -9L-5 -4H5ZM0 9L-5 4H5Z" : "M-9 0L-4 -5V5ZM9 0L4 -5V5Z" }), s("circle", { class: "dot", r: 4 }), tag);
         knob.tagText = tag;
         knob.addEventListener("pointerdown", (e) => grab(e, knob, name, c));
         knob.addEventListener("dblclick", () => write(name));

@@ -1,5 +1,5 @@
 // The drawing of a structure: stones, lines of thrust, hinges, loads, reactions, and the handles that hands move.
-import { degrees, number, quantity, quick, s, set, shapes } from "./dom.js";
+import { degrees, number, quantity, s, set, shapes } from "./dom.js";
 
 const LINES = [
   ["least", "least thrust"], ["most", "greatest thrust"], ["through", "thrust through the point"],
@@ -264,8 +264,8 @@ export function stage(box, hands) {
   function make(name, w) {
     const tag = s("text", { y: -12 }), back = s("rect", { y: -26, height: 20, rx: 4 });
     const shape = w.along === "x" ? "M-9 0L-4 -5V5ZM9 0L4 -5V5Z" : w.along === "y" ? "M0 -9L-5 -4H5ZM0 9L-5 4H5Z" : "";
-    const element = quick(s("g", { class: `knob ${w.sort ?? ""}`, role: "slider", tabindex: "0", "aria-label": w.label, "data-handle": name, "aria-keyshortcuts": "ArrowLeft ArrowRight ArrowUp ArrowDown Enter" },
-      s("circle", { class: "hit", r: 15 }), shape ? s("path", { class: "arrows", d: shape }) : null, s("circle", { class: "dot", r: w.along === "both" ? 6 : 4 }), s("g", { class: "tag" }, back, tag)));
+    const element = s("g", { class: `knob ${w.sort ?? ""}`, role: "slider", tabindex: "0", "aria-label": w.label, "data-handle": name, "aria-keyshortcuts": "ArrowLeft ArrowRight ArrowUp ArrowDown Enter" },
+      s("circle", { class: "hit", r: 15 }), shape ? s("path", { class: "arrows", d: shape }) : null, s("circle", { class: "dot", r: w.along === "both" ? 6 : 4 }), s("g", { class: "tag" }, back, tag));
     element.tag = tag; element.back = back; element.data = w;
     element.addEventListener("pointerdown", (event) => grab(event, element));
     element.addEventListener("pointerenter", () => fitTag(element));
