@@ -38,8 +38,7 @@ def run_stages(
         applied, moved, damage = model.constant, model.settled.copy(), core_model.damage()
         ledger, events = (0.0, 0.0, 0.0), 0
         if stage_a is not None and len(stage_a):
-            ledger = (float(stage_a.external[-1]), float(stage_a.dissipated[-1]), float(stage_a.crack[-1]))
-            events = int(stage_a.number[-1])
+            ledger, events = stage_a.ledger, int(stage_a.number[-1])
         pushed: list[tuple[np.ndarray, float]] = []  # the load of each push, and its multiplier
         for k, stage in enumerate(options.stages):
             name = options.stage_names[k]
@@ -71,20 +70,11 @@ def run_stages(
                 curve.stage_a = stage_a
                 curve.warnings += warnings
             found.append((staged, curve))
+            if not curve.leads_on(options.stage_names[k + 1 :]):
+                break
             done = curve.events
-            if done.interrupted:
-                break
-            if not len(done) or not done.equilibrium[-1] or done.reason == "mechanism":
-                if k + 1 < len(options.stages):
-                    curve.warnings.append(
-                        f"stage {name} ended by: {done.reason or 'number of events'}, without a state in equilibrium to go on "
-                        f"from; not run: {', '.join(options.stage_names[k + 1 :])}"
-                    )
-                break
-            reached = float(done.load[-1])
-            damage = curve.damage_end
-            events = int(done.number[-1])
-            ledger = (float(done.external[-1]), float(done.dissipated[-1]), float(done.crack[-1]))
+            reached, damage = float(done.load[-1]), curve.damage_end
+            ledger, events = done.ledger, int(done.number[-1])
             applied = staged.constant + reached * staged.reference
             if staged.driven:
                 moved = moved + reached * staged.rate
