@@ -29,6 +29,7 @@ def run_stages(
     """
     found: list[tuple[ShellModel, Curve]] = []
     with model.open(options, threads) as core_model:
+        sound = {d: _compliance(core_model, mass_push(model, options, d)[0]) for d in _directions(options)}
         warnings: list[str] = []
         stage_a, _ = bring_on_constant_loads(core_model, model, options, progress, warnings, chain(["A"]))
         if stage_a is not None and stage_a.interrupted:
@@ -62,6 +63,10 @@ def run_stages(
             )  # fmt: skip
             told = lambda done, total, text, name=name: progress(done, total, f"stage {name}, {text}")  # noqa: E731
             stop = _stop(model, staged, stage, before, k)
+            if not staged.driven:
+                # A mechanism by the compliance of the building as it was: a stage may begin with little of it left
+                softer = _softness(core_model, staged.reference, start) / sound[_direction(options, stage)]
+                stop = replace(stop, compliance=max(model.mechanism_ratio / softer, 1.0))
             curve = run_reference_loads(core_model, staged, own, 1, told, False, chain([k, damage, moved]), stop)
             curve.name, curve.before, curve.damage_start, curve.unit = name, before, damage, staged.unit
             curve.acceleration = staged.acceleration
@@ -98,8 +103,7 @@ def _staged(
             model, constant=applied, reference=np.zeros_like(applied), unit=1.0, acceleration=None, rate=rate, settled=NOWHERE,
             stands=moved,
         )  # fmt: skip
-    direction = options.direction if stage.direction is None else stage.direction
-    force, along = mass_push(model, options, direction)
+    force, along = mass_push(model, options, _direction(options, stage))
     sign = 1.0 if stage.sense == "+" else -1.0
     axis, control = np.flatnonzero(along), model.control
     if options.control is None and stage.direction is not None:
@@ -121,6 +125,26 @@ def _staged(
         model, constant=applied, reference=reference, unit=unit, already=unit * already, along=along, settled=NOWHERE,
         stands=moved, control=core.Monitor(control.node, control.direction, sign * control.share),
     )  # fmt: skip
+
+
+def _direction(options: Pushover, stage: PushStage) -> float:
+    return options.direction if stage.direction is None else stage.direction
+
+
+def _directions(options: Pushover) -> set[float]:
+    """Of all pushes [deg]."""
+    return {_direction(options, stage) for stage in options.stages if not stage.settlements}
+
+
+def _compliance(core_model: core.Model, force: np.ndarray) -> float:
+    """Work of forces on the displacements of their own [J]."""
+    core_model.loads(np.zeros_like(force), force)
+    return float((force * core_model.displacement(1.0)).sum())
+
+
+def _softness(core_model: core.Model, force: np.ndarray, start: np.ndarray) -> float:
+    """The same in the state that the core has, beyond the displacements of what is on already [J]."""
+    return float((force * (core_model.displacement(1.0) - start)).sum())
 
 
 def _of_ground(staged: ShellModel) -> core.Monitor:
