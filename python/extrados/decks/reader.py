@@ -326,8 +326,8 @@ class _Checker:
             self.complain(at[:-1], f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
         elif sort == "value_error":
             text = str(problem.get("ctx", {}).get("error", problem["msg"]))
-            if not place and (inner := _leads(text, problem["input"])):
-                at, text = (*path, *inner), text.partition(": ")[2]
+            if inner := _leads(text, problem["input"]):
+                at, text = (*at, *inner), text.partition(": ")[2]
             elif not place:  # a rule over several keys: shown at the first one that it names
                 given = problem["input"]
                 found = (
@@ -365,13 +365,20 @@ class _Checker:
 
 
 def _leads(text: str, given: Any) -> Key:
-    """The key of a table that words begin with, as "hazard.intensities: expected ..." do; empty where it has none."""
-    named = text.partition(": ")[0].split(".")
-    for part in named:
-        if not isinstance(given, dict) or part not in given:
+    """The key of a table that words begin with, as "hazard.intensities: expected ..." and "walls[0].openings[1]: ..." do,
+    numbers from 0; empty where it has none."""
+    found: list[str | int] = []
+    for part in text.partition(": ")[0].split("."):
+        named = re.fullmatch(r"(\w+)((?:\[\d+\])*)", part)
+        if named is None:
             return ()
-        given = given[part]
-    return tuple(named)
+        for step in (named[1], *map(int, re.findall(r"\d+", named[2]))):
+            there = len(given) if isinstance(given, list) else 0
+            if not (step in given if isinstance(given, dict) else isinstance(step, int) and step < there):
+                return ()
+            given = given[step]
+            found.append(step)
+    return tuple(found)
 
 
 def _place(problem: ErrorDetails) -> tuple:
