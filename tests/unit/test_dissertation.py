@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+import extrados
 from extrados import kinds
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -70,3 +71,13 @@ def test_the_count_of_each_chapter() -> None:
         drawn = sum(".png" in row[2] for row in of)
         tested = sum("test_" in row[2] and ".png" not in row[2] for row in of)
         assert f"| {chapter} | {last} | {drawn} | {tested} | {last - drawn - tested} |" in told
+
+
+def test_optimal_motion_and_single_impulses() -> None:
+    """Figs 6-2 and 6-4: steps that lengthen as the rotation grows, and the share of starts from which an impulse adds energy."""
+    found = extrados.run(ROOT / "cases" / "rocking" / "figure-6-4.toml")["resonance"]
+    spacing = found.switch_spacing_s
+    assert spacing == sorted(spacing)
+    assert [spacing[0], spacing[-1]] == pytest.approx([0.1604, 0.3317], abs=0.0005)
+    share = found.share_of_starts_that_add
+    assert [share[key] for key in ("0.125", "0.25", "0.5", "1")] == pytest.approx([0.43, 0.55, 0.76, 0.88], abs=0.01)
