@@ -11,7 +11,7 @@ from test_every_strategy import quick_save
 import extrados
 from extrados.analyses.assess import driver, hazard, sensitivity, strategies
 from extrados.analyses.assess.reasons import Facts
-from extrados.analyses.assess.words import conclusion, margin_of, table_of
+from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
 from extrados.building.building import Building
 from extrados.core.calls import within
@@ -229,7 +229,10 @@ def test_relations_and_overall_statement() -> None:
     split = facts([verdict("tilt", "falls"), verdict("dem", "stands")])
     overall, words = conclusion(split, [], [("tilt", "dem")], "block", (None, None), list(split.rows.values()))
     assert overall == "depends" and "No rule finds a reason" in words
-    assert margin_of(far[1]) == "above 2" and "tilt" in table_of(far)
+    assert far[1].margin_told() == "above 2" and "tilt" in table_of(far)
+    close = verdict("rocking", "stands", margin_at_least=1.1071, margin_below=1.1124)
+    assert close.margin_told() == "1.107 to 1.112", "two factors that differ are not told as one"
+    assert verdict("dem", "stands").margin_told("") == ""
 
 
 # ----- sensitivity
