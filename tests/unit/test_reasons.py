@@ -8,10 +8,11 @@ import pytest
 
 from extrados.analyses.assess.reasons import HEADLINES, RULES, Facts, explained
 from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
 from extrados.decks.reader import make_deck
 from extrados.motions import pulses
 from extrados.results.assess import StrategyVerdict
-from extrados.results.codes import Check, CodeChecks, LocalMechanism
+from extrados.results.codes import Check, CodeChecks, LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Array, Result
@@ -68,6 +69,25 @@ def checked(capacity: float, demand: float | None = 0.3, multiplier: float | Non
 def check(capacity: float, demand: float | None, unit: str = "g", code: str = "NTC 2018") -> Check:
     verdict = "" if demand is None else "holds" if capacity >= demand else "fails"
     return Check(capacity=capacity, demand=demand, unit=unit, verdict=verdict, source="", note="", code=code)
+
+
+def walls(multiplier: float) -> Result:
+    """Of the codes: one wall that turns by itself."""
+    one = WallMechanism.model_construct(wall="back", storey=1, multiplier=multiplier)
+    checks = {"NTC linear (at the ground)": check(0.1, 0.3)}
+    return Result(
+        "local-mechanism", results=LocalMechanism.model_construct(checks=checks, multiplier=multiplier, walls=[one])
+    )
+
+
+def house(across: float) -> Building:
+    """Two walls of 4 m and 0.4 m along x, two of another thickness along y."""
+    corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]
+    sides = [
+        {"name": str(k), "start": corners[k], "end": corners[(k + 1) % 4], "thickness": (0.4, across)[k % 2]}
+        for k in range(4)
+    ]
+    return Building(Plan(kind="building", storeys=[3.0], walls=sides))
 
 
 def criterion(verdict: str) -> Result:
@@ -300,6 +320,25 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
         {
             "the other says the same": lambda f: having(f, **{"code-checks": checked(0.14, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
             "there is no other": lambda f: having(f, **{"code-checks": checked(0.36, None, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
+        },
+    ),
+    "a wall that the codes tear off": (
+        "torn-off",
+        lambda: facts([row("code-checks", "falls", margin=0.3), row("push-x", "stands", capacity=0.6, margin=1.5)],
+                      {"code-checks": walls(0.05)}),
+        {
+            "it bears more by itself than the whole": lambda f: having(f, **{"code-checks": walls(0.7)}),
+            "no wall was taken apart": lambda f: having(f, **{"code-checks": checked(0.1)}),
+            "the codes bear more": lambda f: rated(f, row("code-checks", "stands", margin=2.0), row("push-x", "falls", capacity=0.2, margin=0.5)),
+            "how far the push came is not known": lambda f: rated(f, row("push-x", "stands")),
+        },
+    ),
+    "less masonry along one axis": (
+        "weaker-direction",
+        lambda: facts([row("push-x", "stands", margin=2.5), row("push-y", "falls", margin=0.8)], building=house(0.2)),
+        {
+            "more of it along that axis": lambda f: replace(f, building=house(0.6)),
+            "it is no plan": lambda f: replace(f, building=building()),
         },
     ),
     "chance": (

@@ -251,6 +251,14 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
                     Table(("check", "demand", "capacity", "unit", "", "clause"), rows, (1.8, 0.8, 0.8, 0.6, 0.7, 3.6)),
                 )
             )
+        if walls := getattr(r, "walls", None) if a["kind"] == "local-mechanism" else None:
+            head = ("wall", "turns at the foot of storey", "alpha_0", "a_0* [g]", "d_0* [m]", "margin")
+            rows = [
+                (w.wall, str(w.storey), f"{w.multiplier:.4g}", f"{w.activation_acceleration_g:.4g}",
+                 "none" if w.zero_displacement_m is None else f"{w.zero_displacement_m:.3g}", "" if w.margin is None else f"{w.margin:.3g}")
+                for w in walls
+            ]  # fmt: skip
+            found.append(("walls", a["name"], Table(head, rows, (1.8, 1.6, 1.0, 1.0, 1.0, 1.0))))
     return found
 
 
@@ -268,7 +276,7 @@ def _numbers(run: Stored, hidden: set[str]) -> list[Block]:
         rows = [
             (k, v, unit, about)
             for k, v, unit, about in numbers(run[a["name"]])
-            if not (a["name"] in hidden and k.startswith("checks."))
+            if not (a["name"] in hidden and (k.startswith("checks.") or k == "walls"))
         ]
         if a["kind"] == "assess":
             rows = [

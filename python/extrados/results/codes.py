@@ -80,6 +80,18 @@ class CodeChecks(Checked):
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
 
 
+class WallMechanism(ResultModel):
+    """A wall of a building on a plan above the foot of one of its storeys."""
+
+    wall: str = fact("its name")
+    storey: int = fact("the storey at whose foot it turns, from 1")
+    foot_m: float = fact("height of that foot above the ground", "m")
+    multiplier: float = fact("alpha_0")
+    activation_acceleration_g: float = fact("a_0*", "g")
+    zero_displacement_m: float | None = fact("d_0*; null: none", "m")
+    margin: float | None = fact("capacity over demand of the check that governs; null without a demand")
+
+
 class LocalMechanism(Checked):
     """local-mechanism: a local mechanism by the kinematic analysis of codes."""
 
@@ -101,4 +113,7 @@ class LocalMechanism(Checked):
         "of a place above the ground: a_Z, the acceleration there, the demand of the linear check",
         "g",
         source="Circ. 7/2019 C7.2.3",
+    )
+    walls: list[WallMechanism] = maybe(
+        "of a building on a plan: every wall above the foot of each storey, the worst first, for which the numbers stand"
     )

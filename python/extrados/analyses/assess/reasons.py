@@ -7,9 +7,10 @@ import numpy as np
 
 from extrados.analyses.assess.hazard import above, passages
 from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
 from extrados.motions.motion import Motion
 from extrados.results.assess import Reason, StrategyVerdict
-from extrados.results.codes import Check, Checked
+from extrados.results.codes import Check, Checked, LocalMechanism
 from extrados.results.dem import DemRun
 from extrados.results.limit import Tilt
 from extrados.results.model import Result
@@ -17,7 +18,9 @@ from extrados.results.rocking import Assessment, Rocking
 from extrados.results.verdict import KindResults
 
 #: Strategies that push for ever, and those that follow the motion or a part of it
-STATIC, DYNAMIC = ("tilt", "sla"), ("rocking", "assessment", "probability", "dem")
+STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment", "probability", "dem")
+#: The push of a building on a plan along its two axes
+PUSHES = ("push-x", "push-y")
 #: A joint that slips by this part of its length has slid; a thrust line outside by this share of the time is elsewhere
 SLID, ELSEWHERE = 0.01, 0.1
 #: Passages of a motion over a capacity that are looked at one by one, those of the greatest impulse
@@ -96,7 +99,8 @@ HEADLINES = {
     "sine-for-record": "what the motion holds beside its strongest sine", "sliding": "sliding of the stones",
     "drums": "stones that move by themselves", "hinges-elsewhere": "hinges that form elsewhere",
     "membrane-without-sliding": "elements that cannot slide", "tension": "tension that elements bear",
-    "mortar": "mortar", "code-factors": "the factors of codes", "code-check": "which check of the codes governs", "crack": "a crack in the buttress", "left-out": "what holds the building", "chance": "sizes that nobody knows to 5 %",
+    "mortar": "mortar", "code-factors": "the factors of codes", "code-check": "which check of the codes governs", "torn-off": "whether corners and floors hold the walls",
+    "weaker-direction": "the walls along each axis", "crack": "a crack in the buttress", "left-out": "what holds the building", "chance": "sizes that nobody knows to 5 %",
 }  # fmt: skip
 
 
@@ -515,6 +519,51 @@ def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
     )  # fmt: skip
 
 
+def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Codes take a wall apart from its neighbours; in the push of the whole corners and floors hold it."""
+    r = facts.of("code-checks")
+    mine = [p for p in pairs if "code-checks" in p and set(p) & set(PUSHES) and facts.split(p)[0] == "code-checks"]
+    if not mine or not isinstance(r, LocalMechanism) or not r.walls:
+        return None
+    wall = r.walls[0]
+    bears = {n: c for p in mine for n in p if n in PUSHES and (c := _reached(facts, n)) is not None}
+    if not bears or wall.multiplier >= min(bears.values()):
+        return None
+    weakest = min(bears, key=lambda n: bears[n])
+    return reason(
+        "torn-off", mine,
+        f"The codes take each wall apart from those across it: wall {wall.wall} turns out of its plane about the foot of storey "
+        f"{wall.storey} at alpha_0 = {wall.multiplier:.3g}. In the {facts.rows[weakest].label} corners and floors hold the walls together, and all "
+        f"of it bears {bears[weakest]:.3g} g: that holds as far as they are bonded and anchored.",
+        multiplier=wall.multiplier, whole_g=bears[weakest],
+    )  # fmt: skip
+
+
+def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Two directions on the plan differ where the one with less masonry along it bears less."""
+    plan = facts.building.structure
+    mine = [p for p in pairs if set(p) == set(PUSHES)]
+    if not mine or not isinstance(plan, Plan):
+        return None
+    weak, strong = facts.split(mine[0])
+    area = {"push-x": plan.foot_area(0), "push-y": plan.foot_area(1)}
+    if area[weak] >= 0.95 * area[strong]:
+        return None
+    return reason(
+        "weaker-direction", mine,
+        f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis walls stand on {area[weak]:.3g} m^2, along the "
+        f"{facts.rows[strong].label.removeprefix('push along ')} axis on {area[strong]:.3g} m^2.",
+        weak_m2=area[weak], strong_m2=area[strong],
+    )  # fmt: skip
+
+
+def _reached(facts: Facts, name: str) -> float | None:
+    """The acceleration [g] up to which a push has come."""
+    row = facts.rows[name]
+    margin = row.margin if row.margin is not None else row.margin_at_least
+    return row.capacity if row.capacity is not None else None if margin is None else margin * facts.peak_g
+
+
 def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[float, str, Check]], list[Pair]] | None:
     """The results of the codes with the checks by which they say what they say, and the pairs with them; None without any."""
     r = facts.of("code-checks")
@@ -526,7 +575,7 @@ def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[flo
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check,
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
     chance,
 )  # fmt: skip
 

@@ -78,7 +78,7 @@ class LocalMechanism(BuildingAnalysis):
     }  # fmt: skip
     mechanism: Literal["facade", "corner", "gable", "parapet", "wall", "tower", "building"] = key(
         about="facade, corner of two walls, gable, parapet on a building, free-standing wall, tower as one body; or `building`, "
-        "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults)"
+        "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults), of a building on a plan its walls"
     )
     height: Length | None = key(None, "top of what turns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
