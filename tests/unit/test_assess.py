@@ -123,6 +123,22 @@ def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
     assert not time.passed
 
 
+def test_without_a_peak_elements_bear_so_much_at_least() -> None:
+    """A run that ends before its peak is no capacity; one that passes it is."""
+    panel = {"kind": "panel", "width": 2.0, "height": 2.0, "thickness": 0.3, "unit_length": 0.5, "unit_height": 0.5}
+    soft = {"density": 1900.0, "young": "2 GPa", "tensile_strength": "0.05 MPa", "fracture_energy": "10 N/m"}
+    weak = {**PULSE, "amplitude": "0.02 g"}
+    rows = []
+    for events in (40, 20000):
+        given = {"strategies": ["sla"], "options": {"sla": {"events": events, "mesh": {"size": 0.5}}}}
+        (row,) = extrados.run(deck(structure=panel, material=soft, motion=weak, assess=given))["assess"].verdicts
+        rows.append(row)
+    begun, ended = rows
+    assert begun.outcome == ended.outcome == "stands"
+    assert begun.margin is None and begun.margin_at_least > 1.0 and "passed no peak" in begun.statement
+    assert ended.margin > begun.margin_at_least and ended.margin_at_least is None
+
+
 # ----- a building on a plan
 
 HOUSE = {

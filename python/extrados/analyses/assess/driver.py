@@ -165,7 +165,12 @@ class _Work:
 
     def costly(self) -> None:
         for name in ("probability", "sla", "push-x", "push-y", "dem"):
-            if self.wants(name) and name not in self.rows:
+            if not self.wants(name) or name in self.rows:
+                continue
+            if name == "probability" and "rocking" in self.rows and self.rows["rocking"].status == "refused":
+                text = "it is that of rocking, which this building does not do as one mechanism"
+                self.rows[name] = no_row(strategies.of(name), "left out", text)
+            else:
                 self.ask(strategies.of(name))
         self.context.progress(2.0, 3.0, "assess")
 

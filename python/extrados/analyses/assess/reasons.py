@@ -441,7 +441,8 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
             return reason(
                 "membrane-without-sliding", mine,
                 f"The wall of finite elements cannot slide along its joints: its stones bear {least:.3g} g with friction "
-                f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g.",
+                f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g"
+                f"{', which bear tension besides' if strength and sla.capacity > 1.05 * stuck else ''}.",
                 with_sliding=least, without_sliding=stuck, elements=sla.capacity,
             )  # fmt: skip
     if strength and sla.capacity > least:
