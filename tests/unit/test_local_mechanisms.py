@@ -7,6 +7,7 @@ import extrados
 from extrados.analyses.codes.code_rules import more_piers
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight, capacity
 from extrados.analyses.codes.ntc import displacement, floor
+from extrados.decks.reader import DeckError
 from extrados.schema.constants import GRAVITY
 
 
@@ -211,6 +212,30 @@ def test_the_nonlinear_check_of_the_circolare() -> None:
     assert check.capacity == pytest.approx(0.4 * d0) and 0.5 < period < 2.0
     asked = np.sqrt(10.0 / 13.0) * 2.5 * 0.18 * GRAVITY * 0.5 / period * (period / (2.0 * np.pi)) ** 2
     assert check.demand == pytest.approx(asked) and "verify" not in check.source
+
+
+def test_the_check_at_collapse_stands_beside_those_of_life_safety() -> None:
+    """C8.7.1.2.1.8: d_SLC = 0.6 d_0 against S_De of SLC at 10 % and 1.56 pi sqrt(d_SLC/a(d_SLC)), [C8.7.1.11]."""
+    rare = {**SITE, "acceleration": "0.4 g"}
+    keys = {"mechanism": "wall", "height": 2.5, "thickness": 0.5, "spectrum": SITE}
+    r = mechanism(**keys, collapse_spectrum=rare)["local-mechanism"]
+    d0, a0 = 1.25 * np.arctan(0.2), 0.2 * GRAVITY / 1.35
+    period = 1.56 * np.pi * np.sqrt(0.6 * d0 / (0.4 * a0))
+    check = r.checks["NTC nonlinear at SLC"]
+    assert check.capacity == pytest.approx(r.collapse_displacement_m) == pytest.approx(0.6 * d0)
+    of_life = r.checks["NTC nonlinear"]
+    assert period > 2.0, "beyond T_D the displacement is the same for all"
+    asked = 0.4 * 1.2 * GRAVITY * np.sqrt(10.0 / 15.0) * 2.5 * 0.5 * 2.0 / (4.0 * np.pi**2)
+    assert check.demand == pytest.approx(asked)
+    assert f"T_SLC = {period:.3f} s" in check.note
+    # what holds at SLV does not make up for it, nor the other way round
+    worse = mechanism(**keys, collapse_spectrum={**SITE, "acceleration": "4 g"})["local-mechanism"]
+    assert worse.checks["NTC nonlinear"].verdict == of_life.verdict and worse.overall().outcome == "falls"
+    assert "SLC governs" in worse.overall().statement
+    high = mechanism(**keys, collapse_spectrum=rare, base_height=4.0, building_height=8.0)["local-mechanism"]
+    assert high.checks["NTC nonlinear at SLC"].demand != pytest.approx(check.demand)
+    with pytest.raises(DeckError, match="collapse_spectrum: code EN1998-1 needs acceleration"):
+        mechanism(**keys, collapse_spectrum={"code": "EN1998-1", "ground": "B"})
 
 
 def test_the_floor_spectrum_of_the_circolare() -> None:

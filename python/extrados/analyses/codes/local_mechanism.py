@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from extrados.analyses.codes import ntc
-from extrados.analyses.codes.code_checks import demanded_spectrum
+from extrados.analyses.codes.code_checks import demanded_spectrum, spectrum_of
 from extrados.analyses.codes.code_rules import Line
 from extrados.analyses.codes.kinematics import Capacity, Overturning, capacity
 from extrados.analyses.codes.mechanisms import overturning
@@ -250,6 +250,11 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
         note += f", z/H {options.base_height / height:.3g}"
     fc = options.confidence_factor
     lines = ntc.checks(found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc)
+    if options.collapse_spectrum is not None and found.d0 is not None:
+        rare, above = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum"), None
+        if options.base_height > 0.0 and height is not None:
+            above = ntc.floor(rare, options.base_height, height, options.storeys, options.building_period)
+        lines.append(ntc.collapse_check(found.alone / fc, found.d0, rare, above))
     more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
     if height is not None and options.base_height > 0.0 and a_g is not None:
         part = a_g / GRAVITY * (3.0 * (1.0 + options.base_height / height) / 2.0 - 0.5)

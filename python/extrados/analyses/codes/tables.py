@@ -94,6 +94,11 @@ class LocalMechanism(BuildingAnalysis):
         source="EN 1998-1 3.2.2; NTC 2018 3.2.3",
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
+    collapse_spectrum: CodeSpectrum | None = key(
+        None,
+        "elastic spectrum of the site for the limit state of collapse, SLC; asks for the check of d_SLC, which stands beside those at SLV",
+        source="Circ. 7/2019, C8.7.1.2.1.8",
+    )
     motion_spectrum: bool = key(
         False, "where there is no spectrum of a code, take the response spectrum of the deck's motion"
     )
