@@ -84,7 +84,7 @@ def _plan(structure: dict[str, Any], folder: Path) -> tuple[str, str]:
             turn = np.degrees(np.arctan2(along[1], along[0]))
             ax.text(
                 *place, f"{wall['name']}: {np.linalg.norm(end - start):.4g} m, {1e2 * thick:.3g} cm", color=INK, ha="center", va="center",
-                rotation=(turn + 90.0) % 180.0 - 90.0, fontsize=8,
+                rotation=90.0 - (90.0 - turn) % 180.0, fontsize=8,
             )  # fmt: skip
         reach = 2.0 * OFF * span.max()
         ax.set_aspect("equal")

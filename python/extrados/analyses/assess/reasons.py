@@ -240,9 +240,9 @@ def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "left-out", mine,
-        f"{' and '.join(sorted(every))} hold what rocks; {' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))} "
-        f"leaves them out. Without them rocking turns by {100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them by "
-        f"{100 * r.peak_rotation_ratio:.3g} %.",
+        f"What rocks is held by {' and '.join(sorted(every))}, left out by "
+        f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them rocking turns by "
+        f"{100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them by {100 * r.peak_rotation_ratio:.3g} %.",
         rotation_ratio_without=other.peak_rotation_ratio, rotation_ratio=r.peak_rotation_ratio,
     )  # fmt: skip
 
