@@ -358,7 +358,11 @@ class _Checker:
             lacks = kinds.table("structure", shape).lacks if known else {}
             if known and wanted is not None and shape not in wanted:
                 self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
-            elif analysis.view in lacks and not (analysis.solid and "solids" not in lacks):
+            elif (
+                analysis.view in lacks
+                and not (analysis.solid and "solids" not in lacks)
+                and shape not in analysis.shells
+            ):
                 self.complain(path, f"{kind} cannot look at a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")

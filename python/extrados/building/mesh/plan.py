@@ -297,10 +297,8 @@ def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tu
     return number[grid.number(i, np.full(len(i), k))], grid.s[i]
 
 
-def _ring(
-    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
-) -> tuple[list[int], list[int]]:
-    """Walls around a floor and the nodes on them in order, counter-clockwise."""
+def around(plan: Plan, floor: StoreyFloor) -> list[tuple[int, float, float]]:
+    """The walls around a floor in order: number, and the places along it where the one before and the one after meet it [m]."""
     what = f"floor on storey {floor.storey}"
     reach = [plan.reach(wall) for wall in plan.walls]
     names = floor.walls or [w.name for w, r in zip(plan.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
@@ -313,9 +311,17 @@ def _ring(
         if at is None:
             raise BadGeometry(f"{what}: walls '{plan.walls[a].name}' and '{plan.walls[b].name}' do not meet")
         corners.append(at)
+    return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
+
+
+def _ring(
+    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
+) -> tuple[list[int], list[int]]:
+    """Walls around a floor and the nodes on them in order, counter-clockwise."""
+    what = f"floor on storey {floor.storey}"
+    walls = around(plan, floor)
     nodes: list[int] = []
-    for k, w in enumerate(walls):
-        start, end = corners[k - 1][1], corners[k][0]
+    for w, start, end in walls:
         own, s = _level_nodes(plan, floor.storey, grids[w], number)
         if not len(own):
             raise BadGeometry(f"{what}: wall '{plan.walls[w].name}' has no masonry there")
@@ -332,7 +338,7 @@ def _ring(
     x, y = xyz[ring, 0], xyz[ring, 1]
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
         ring.reverse()
-    return walls, ring
+    return [w for w, _, _ in walls], ring
 
 
 def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:

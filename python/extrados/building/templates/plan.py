@@ -280,6 +280,26 @@ class Plan(Structure):
         """Heights of the ground and of the top of each storey [m]."""
         return np.concatenate([[0.0], np.cumsum(self.storeys)])
 
+    def foot_area(self, axis: int) -> float:
+        """Of the walls on the ground, doors left out, each by how far it runs along x (0) or y (1) [m^2]."""
+        total = 0.0
+        for wall in self.walls:
+            if self.reach(wall)[0] == 1:
+                doors = sum(o.x[1] - o.x[0] for o in wall.openings if o.storey == 1 and o.z[0] == 0.0)
+                total += (wall.thickness or wall.thicknesses[0]) * (wall.length - doors) * abs(wall.direction[axis])
+        return float(total)
+
+    @property
+    def wall_area(self) -> float:
+        """Of all walls in their planes, openings counted [m^2]."""
+        return float(
+            sum(
+                wall.length * np.diff(self.levels[[r[0] - 1, r[1]]])[0]
+                for wall in self.walls
+                if (r := self.reach(wall))
+            )
+        )
+
     def wall(self, name: str) -> PlanWall:
         return next(wall for wall in self.walls if wall.name == name)
 
