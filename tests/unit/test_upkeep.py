@@ -91,3 +91,14 @@ def test_the_forge_calls_what_is_there() -> None:
     for command, word in called:
         assert word in targets if command == "make" else (ROOT / command).exists() or command == "git", (command, word)
     assert sys.version_info >= (3, 11)
+
+
+def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    rooms = tool("tools/seeded_faults.py").ROOMS
+    sources = [path for root in ("fortran", "c") for end in ("f90", "c") for path in (ROOT / root).glob(f"*/*.{end}")]
+    # what hands numbers over holds no mechanics of its own
+    assert {path.parent.relative_to(ROOT).as_posix() for path in sources} - {"fortran/api"} == set(rooms)
+    for native, python, _ in rooms.values():
+        assert all((ROOT / "tests" / name).exists() for name in python)
+        assert all(any((ROOT / "tests").glob(f"*/{name}.*")) for name in native)
