@@ -1,17 +1,21 @@
-"""Build the documentation site into build/site: the references, a gallery of cases run now, Sphinx, and FORD for the Fortran.
+"""Build the documentation site into build/site: the references, a gallery of cases run now, the dissertation's figures redrawn,
+Sphinx, and FORD for the Fortran.
 
 What it needs is the extra `docs` of pyproject.toml, installed first where it is missing. A warning is an error.
 """
 
+import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import extras
 
 ROOT = Path(__file__).resolve().parents[1]
 SITE, GALLERY, PAGE = ROOT / "build" / "site", ROOT / "docs" / "_gallery", ROOT / "docs" / "gallery.md"
+DISSERTATION, REDRAWN = ROOT / "docs" / "dissertation", ROOT / "docs" / "dissertation" / "redrawn.md"
 #: Decks of the gallery, each with the analysis whose first figure is shown; together they take about a minute
 SHOWN = [
     ("arch/oppenheim", "tilt"), ("arch/oppenheim-domain", "failure-domain"), ("arch/figure-5-4", "failure-curves"), ("vault/dejong-a", "tilt"),
@@ -62,6 +66,49 @@ def gallery() -> None:
     PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
+def redrawn() -> None:
+    """docs/dissertation/redrawn.md: the pictures that its pages name, by running their decks; slow cases are left out."""
+    import extrados
+
+    pages = [file for file in sorted(DISSERTATION.glob("*.md")) if file != REDRAWN]
+    rows = [
+        (figure, shows, re.findall(r"`cases/([\w/-]+)`((?: `figures/[\w-]+\.png`)+)", by))
+        for page in sorted(pages, key=lambda file: (file.stem == "appendices", file.stem))
+        for figure, shows, by in re.findall(
+            r"^\| ([\dA-C]+-\d+) \| (.*?) \| (.*?) \|", page.read_text(encoding="utf-8"), re.M
+        )
+    ]
+    runs: dict = {}
+    slow: set[str] = set()
+    lines = [
+        "# Redrawn now",
+        "",
+        "Made by running the decks that the pages of the chapters name, as this site was built.",
+    ]
+    for figure, shows, decks in rows:
+        for case, names in decks:
+            deck = ROOT / "cases" / f"{case}.toml"
+            if tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8")).get("slow"):
+                slow.add(case)
+                continue
+            if case not in runs:
+                run = extrados.run(deck)
+                runs[case] = {
+                    title: drawn[title] for row in run.analyses for drawn in [run.plot(row["name"])] for title in drawn
+                }
+            for name in re.findall(r"figures/([\w-]+)\.png", names):
+                if name not in runs[case]:
+                    sys.exit(f"cases/{case}.toml draws no {name}, which docs/dissertation names for Fig. {figure}")
+                picture = GALLERY / f"{case.replace('/', '-')}-{name}.png"
+                runs[case][name].savefig(picture, format="png")
+                if f"## Fig. {figure}: {shows}" not in lines:
+                    lines += ["", f"## Fig. {figure}: {shows}"]
+                lines += ["", f"`cases/{case}.toml`:", "", f"![Fig. {figure}](../_gallery/{picture.name})"]
+    left = ", ".join(f"`cases/{case}.toml`" for case in sorted(slow))
+    lines += ["", "## Left out", "", f"Decks that take minutes: {left}."]
+    REDRAWN.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
 def fortran() -> None:
     """The reference of the Fortran core, from its comments."""
     project = ROOT / "build" / "ford.md"
@@ -76,8 +123,10 @@ def main() -> None:
     quick = "--quick" in sys.argv
     if quick:
         PAGE.write_text("# Gallery\n\nLeft out of this quick build.\n", encoding="utf-8")
+        REDRAWN.write_text("# Redrawn now\n\nLeft out of this quick build.\n", encoding="utf-8")
     else:
         gallery()
+        redrawn()
     shutil.rmtree(SITE, ignore_errors=True)
     subprocess.run(
         [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", "-b", "html", ROOT / "docs", SITE], check=True

@@ -134,6 +134,8 @@ contains
          else if (equilibrium .and. found%hi%value < unbounded) then
             call choose(model, found%hi)
          else if (found%lo%value > -unbounded .and. .not. equilibrium) then
+            ! A load that is never taken back is not raised either for a point that passed its limit by rounding
+            if (rules%release .and. model%recorded) found%lo%value = model%lambda
             call choose(model, found%lo)
          else
             reason = stop_unbounded    ! only lower limits: the load can grow for ever

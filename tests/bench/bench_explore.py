@@ -1,5 +1,6 @@
 """The interactive page: time from the event of a hand to the picture that shows its answer, in headless chromium.
 
+A page of 60 pictures a second waits 8 ms for its next frame in the mean: when the answer was drawn, before that frame, is told too.
 Beside it the processor time of the session and of the page's own thread: on a machine that is busy with other things the one
 grows, the others do not. The load of the machine is told at both ends.
 """
@@ -74,9 +75,10 @@ def told(page, busy: Busy, what: str, kind: str, target: str) -> None:
     if not rows:
         print(f"{what}: nothing was measured")
         return
-    ms, server = (np.array([row[key] for row in rows], dtype=float) for key in ("ms", "server"))
+    ms, drawn, server = (np.array([row[key] for row in rows], dtype=float) for key in ("ms", "drawn", "server"))
     print(
         f"{what:44s} {len(rows):4d} pictures: median {np.median(ms):6.1f} ms, 95 % below {np.percentile(ms, 95):6.1f} ms ({target}); "
+        f"drawn after {np.median(drawn):5.1f} ms, then the frame; "
         f"session {np.median(server):5.1f} and {np.percentile(server, 95):5.1f} ms of processor, page {1e3 * spent / (len(rows) + 1):5.1f} ms a picture"
     )
 

@@ -454,6 +454,59 @@ def test_pictures_and_films_come_out(page: Any, served: Served) -> None:
         assert image.n_frames > 5
 
 
+def test_a_slowed_film_lasts_five_times_as_long(page: Any) -> None:
+    from PIL import Image
+
+    open_text(page, ROCKING.replace("end_time = 3.0", "end_time = 0.4"))
+    page.click("[data-tab=motion]")
+    until(page, "window.extrados.motion.arrays?.pose")
+    end, seconds = page.evaluate("window.extrados.motion.end"), {}
+    for name in ("real time", "a fifth of the speed"):
+        page.click("text=Export")
+        with page.expect_download(timeout=240_000) as waited:
+            page.click(f"text=Film, GIF, {name}")
+        with Image.open(waited.value.path()) as image:
+            looks = []
+            for k in range(image.n_frames):
+                image.seek(k)
+                looks.append((image.info["duration"], image.convert("RGB").tobytes()))
+            image.save(SHOTS / f"film-{name.replace(' ', '-')}.png")  # the last picture
+        seconds[name] = sum(duration for duration, _ in looks) / 1000
+        assert len({look for _, look in looks}) > 0.5 * len(looks), "it moves"
+    assert seconds["real time"] == pytest.approx(end, abs=0.2)
+    assert seconds["a fifth of the speed"] == pytest.approx(5 * end, abs=0.2)
+
+
+def test_what_holds_a_building_is_drawn(page: Any) -> None:
+    open_text(page, HELD)
+    drawn = """name => { const box = document.querySelector(name).getBBox(); return [box.x, box.y, box.x + box.width, box.y + box.height]; }"""
+    x = page.evaluate("window.extrados.anchor[0]")
+    assert page.evaluate(drawn, ".tie:not(.damper)")[2] + x == pytest.approx(2.0)
+    assert page.evaluate(drawn, ".damper")[2] + x == pytest.approx(3.0)
+    assert page.evaluate(drawn, ".supports")[0] + x < -0.01, "the wall on its left"
+    assert page.evaluate(drawn, ".mass")[3] > 4.0
+    page.wait_for_timeout(200)
+    page.screenshot(path=SHOTS / "held.png")
+
+
+def test_a_run_that_is_chosen_leaves_nothing_of_the_one_before(page: Any, served: Served) -> None:
+    (served.folder / "one.toml").write_text(ROCKING)
+    subprocess.run(
+        [sys.executable, "-m", "extrados", "run", "one.toml", "--quiet", "--no-figures"], cwd=served.folder,
+        check=True, timeout=300,
+    )  # fmt: skip
+    page.click("[data-tab=results]")
+    until(page, "window.extrados.welcome.runs.length === 1")
+    page.select_option("select[aria-label='Run A']", "results/one")
+    page.wait_for_selector(".column >> nth=0 >> .body-view .stones")
+    left = page.evaluate("""() => {
+        const { columns } = window.extrados.results, words = columns[0].words;
+        columns[0].take({ path: words.path, title: words.title, analyses: words.analyses }, {});
+        return document.querySelectorAll(".column .chart, .column .player:not([hidden]), .column .body-box:not([hidden])").length;
+    }""")  # fmt: skip
+    assert left == 0
+
+
 def test_the_five_exercises(page: Any) -> None:
     page.click("[data-side=teach]")
     assert page.locator(".exercises li").count() == 5
@@ -590,6 +643,30 @@ def _data(text: str) -> dict[str, Any]:
     return tomllib.loads(text)
 
 
+HELD = """title = "Held"
+
+[structure]
+kind = "block"
+width = 1.0
+height = 4.0
+head_mass = 500.0
+
+[supports]
+abutting_wall = "left"
+
+[[ties]]
+start = [0.4, 3.5]
+ground = [2.0, 0.0]
+stiffness = 1e7
+
+[[dampers]]
+start = [0.4, 3.0]
+ground = [3.0, 0.0]
+damping = 1e5
+
+[[analysis]]
+kind = "tilt"
+"""
 ROCKING = """title = "Oppenheim's arch"
 
 [structure]

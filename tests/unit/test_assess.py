@@ -11,7 +11,7 @@ from test_every_strategy import quick_save
 import extrados
 from extrados.analyses.assess import driver, hazard, sensitivity, strategies
 from extrados.analyses.assess.reasons import Facts
-from extrados.analyses.assess.words import conclusion, margin_of, table_of
+from extrados.analyses.assess.words import conclusion, table_of
 from extrados.analyses.context import Context
 from extrados.building.building import Building
 from extrados.core.calls import within
@@ -19,6 +19,7 @@ from extrados.decks.reader import make_deck
 from extrados.motions import pulses
 from extrados.motions.tables import Compatible, Record, SinePulse
 from extrados.plots import report, style
+from extrados.plots.building import draw_building
 from extrados.results.assess import StrategyVerdict
 from extrados.results.model import Result
 from extrados.running.run import Run, compute
@@ -41,7 +42,8 @@ def whole() -> Run:
 
 def test_parts_are_what_the_analyses_give_by_themselves(whole: Run) -> None:
     r = whole["assess"]
-    assert [v.strategy for v in r.verdicts] == list(strategies.ALL[k].name for k in range(len(strategies.ALL)))
+    stones = [s.name for s in strategies.ALL if s.kind != "pushover"]
+    assert [v.strategy for v in r.verdicts] == stones, "pushes are of walls on a plan"
     alone = extrados.run({"structure": COLUMN, "motion": PULSE, "analysis": [{"kind": "tilt"}, {"kind": "rocking"}, {"kind": "assessment"}]})  # fmt: skip
     for kind in ("tilt", "rocking", "assessment"):
         assert whole[kind].as_json() == alone[kind].as_json()
@@ -119,6 +121,81 @@ def test_a_deadline_stops_the_core_and_leaves_no_flag() -> None:
     with within(60.0) as time:
         pass
     assert not time.passed
+
+
+def test_without_a_peak_elements_bear_so_much_at_least() -> None:
+    """A run that ends before its peak is no capacity; one that passes it is."""
+    panel = {"kind": "panel", "width": 2.0, "height": 2.0, "thickness": 0.3, "unit_length": 0.5, "unit_height": 0.5}
+    soft = {"density": 1900.0, "young": "2 GPa", "tensile_strength": "0.05 MPa", "fracture_energy": "10 N/m"}
+    weak = {**PULSE, "amplitude": "0.02 g"}
+    rows = []
+    for events in (40, 20000):
+        given = {"strategies": ["sla"], "options": {"sla": {"events": events, "mesh": {"size": 0.5}}}}
+        (row,) = extrados.run(deck(structure=panel, material=soft, motion=weak, assess=given))["assess"].verdicts
+        rows.append(row)
+    begun, ended = rows
+    assert begun.outcome == ended.outcome == "stands"
+    assert begun.margin is None and begun.margin_at_least > 1.0 and "passed no peak" in begun.statement
+    assert ended.margin > begun.margin_at_least and ended.margin_at_least is None
+
+
+# ----- a building on a plan
+
+HOUSE = {
+    "kind": "building", "storeys": [2.8],
+    "walls": [
+        {"name": n, "start": s, "end": e, "thickness": t}
+        for n, s, e, t in (("front", [0, 0], [4, 0], 0.4), ("right", [4, 0], [4, 3], 0.2), ("back", [4, 3], [0, 3], 0.4), ("left", [0, 3], [0, 0], 0.2))
+    ],
+}  # fmt: skip
+MASONRY = {"density": 1900.0, "young": "3 GPa", "tensile_strength": "0.02 MPa", "fracture_energy": "5 N/m"}
+
+
+def on_plan(**more) -> dict:
+    return deck(structure=HOUSE, material=MASONRY, **more)
+
+
+def test_a_building_on_a_plan_is_pushed_along_both_axes_and_its_walls_are_checked(tmp_path: Path) -> None:
+    keys = {f"push-{axis}": {"events": 300, "mesh": {"size": 0.7}} for axis in "xy"}
+    run = extrados.run(on_plan(assess={"options": keys, "sensitivity": True}))
+    r = run["assess"]
+    assert [v.strategy for v in r.verdicts] == ["code-checks", "push-x", "push-y"]
+    assert [v.status for v in r.verdicts] == ["ok"] * 3 and r.verdicts[2].part == "pushover-2"
+    assert run["pushover"].direction_deg == 0.0 and run["pushover-2"].direction_deg == 90.0
+    assert run["local-mechanism"].walls[0].wall in ("left", "right"), "the thin ones"
+    assert any("building on a plan" in text for text in r.not_done)
+    pushed = r.verdicts[1]
+    if run["pushover"].peak_load_N is None or run["pushover"].minus.peak_load_N is None:
+        assert pushed.margin is None, "without a peak it bears so much at least"
+    run.write(tmp_path / "out", figures=False)
+    saved, caption = draw_building(Run.read(tmp_path / "out"), _figures(tmp_path))
+    assert saved == "building" and "Storeys of 2.8 m" in caption
+
+
+def _figures(folder: Path) -> Path:
+    (folder / "figures").mkdir()
+    return folder
+
+
+def test_a_set_of_motions_on_a_plan_takes_the_first() -> None:
+    motion = {"kind": "generated", "mmi": 7, "duration": 2.0}
+    r = extrados.run(on_plan(motion=motion, assess={"strategies": ["code-checks"], "motions": 3}))["assess"]
+    assert r.hazard.member == 1 and "nothing rocks" in r.hazard.chosen_by
+
+
+def test_a_strategy_that_a_deck_names_and_that_cannot_look_is_told() -> None:
+    r = extrados.run(on_plan(assess={"strategies": ["code-checks", "dem"]}))["assess"]
+    assert [(v.strategy, v.status) for v in r.verdicts] == [("code-checks", "ok"), ("dem", "left out")]
+    assert "does not look at a structure of kind 'building'" in r.verdicts[1].reason
+    assert "dem" in [
+        v.strategy for v in extrados.run(deck(assess={"strategies": ["tilt", "push-x", "dem"]}))["assess"].verdicts
+    ]
+
+
+def test_walls_that_cannot_crack_are_not_pushed() -> None:
+    given = deck(structure=HOUSE, assess={"strategies": ["push-x"]})
+    (row,) = extrados.run(given)["assess"].verdicts
+    assert row.status == "left out" and "tensile_strength" in row.reason
 
 
 # ----- the hazard
@@ -229,7 +306,10 @@ def test_relations_and_overall_statement() -> None:
     split = facts([verdict("tilt", "falls"), verdict("dem", "stands")])
     overall, words = conclusion(split, [], [("tilt", "dem")], "block", (None, None), list(split.rows.values()))
     assert overall == "depends" and "No rule finds a reason" in words
-    assert margin_of(far[1]) == "above 2" and "tilt" in table_of(far)
+    assert far[1].margin_told() == "above 2" and "tilt" in table_of(far)
+    close = verdict("rocking", "stands", margin_at_least=1.1071, margin_below=1.1124)
+    assert close.margin_told() == "1.107 to 1.112", "two factors that differ are not told as one"
+    assert verdict("dem", "stands").margin_told("") == ""
 
 
 # ----- sensitivity

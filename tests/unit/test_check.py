@@ -26,6 +26,14 @@ HOUSE = (
     '[structure]\nkind = "building"\nstoreys = [2.0]\nwalls = [{ name = "a", start = [0, 0], end = [1, 0], thickness = 0.3 }]\n'
     + PUSH
 )
+#: Four walls around a floor, two storeys; what is wrong with it is put in by its own lines
+ROOMS = (
+    '[structure]\nkind = "building"\nstoreys = [3.0, 3.0]\nwalls = [\n'
+    '  { name = "a", start = [0, 0], end = [3, 0], thickness = 0.3 },\n  { name = "b", start = [3, 0], end = [3, 3], thickness = 0.3 },\n'
+    '  { name = "c", start = [3, 3], end = [0, 3], thickness = 0.3 },\n  { name = "d", start = [0, 3], end = [0, 0], thickness = 0.3 },\n]\n'
+)
+WALL = '[structure]\nkind = "building"\nstoreys = [3.0]\n[[structure.walls]]\nname = "a"\nstart = [0, 0]\nend = [3, 0]\nthickness = 0.3\n'
+STEEL = '[materials.steel]\nyoung = "200 GPa"\n'
 TIE = "[[ties]]\nstart = [-9.5, 3.0]\nground = [0.0, 0.0]\n"
 GENERATED = '[motion]\nkind = "generated"\nmmi = 8\nduration = 15\n'
 FRAGILITY = '[[analysis]]\nkind = "fragility"\ncount = 4\nlevels = ["0.1 g"]\n'
@@ -126,13 +134,84 @@ WRONG = {
         '[[analysis.stages.reference]]\nkind = "gravity"\nax = "1 g"\nay = "0 g"\n',
     ),
     "no stages": ("expected at least 1", PANEL + SLA + "stages = [] # here\n"),
+    "opening beside its wall": ("the wall is 3 m long", WALL + "openings = [{ x = [2, 4], z = [0, 2] }] # here\n" + PUSH),
+    "opening above its storey": ("does not fit in a storey", WALL + "openings = [{ x = [1, 2], z = [2, 5] }] # here\n" + PUSH),
+    "opening of no width": ("needs a width", WALL + "openings = [{ x = [1, 1], z = [0, 2] }] # here\n" + PUSH),
+    "opening as wide as a hair": ("expected more than", WALL + "openings = [{ x = [1, 1.0000001], z = [0, 2] }] # here\n" + PUSH),
+    "opening in no storey": ("has no storey 2", WALL + "openings = [{ storey = 2, x = [1, 2], z = [0, 2] }] # here\n" + PUSH),
+    "opening through a whole wall": (
+        "hangs on nothing", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here") + "openings = [{ x = [0, 3], z = [1, 2] }]\n" + PUSH,
+    ),
+    "lintel over the top": (
+        "under 1 m of wall", WALL + "openings = [{ x = [1, 2], z = [0, 2], lintel = { depth = 1.5 } }] # here\n" + PUSH,
+    ),
+    "lintel in an opening": (
+        "is all in openings", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here")
+        + "openings = [{ x = [1, 2], z = [0, 1], lintel = { depth = 0.3 } }, { x = [1, 2], z = [1, 2] }]\n" + PUSH,
+    ),
+    "wall without thickness": ("greater than 0", WALL.replace("thickness = 0.3", "thickness = 0.0 # here") + PUSH),
+    "wall thicker than the Earth": ("beyond reason", WALL.replace("thickness = 0.3", "thickness = 1e308 # here") + PUSH),
+    "wall that is nowhere": ("finite number", WALL.replace("start = [0, 0]", "start = [0, nan] # here") + PUSH),
+    "wall of no length": ("the same point", WALL.replace("[[structure.walls]]", "[[structure.walls]] # here").replace("[3, 0]", "[0, 0]") + PUSH),
+    "wall in the air": (
+        "hangs on nothing", WALL.replace("[3.0]", "[3.0, 3.0]")
+        + '[[structure.walls]] # here\nname = "b"\nstart = [0, 5]\nend = [3, 5]\nthickness = 0.3\nstoreys = [2, 2]\n' + PUSH,
+    ),
+    "two walls of one name": (
+        "stands twice", WALL + '[[structure.walls]]\nname = "a" # here\nstart = [0, 5]\nend = [3, 5]\nthickness = 0.3\n' + PUSH,
+    ),
+    "floor without walls": (
+        "make no simple ring", WALL + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
+    ),
+    "floor between walls that do not meet": (
+        "make no simple ring", ROOMS.replace("end = [3, 0]", "end = [2.5, 0]") + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
+    ),
+    "floor around walls in no order": (
+        "'a' and 'c' do not meet", ROOMS + '[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\nwalls = ["a", "c", "b", "d"]\n' + PUSH,
+    ),
+    "floor that names a wall twice": (
+        "stands twice", ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "rigid"\nwalls = ["a", "b", "a"] # here\n' + PUSH,
+    ),
+    "floor twice": (
+        "between the same walls", ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "rigid"\n[[structure.floors]] # here\nstorey = 1\nkind = "rigid"\n' + PUSH,
+    ),
+    "floor above its wall": (
+        "has no masonry there", ROOMS.replace('"a", start', '"a", storeys = [1, 1], start')
+        + '[[structure.floors]] # here\nstorey = 2\nkind = "rigid"\nwalls = ["a", "b", "c", "d"]\n' + PUSH,
+    ),
+    "floor above the building": ("no storey 3", ROOMS + '[[structure.floors]]\nstorey = 3 # here\nkind = "rigid"\n' + PUSH),
+    "joists from a wall to itself": (
+        "the two walls", ROOMS + '[[structure.floors]]\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
+        'bears_on = ["a", "a"] # here\n' + PUSH,
+    ),
+    "joists along their wall": (
+        "no joist reaches", ROOMS + '[[structure.floors]] # here\nstorey = 1\nkind = "joists"\nyoung = 1e10\njoist_area = 0.01\njoist_spacing = 0.5\n'
+        'bears_on = ["a", "b"]\n' + PUSH,
+    ),
+    "corner of walls that do not meet": (
+        "do not meet", ROOMS + '[[structure.corners]] # here\nwalls = ["a", "c"]\nbond = "open"\n' + PUSH,
+    ),
+    "corner of one wall": ("stands twice", ROOMS + '[[structure.corners]]\nwalls = ["a", "a"] # here\nbond = "open"\n' + PUSH),
+    "corner twice": (
+        "the same two walls", ROOMS + '[[structure.corners]]\nwalls = ["a", "b"]\nbond = "open"\n[[structure.corners]]\nwalls = ["b", "a"] # here\nbond = "weak"\n' + PUSH,
+    ),
+    "rod beside the building": (
+        "from the nearest node", ROOMS + '[[structure.rods]] # here\nstart = [9, 9, 3]\nend = [0, 0, 3]\narea = 1e-4\nmaterial = "steel"\n' + STEEL + PUSH,
+    ),
+    "prestress above its wall": (
+        "has no storey 5", ROOMS + '[[structure.prestress]]\nwall = "a"\nforce = 1e4\nlevel = 5 # here\n' + PUSH,
+    ),
+    "prop above its wall": ("has no storey 3", ROOMS + '[[structure.props]]\nwall = "a"\nstorey = 3 # here\n' + PUSH),
+    "too many shells": (
+        "the most are", ROOMS + PUSH.replace("mesh.layers = 3", "mesh = { size = 1e-5, layers = 3 } # here"),
+    ),
     "drive on no wall": ("no wall 'b'", HOUSE + 'drives = [{ wall = "b", storey = 1 }] # here\n'),
     "ground under no foot": (
         "no foot 'middle'", ARCH + PUSH + '[[analysis.stages]]\n[[analysis.stages.settlements]] # here\nfoot = "middle"\nout = 0.01\n',
     ),
     "piers without a strength": ("compressive_strength", HOUSE + "[analysis.frame] # here\ndiagonal_strength = 5e4\n"),
     "mesh of shells that is not there": (
-        "none.msh", '[structure] # here\nkind = "mesh"\nthickness = 0.3\nfile = "none.msh"\n' + PUSH,
+        "none.msh", '[structure]\nkind = "mesh"\nthickness = 0.3\nfile = "none.msh" # here\n' + PUSH,
     ),
     "speed of no film": ("needs animation", ARCH + TILT + "animation_speed = 0.5 # here\n"),
     "wall without a load": (

@@ -8,7 +8,7 @@ import socket
 import struct
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ from extrados.explore.document import Document, as_written
 from extrados.explore.film import BadFilm, film
 from extrados.explore.frames import Reply
 from extrados.explore.guard import Bucket
-from extrados.explore.session import Session
+from extrados.explore.session import ANSWERS, Session
 from extrados.limit.states import blended
 from extrados.schema.places import CASES
 
@@ -64,22 +64,34 @@ class Page:
                         break
             return found
 
+    def unread(self) -> int:
+        """How many sockets leave unread what they are sent."""
+        return sum(getattr(link, "unread", None) is not None for link in list(self.server.server_state.connections))
+
     def request(self, path: str = f"/{TOKEN}/", method: str = "GET", body: bytes = b"", **heads: str | None) -> bytes:
-        """A request with the heads of an honest page, but for those given; None leaves one out."""
+        """What comes back for a request with the heads of an honest page, but for those given; None leaves one out."""
+        return self.raw(self.asked(heads, path, method, body))
+
+    def asked(
+        self, heads: dict[str, str | None], path: str = f"/{TOKEN}/live", method: str = "GET", body: bytes = b""
+    ) -> bytes:
         given = {"Host": f"127.0.0.1:{self.port}", "Connection": "close"}
         given |= {k.replace("_", "-"): v for k, v in heads.items()}
         if body or method == "POST":
             given.setdefault("Content-Length", str(len(body)))
         lines = [f"{method} {path} HTTP/1.1", *(f"{k}: {v}" for k, v in given.items() if v is not None)]
-        return self.raw("\r\n".join(lines).encode("latin-1", "replace") + b"\r\n\r\n" + body)
+        return "\r\n".join(lines).encode("latin-1", "replace") + b"\r\n\r\n" + body
 
     def upgrade(self, path: str = f"/{TOKEN}/live", **heads: str | None) -> bytes:
-        """A request for a socket."""
-        given: dict[str, str | None] = {
+        """What comes back for a request for a socket."""
+        return self.request(path, **{**self.upgrading(), **heads})
+
+    def upgrading(self) -> dict[str, str | None]:
+        """Heads that ask for a socket."""
+        return {
             "Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13",
             "Sec-WebSocket-Key": base64.b64encode(os.urandom(16)).decode(), "Origin": f"http://127.0.0.1:{self.port}",
         }  # fmt: skip
-        return self.request(path, **{**given, **heads})
 
     def open(self) -> Any:
         return connect(
@@ -108,6 +120,13 @@ def page(folder: Path) -> Iterator[Page]:
     found = Page(folder)
     yield found
     found.close()
+
+
+def until(condition: Callable[[], bool]) -> None:
+    end = time.monotonic() + 120.0
+    while not condition():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
 
 
 def status(answer: bytes) -> int:
@@ -308,6 +327,63 @@ def test_no_more_pages_than_are_allowed(page: Page) -> None:
             more.recv(10)
 
 
+def test_pages_that_read_nothing_hold_up_nobody_and_lose_their_places(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(server, "UNREAD", 2.0)
+    message = b'{"do": "hello"}'
+    frame = bytes([0x81, 0x80 | len(message), 0, 0, 0, 0]) + message  # masked by nothing, as a page of no browser may
+    page = Page(folder)
+    page.socket.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, 8192)  # the system keeps no megabytes for them
+    try:
+        with contextlib.ExitStack() as stack:
+            other = stack.enter_context(page.open())
+            for _ in range(server.MOST_PAGES - 1):
+                link = stack.enter_context(socket.socket())
+                link.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+                link.connect(("127.0.0.1", page.port))
+                link.sendall(page.asked(page.upgrading()))
+                assert link.recv(12) == b"HTTP/1.1 101"
+                link.sendall(20 * frame)
+            until(lambda: page.unread() > 0)
+            other.send('{"do": "list", "of": 1}')
+            assert unpack(other.recv(30))[0]["to"] == "list"
+            until(lambda: page.server.config.loaded_app.app.state.pages == 1)
+            for _ in range(server.MOST_PAGES - 1):
+                link = stack.enter_context(page.open())
+            link.send('{"do": "list", "of": 2}')
+            assert unpack(link.recv(30))[0]["of"] == 2
+    finally:
+        page.close()
+
+
+def test_a_page_that_goes_amid_long_work_holds_up_nobody(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, ends, closed = threading.Event(), threading.Event(), threading.Event()
+
+    def work(_: Any, __: Any) -> Iterator[Reply]:
+        begun.set()
+        ends.wait(60)
+        yield Reply({})
+
+    monkeypatch.setitem(ANSWERS, "push", work)
+    monkeypatch.setattr(Session, "close", lambda _: closed.set())
+    page = Page(folder)
+    try:
+        with page.open() as other:
+            with page.open() as link:
+                link.send('{"do": "push"}')
+                assert begun.wait(30)
+            other.send('{"do": "list", "of": 1}')
+            assert unpack(other.recv(30))[0]["of"] == 1
+            until(lambda: page.server.config.loaded_app.app.state.pages == 1)
+            assert not closed.is_set(), "what it works at still stands"
+            ends.set()
+            assert closed.wait(30)
+    finally:
+        ends.set()
+        page.close()
+
+
 def test_a_bucket_lets_its_rate_pass() -> None:
     bucket = Bucket(3.0, 1.0)
     assert [bucket.take() for _ in range(4)] == [True, True, True, False]
@@ -465,6 +541,46 @@ def test_a_line_has_the_thrust_that_it_is_given(session: Session, gamma: float) 
     assert "Thrust of the line" in reply.words["complaints"][0]
     (reply,) = do(session, do="show", through={"joint": 9, "share": 0.5})
     assert "chosen" not in reply.words["scene"]
+
+
+HELD = """[structure]
+kind = "block"
+width = 1.0
+height = 4.0
+
+[[ties]]
+start = [0.4, 3.5]
+ground = [2.0, 0.0]
+works_in = "both"
+
+[[analysis]]
+kind = "tilt"
+"""
+
+
+def test_what_nothing_brings_down_is_not_said_to_fall(session: Session) -> None:
+    (reply,) = do(session, do="open", text=HELD)
+    assert reply.words["scene"]["stands"] is True
+    assert "no such load brings it down" in reply.words["scene"]["immovable"]
+    list(session.answer({"do": "rest"}))
+
+
+@pytest.mark.parametrize(
+    ("more", "told"),
+    [
+        ('[supports]\nabutting_wall = "left"\n', "[supports] abutting_wall"),
+        ("[[dampers]]\nstart = [0.4, 3.0]\nground = [3.0, 0.0]\ndamping = 1e5\n", "[[dampers]]"),
+    ],
+)
+def test_the_page_has_no_answer_where_a_run_refuses_one(session: Session, more: str, told: str) -> None:
+    text = HELD[: HELD.index("[[ties]]")] + more + HELD[HELD.index("[[analysis]]") :]
+    (reply,) = do(session, do="open", text=text)
+    scene = reply.words["scene"]
+    assert (scene["stands"], "capacity" in scene) == (None, False)
+    assert f"does not reckon with {told}" in scene["unknown"]
+    (refused,) = extrados.run(session.live.deck.data).results
+    assert refused.status == "refused" and told in refused.reason
+    do(session, do="rest")
 
 
 PRESETS = sorted(

@@ -7,6 +7,7 @@ import extrados
 from extrados.analyses.codes.code_rules import more_piers
 from extrados.analyses.codes.kinematics import Overturning, Push, Weight, capacity
 from extrados.analyses.codes.ntc import displacement, floor
+from extrados.decks.reader import DeckError
 from extrados.schema.constants import GRAVITY
 
 
@@ -99,6 +100,81 @@ def test_refusals_name_what_is_missing() -> None:
     assert told["status"] == "refused" and "[structure]" in told["reason"]
 
 
+SQUARE = [[0.0, 0.0], [5.0, 0.0], [5.0, 5.0], [0.0, 5.0]]
+
+
+def house(front: dict | None = None, **more) -> dict:
+    """Four walls of 5 m and 0.5 m, two storeys of 3 m; the first wall, and the building, with other keys."""
+    names = ("front", "right", "back", "left")
+    sides = [{"name": n, "start": SQUARE[k], "end": SQUARE[(k + 1) % 4], "thickness": 0.5} for k, n in enumerate(names)]
+    sides[0] |= front or {}
+    return {"kind": "building", "storeys": [3.0, 3.0], "walls": sides, **more}
+
+
+def walls_of(structure: dict, **keys) -> tuple[dict, object]:
+    """Walls and storeys with their rows, and the whole run."""
+    analysis = {"kind": "local-mechanism", "mechanism": "building", **keys}
+    run = extrados.run({"material": {"density": 2000.0}, "structure": structure, "analysis": analysis})
+    r = run["local-mechanism"]
+    return {(w.wall, w.storey): w for w in r.walls}, run
+
+
+def test_a_wall_on_a_plan_is_the_facade_of_the_table() -> None:
+    """A floor of 2 kPa over 25 m^2 that two walls of 5 m bear: 5 kN on each metre of them."""
+    floor = {"storey": 2, "young": "50 MPa", "thickness": 0.05, "load": "2 kPa", "bears_on": ["front", "back"]}
+    found, run = walls_of(house(floors=[floor]), peak_acceleration="0.1 g")
+    table = mechanism(
+        mechanism="facade",
+        height=6.0,
+        thickness=0.5,
+        floors=[{"height": 6.0, "load": "5 kN"}],
+        peak_acceleration="0.1 g",
+    )
+    own, alone = found["front", 1], table["local-mechanism"]
+    assert own.multiplier == pytest.approx(alone.multiplier) and own.zero_displacement_m == pytest.approx(
+        alone.zero_displacement_m
+    )
+    assert own.margin == pytest.approx(alone.governing()[0][0])
+    assert found["left", 1].multiplier == pytest.approx(0.5 / 6.0), "which bears no floor"
+    assert len(found) == 8 and run["local-mechanism"].multiplier == min(w.multiplier for w in found.values())
+
+
+def test_of_a_wall_on_a_plan_openings_thicknesses_and_what_holds_it_count() -> None:
+    bare, _ = walls_of(house())
+    window = {"storey": 2, "x": [1.0, 4.0], "z": [1.0, 2.5]}
+    pierced, _ = walls_of(house({"openings": [window]}))
+    area, lever = 30.0 - 4.5, 30.0 * 3.0 - 4.5 * (3.0 + 1.75)
+    assert pierced["front", 1].multiplier == pytest.approx(0.25 * area / lever)
+    stepped, _ = walls_of(house({"thickness": None, "thicknesses": [0.5, 0.3]}))
+    assert stepped["front", 1].multiplier == pytest.approx(0.25 * 2.4 / (1.5 * 1.5 + 0.9 * 4.5))
+    assert stepped["front", 2].multiplier == pytest.approx(0.1) and bare["front", 2].foot_m == 3.0
+    pressed, _ = walls_of(house(prestress=[{"wall": "front", "force": "100 kN"}]))
+    weight = 2000.0 * GRAVITY * 15.0
+    assert pressed["front", 1].multiplier == pytest.approx(0.25 * (weight + 1e5) / (3.0 * weight))
+    propped, _ = walls_of(house(props=[{"wall": "front", "storey": 1}]))
+    assert ("front", 1) not in propped and ("front", 2) in propped
+    slab = [{"storey": 1, "kind": "rigid", "load": "3 kPa"}]
+    assert {storey for _, storey in walls_of(house(floors=slab))[0]} == {2}
+
+
+def test_walls_that_are_all_held_are_refused_and_the_crushing_hinge_is_set_back() -> None:
+    slabs = [{"storey": k, "kind": "rigid"} for k in (1, 2)]
+    run = extrados.run(
+        {"structure": house(floors=slabs), "analysis": {"kind": "local-mechanism", "mechanism": "building"}}
+    )
+    assert run.analyses[0]["status"] == "refused" and "hold the top of every wall" in run.analyses[0]["reason"]
+    soft = {"density": 2000.0, "compressive_strength": "1 MPa"}
+    whole = {"structure": house(), "material": soft, "analysis": {"kind": "local-mechanism", "mechanism": "building"}}
+    table = {
+        "material": soft,
+        "analysis": {"kind": "local-mechanism", "mechanism": "facade", "height": 6.0, "thickness": 0.5},
+    }
+    own, alone = (extrados.run(d)["local-mechanism"] for d in (whole, table))
+    assert own.walls[-1].multiplier == pytest.approx(alone.multiplier) or own.multiplier == pytest.approx(
+        alone.multiplier
+    )
+
+
 def test_the_worked_example_of_a_pier() -> None:
     """Advanced Design Examples of Seismic Retrofit of Structures, section 2.7.5, its wall 1, Eqs 2.31 to 2.36 [kg, cm]."""
     stress = GRAVITY / 1e-4  # kg/cm^2
@@ -136,6 +212,30 @@ def test_the_nonlinear_check_of_the_circolare() -> None:
     assert check.capacity == pytest.approx(0.4 * d0) and 0.5 < period < 2.0
     asked = np.sqrt(10.0 / 13.0) * 2.5 * 0.18 * GRAVITY * 0.5 / period * (period / (2.0 * np.pi)) ** 2
     assert check.demand == pytest.approx(asked) and "verify" not in check.source
+
+
+def test_the_check_at_collapse_stands_beside_those_of_life_safety() -> None:
+    """C8.7.1.2.1.8: d_SLC = 0.6 d_0 against S_De of SLC at 10 % and 1.56 pi sqrt(d_SLC/a(d_SLC)), [C8.7.1.11]."""
+    rare = {**SITE, "acceleration": "0.4 g"}
+    keys = {"mechanism": "wall", "height": 2.5, "thickness": 0.5, "spectrum": SITE}
+    r = mechanism(**keys, collapse_spectrum=rare)["local-mechanism"]
+    d0, a0 = 1.25 * np.arctan(0.2), 0.2 * GRAVITY / 1.35
+    period = 1.56 * np.pi * np.sqrt(0.6 * d0 / (0.4 * a0))
+    check = r.checks["NTC nonlinear at SLC"]
+    assert check.capacity == pytest.approx(r.collapse_displacement_m) == pytest.approx(0.6 * d0)
+    of_life = r.checks["NTC nonlinear"]
+    assert period > 2.0, "beyond T_D the displacement is the same for all"
+    asked = 0.4 * 1.2 * GRAVITY * np.sqrt(10.0 / 15.0) * 2.5 * 0.5 * 2.0 / (4.0 * np.pi**2)
+    assert check.demand == pytest.approx(asked)
+    assert f"T_SLC = {period:.3f} s" in check.note
+    # what holds at SLV does not make up for it, nor the other way round
+    worse = mechanism(**keys, collapse_spectrum={**SITE, "acceleration": "4 g"})["local-mechanism"]
+    assert worse.checks["NTC nonlinear"].verdict == of_life.verdict and worse.overall().outcome == "falls"
+    assert "SLC governs" in worse.overall().statement
+    high = mechanism(**keys, collapse_spectrum=rare, base_height=4.0, building_height=8.0)["local-mechanism"]
+    assert high.checks["NTC nonlinear at SLC"].demand != pytest.approx(check.demand)
+    with pytest.raises(DeckError, match="collapse_spectrum: code EN1998-1 needs acceleration"):
+        mechanism(**keys, collapse_spectrum={"code": "EN1998-1", "ground": "B"})
 
 
 def test_the_floor_spectrum_of_the_circolare() -> None:

@@ -275,3 +275,56 @@ def test_a_frame_of_piers_beside_the_push(tmp_path):
     assert table["load"] == pytest.approx([load, load], rel=0.02)  # of a row of elements
     assert table["height"] == [2.0, 2.0]
     assert "by the formulas of codes" in run.answer
+
+
+@pytest.mark.parametrize("closure", [False, True])
+def test_a_push_back_after_large_damage(tmp_path, closure):
+    """Far beyond its peak the way back bears less than the way there; where cracks stay open, taking the load off already
+    brings the walls down, which ends as a mechanism of the building as it was, not under loads of what is left in cracks."""
+    path = tmp_path / "back.toml"
+    path.write_text(
+        textwrap.dedent(f"""
+        [structure]
+        kind = "building"
+        storeys = [2.0]
+        walls = [
+          {{ name = "a", start = [0, 0], end = [2, 0], thickness = 0.25, openings = [{{ x = [0.5, 1.5], z = [0.0, 1.0] }}] }},
+          {{ name = "b", start = [0, 0], end = [0, 1], thickness = 0.25 }},
+          {{ name = "c", start = [2, 0], end = [2, 1], thickness = 0.25 }},
+        ]
+        [material]
+        density = 1900
+        young = 3e9
+        tensile_strength = 1e5
+        fracture_energy = 40
+        [[analysis]]
+        kind = "pushover"
+        mesh = {{ size = 0.5, layers = 3 }}
+        ripple = 0.2
+        events = 6000
+        crack_closure = {str(closure).lower()}
+        [[analysis.stages]]
+        name = "there"
+        target_displacement = "3 mm"
+        [[analysis.stages]]
+        name = "off"
+        sense = "-"
+        base_shear = 0.0
+        [[analysis.stages]]
+        name = "back"
+        sense = "-"
+        target_displacement = "-3 mm"
+        """)
+    )
+    run = extrados.run(path).results[0]
+    there, *after = run.results.stages
+    assert there.stop == "target displacement" and there.end_load_N < 0.8 * there.peak_load_N
+    assert all(stage.greatest_load_N < 0.7 * there.peak_load_N for stage in after)
+    assert all(stage.energy_residual_ratio < 1e-8 for stage in run.results.stages)
+    if closure:
+        assert [stage.name for stage in after] == ["off", "back"]
+        assert after[-1].peak_load_N == pytest.approx(0.547 * there.peak_load_N, rel=0.1)
+        assert 0.0 < after[-1].end_load_N < after[-1].peak_load_N
+    else:
+        assert [(stage.name, stage.stop) for stage in after] == [("off", "mechanism")]
+        assert any("not run: back" in text for text in run.warnings)

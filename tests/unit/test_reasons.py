@@ -8,10 +8,11 @@ import pytest
 
 from extrados.analyses.assess.reasons import HEADLINES, RULES, Facts, explained
 from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
 from extrados.decks.reader import make_deck
 from extrados.motions import pulses
 from extrados.results.assess import StrategyVerdict
-from extrados.results.codes import Check, CodeChecks
+from extrados.results.codes import Check, CodeChecks, LocalMechanism, WallMechanism
 from extrados.results.dem import DemRun
 from extrados.results.limit import Fracture, Tilt
 from extrados.results.model import Array, Result
@@ -57,9 +58,36 @@ def tilt(right: float, left: float | None = None, fracture: Fracture | None = No
     return Result("tilt", results=Tilt.model_construct(**keys))
 
 
-def checked(capacity: float, demand: float | None = 0.3) -> Result:
-    check = Check(capacity=capacity, demand=demand, unit="g", verdict="", source="", note="", code="NTC 2018")
-    return Result("code-checks", results=CodeChecks.model_construct(checks={"NTC linear (at the ground)": check}))
+def checked(capacity: float, demand: float | None = 0.3, multiplier: float | None = None, **more: Check) -> Result:
+    checks = {"NTC linear (at the ground)": check(capacity, demand), **more}
+    if multiplier is None:
+        return Result("code-checks", results=CodeChecks.model_construct(checks=checks))
+    turning = LocalMechanism.model_construct(checks=checks, multiplier=multiplier, participating_part=1.0)
+    return Result("local-mechanism", results=turning)
+
+
+def check(capacity: float, demand: float | None, unit: str = "g", code: str = "NTC 2018") -> Check:
+    verdict = "" if demand is None else "holds" if capacity >= demand else "fails"
+    return Check(capacity=capacity, demand=demand, unit=unit, verdict=verdict, source="", note="", code=code)
+
+
+def walls(multiplier: float) -> Result:
+    """Of the codes: one wall that turns by itself."""
+    one = WallMechanism.model_construct(wall="back", storey=1, multiplier=multiplier)
+    checks = {"NTC linear (at the ground)": check(0.1, 0.3)}
+    return Result(
+        "local-mechanism", results=LocalMechanism.model_construct(checks=checks, multiplier=multiplier, walls=[one])
+    )
+
+
+def house(across: float) -> Building:
+    """Two walls of 4 m and 0.4 m along x, two of another thickness along y."""
+    corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 4.0], [0.0, 4.0]]
+    sides = [
+        {"name": str(k), "start": corners[k], "end": corners[(k + 1) % 4], "thickness": (0.4, across)[k % 2]}
+        for k in range(4)
+    ]
+    return Building(Plan(kind="building", storeys=[3.0], walls=sides))
 
 
 def criterion(verdict: str) -> Result:
@@ -117,6 +145,14 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "its capacity is not known": lambda f: rated(f, row("tilt", "falls", margin=0.5)),
         },
     ),
+    "no passage long enough for what it holds": (
+        "static-peak",
+        lambda: facts([FALLS, STANDS], {"rocking": rocking()}, needed_s=lambda a: 0.39 if a > 0.35 else 0.6),
+        {
+            "its mean needs no longer": lambda f: replace(f, needed_s=lambda a: 0.39),
+            "its mean is not known to bring it down": lambda f: replace(f, needed_s=lambda a: 0.39 if a > 0.35 else None),
+        },
+    ),
     "stones that hardly move in that time": (
         "static-peak",
         lambda: facts([FALLS, row("dem", "stands")], {"dem": dem(moved=0.1)}),
@@ -145,6 +181,9 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "none is left out": lambda f: replace(f, bare={}),
             "without them it turns no farther": lambda f: probed(f, without_restraints=rocking(ratio=0.11)),
             "nobody tried it without": lambda f: probed(f, without_restraints=None),
+            "it was tried without more than they leave out": lambda f: replace(
+                f, bare={**f.bare, "sla": ("[[ties]]", "[supports] abutting_wall")}
+            ),
         },
     ),
     "ties of statics": (
@@ -260,6 +299,46 @@ SCENARIOS: dict[str, tuple[str, Callable[[], Facts], dict[str, Spoil]]] = {
             "they cancel": lambda f: having(f, **{"code-checks": checked(0.205)}),
             "the code asks nothing": lambda f: having(f, **{"code-checks": checked(0.36, None)}),
             "both agree": lambda f: rated(f, row("code-checks", "falls", margin=0.55)),
+            "the code turns another mechanism": lambda f: having(f, **{"code-checks": checked(0.36, multiplier=0.25)}),
+        },
+    ),
+    "a displacement that the code allows": (
+        "code-check",
+        lambda: facts([FALLS, row("code-checks", "stands", margin=4.0)],
+                      {"tilt": tilt(0.2), "code-checks": checked(0.24, nonlinear=check(0.8, 0.2, "m"))}),
+        {
+            "the linear check says the same": lambda f: having(f, **{"code-checks": checked(1.0, nonlinear=check(0.8, 0.2, "m"))}),
+            "it has no demand": lambda f: having(f, **{"code-checks": checked(0.24, None, nonlinear=check(0.8, 0.2, "m"))}),
+            "the linear check governs": lambda f: having(f, **{"code-checks": checked(0.24, nonlinear=check(0.8, 2.0, "m"))}),
+            "both agree": lambda f: rated(f, row("code-checks", "falls", margin=0.5)),
+        },
+    ),
+    "a code that allows less than another": (
+        "code-check",
+        lambda: facts([STANDS, row("code-checks", "falls", margin=0.4)],
+                      {"code-checks": checked(0.36, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
+        {
+            "the other says the same": lambda f: having(f, **{"code-checks": checked(0.14, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
+            "there is no other": lambda f: having(f, **{"code-checks": checked(0.36, None, asce=check(0.12, 0.3, "g", "ASCE 43"))}),
+        },
+    ),
+    "a wall that the codes tear off": (
+        "torn-off",
+        lambda: facts([row("code-checks", "falls", margin=0.3), row("push-x", "stands", capacity=0.6, margin=1.5)],
+                      {"code-checks": walls(0.05)}),
+        {
+            "it bears more by itself than the whole": lambda f: having(f, **{"code-checks": walls(0.7)}),
+            "no wall was taken apart": lambda f: having(f, **{"code-checks": checked(0.1)}),
+            "the codes bear more": lambda f: rated(f, row("code-checks", "stands", margin=2.0), row("push-x", "falls", capacity=0.2, margin=0.5)),
+            "how far the push came is not known": lambda f: rated(f, row("push-x", "stands")),
+        },
+    ),
+    "less masonry along one axis": (
+        "weaker-direction",
+        lambda: facts([row("push-x", "stands", margin=2.5), row("push-y", "falls", margin=0.8)], building=house(0.2)),
+        {
+            "more of it along that axis": lambda f: replace(f, building=house(0.6)),
+            "it is no plan": lambda f: replace(f, building=building()),
         },
     ),
     "chance": (
@@ -300,6 +379,16 @@ def test_every_rule_has_its_scenario() -> None:
     assert {rule for rule, _, _ in SCENARIOS.values()} == set(HEADLINES)
     spoken = {name: [r for r in RULES if r(make(), make().pairs())] for name, (_, make, _) in SCENARIOS.items()}
     assert {rule for rules in spoken.values() for rule in rules} == set(RULES), "each function speaks in one at least"
+
+
+def test_the_codes_are_held_against_the_sense_that_no_wall_stops() -> None:
+    """The factor told is that between the two numbers told."""
+    held = building(structure={"kind": "block", "width": 1.0, "height": 5.0}, supports={"abutting_wall": "left"})
+    rows = [row("tilt", "falls", capacity=0.2, margin=0.5), row("code-checks", "stands", margin=1.2)]
+    found, _ = explained(facts(rows, {"tilt": tilt(0.2, 0.07), "code-checks": checked(0.36)}, building=held))
+    (one,) = found
+    assert one.numbers["static_capacity"] == 0.2 and one.numbers["factor"] == pytest.approx(1.8)
+    assert "0.2 g of statics, times 1.8" in one.text
 
 
 def test_a_pair_without_a_reason_is_told_as_unexplained() -> None:

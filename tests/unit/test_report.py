@@ -12,6 +12,7 @@ from extrados.decks.reader import DeckError, make_deck
 from extrados.plots import html, typeset
 from extrados.plots.document import Code, Document, Heading, Table, Words
 from extrados.plots.report import write_report
+from extrados.plots.telling import _flowing
 from extrados.results.limits import LIMITS
 from extrados.results.store import StoreError
 
@@ -58,6 +59,21 @@ def test_paper_holds_what_the_page_holds(folder: Path) -> None:
     content = (folder / "report.pdf").read_bytes()
     assert content.startswith(b"%PDF-") and re.search(rb"/MediaBox ?\[0 0 595\.2\d* 841\.8\d*\]", content), "A4"
     assert not list(folder.glob("report-2*"))
+
+
+def test_numbers_are_not_broken_on_paper_and_long_keys_are() -> None:
+    """A line may end after the marks of a key or a path; not within 0.213 g or 1/2."""
+    soft = typeset._words(
+        "0.213 g by structure.thickness_factor of cases/assess/x.toml, c_v 1.000, d_SLV, [C8.7.1.10] 1/2"
+    )
+    assert soft == (
+        'text("0.213 g by structure.\u200bthickness_\u200bfactor of cases/\u200bassess/\u200bx.toml, c_v 1.000, d_SLV, '
+        '[C8.7.1.10] 1/2")'
+    )
+
+
+def test_a_note_flows_as_one_paragraph() -> None:
+    assert _flowing("one\ntwo  three\n\nfour") == "one two three\nfour"
 
 
 def test_nothing_in_a_text_is_obeyed(tmp_path: Path) -> None:

@@ -1,16 +1,21 @@
 """Shells in space from mesh files with groups: gmsh, Abaqus and VTU; what groups say, and what does not fit."""
 
+import re
 import textwrap
 
 import numpy as np
 import pytest
 
 import extrados
+from extrados.analyses.context import Context
 from extrados.building.building import Building
 from extrados.building.errors import BadGeometry
 from extrados.building.mesh.shells import ShellOptions, nodal_areas
 from extrados.building.properties import Material
 from extrados.building.templates.walls import MeshFile
+from extrados.decks.reader import read_deck
+from extrados.running.check import check_building
+from extrados.running.run import compute
 from extrados.schema.constants import GRAVITY
 
 meshio = pytest.importorskip("meshio")
@@ -229,7 +234,7 @@ def test_files_that_do_not_fit_are_told(tmp_path):
     for cells, words in (
         ([("quad8", np.array([[0, 1, 2, 3, 4, 5, 6, 7]]))], "cells of kind 'quad8'; expected triangle and quad"),
         ([("line", np.array([[0, 1]]))], "holds no shells"),
-        ([("quad", np.array([[0, 1, 1, 0]])), ("line", np.array([[0, 1]]))], "have no area"),
+        ([("quad", np.array([[0, 1, 1, 0]])), ("line", np.array([[0, 1]]))], "names a node twice"),
         ([("quad", one), ("line", np.array([[44, 43]]))], "no node of a shell"),
     ):  # fmt: skip
         path = tmp_path / "bad.vtu"
@@ -247,3 +252,106 @@ def test_files_that_do_not_fit_are_told(tmp_path):
         Building(MeshFile(kind="mesh", file=str(flat), thickness=0.3, groups=ground), folder=tmp_path).shell(
             ShellOptions(size=0.5)
         )
+
+
+WORD = {2: "line", 3: "triangle", 4: "quad", 8: "quad8"}
+TETRAHEDRON = ("tetra", [[0, 1, 5, 30]])
+#: What is wrong with a file, the words of the complaint; nodes that lie elsewhere, more nodes and cells
+WRONG = {
+    "nowhere": ("node 13 has no finite place", {12: [np.nan, 0, 1]}, [], []),
+    "infinitely far": ("node 13 has no finite place", {12: [np.inf, 0, 1]}, [], []),
+    "beyond reason": ("node 13 lies 1e[+]308 m from the origin; expected places within", {12: [1e308, 0, 1]}, [], []),
+    "an orphan nowhere": ("node 46 has no finite place", {}, [[0, 0, np.nan]], []),
+    "a node twice": ("quadrilateral of nodes 1, 2, 2, 7, .* names a node twice; expected 4", {}, [], [[0, 1, 1, 6]]),
+    "no area": ("quadrilateral of nodes 1, 2, 3, 4, .* has no area", {}, [], [[0, 1, 2, 3]]),
+    "a triangle without area": ("triangle of nodes 1, 2, 3, .* has no area", {}, [], [[0, 1, 2]]),
+    "crossed sides": ("folds over itself", {}, [[5, 0, 0], [6, 0, 0], [5.2, 0, 1], [6, 0, 2]], [[45, 46, 47, 48]]),
+    "a corner inward": ("nodes 7, 12, 13, 8, .* at a corner; expected its corners in order, all convex .2 such", {12: [0.2, 0, 0.6]}, [], []),
+    "an element twice": ("two elements lie on each other at the edge of nodes 1, 6, .* expected each place covered once", {}, [], [[1, 6, 5, 0]]),
+    "a triangle on a quadrilateral": ("two elements lie on each other", {}, [], [[0, 5, 6]]),
+    "an island": ("4 nodes around x 5.5, y 0, z 1 m hang on nothing", {}, [[5, 0, 0], [6, 0, 0], [6, 0, 2], [5, 0, 2]], [[45, 46, 47, 48]]),
+    "solids": ("cells of kind 'tetra'; expected triangle and quad", {}, [], [TETRAHEDRON]),
+    "curved sides": ("cells of kind 'quad8'; expected triangle and quad", {}, [], [[0, 1, 2, 3, 4, 5, 6, 7]]),
+}  # fmt: skip
+
+
+def corner_with(folder, elsewhere, nodes, cells):
+    """The corner as a VTU file with nodes elsewhere, more nodes and more cells."""
+    xyz, one, two, _, lines = corner()
+    for node, place in elsewhere.items():
+        xyz[node] = place
+    blocks = [("quad", np.concatenate([one, two])), ("line", lines)]
+    blocks += [cell if isinstance(cell, tuple) else (WORD[len(cell)], [cell]) for cell in cells]
+    blocks = [(kind, np.array(of)) for kind, of in blocks]
+    group = [np.full(len(of), 7 if kind == "line" else 1) for kind, of in blocks]
+    path = folder / "corner.vtu"
+    points = np.concatenate([xyz, np.array(nodes, dtype=float).reshape(-1, 3)])
+    meshio.write(path, meshio.Mesh(points, blocks, cell_data={"group": group}))
+    return path
+
+
+@pytest.mark.parametrize("wrong", WRONG)
+def test_elements_that_are_none_are_told(tmp_path, wrong):
+    """With the line of the deck that names the file, by `check` as by a run."""
+    words, *change = WRONG[wrong]
+    corner_with(tmp_path, *change)
+    deck = tmp_path / "deck.toml"
+    deck.write_text(
+        '[structure]\nkind = "mesh"\nthickness = 0.3\nfile = "corner.vtu"\ngroups = [{ name = "7", support = "fixed" }]\n'
+        '[[analysis]]\nkind = "pushover"\nmesh.layers = 3\n'
+    )
+    (said,) = check_building(read_deck(deck)).complaints
+    assert said.startswith(f"{deck}:4: structure.file: corner.vtu: ")
+    assert re.search(words, said), said
+    assert compute(Context(read_deck(deck))).results[0].reason == said
+
+
+def test_what_is_not_joined_is_told(tmp_path):
+    """Nodes at one place, a node on the edge of an element: a warning, since a joint may be open. Orphans count for nothing."""
+    support = [{"name": "7", "support": "fixed"}]
+    whole = read(written(tmp_path, "vtu"), support)
+    assert whole.warnings == []
+    orphan = read(corner_with(tmp_path, {}, [[9, 9, 9]], []), support)
+    assert orphan.warnings == [] and len(orphan.xyz) == len(whole.xyz)
+    (told,) = read(
+        corner_with(tmp_path, {}, [[2, 0, 0.25], [2.25, 0, 0.25]], [[45, 46, 20], [45, 21, 46]]), support
+    ).warnings
+    assert "node 46, at x 2, y 0, z 0.25 m, lies on the edge of an element" in told
+
+    xyz, one, two, _, lines = corner()
+    apart = np.where(two < N + 1, two + len(xyz), two)  # the second wall has its own nodes where they meet
+    lines = np.where((np.arange(len(lines)) >= N)[:, None] & (lines == 0), len(xyz), lines)
+    path = tmp_path / "split.vtu"
+    group = [np.full(2 * N * N, 1), np.full(len(lines), 7)]
+    meshio.write(
+        path,
+        meshio.Mesh(
+            np.concatenate([xyz, xyz[: N + 1]]), [("quad", np.concatenate([one, apart])), ("line", lines)],
+            cell_data={"group": group},
+        ),
+    )  # fmt: skip
+    (told,) = read(path, support).warnings
+    assert "are two nodes at one place (5 such): nothing joins the elements there" in told
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda text: "",
+        lambda text: text[: len(text) // 2],
+        lambda text: text.replace("$Nodes\n45\n", "$Nodes\n45000000000\n"),
+        lambda text: text.replace("$Nodes\n45\n", "$Nodes\n-45\n"),
+        lambda text: text.replace("\n45 ", "\n45 here ", 1),
+        lambda text: re.sub(r"(\$Elements\n.*\n.*) \d+\n", r"\1 9999\n", text),
+        lambda text: "\x00\x01" + text,
+    ],
+)
+def test_damaged_files_are_told(tmp_path, change, capfd):
+    """And what meshio prints of them is not."""
+    path = written(tmp_path, "msh")
+    before = path.read_text()
+    path.write_text(change(before))
+    assert path.read_text() != before
+    with pytest.raises(BadGeometry, match=r"corner\.msh: is not a mesh that meshio reads.*; expected a whole file"):
+        read(path, [{"name": "ground", "support": "fixed"}])
+    assert capfd.readouterr() == ("", "")

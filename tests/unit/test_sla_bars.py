@@ -1,6 +1,7 @@
 """Bars that are embedded, ties that go slack, steel that yields."""
 
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.run import run_analyses
 from extrados.analyses.sla.bar_forces import along, bar_rows, history
 from extrados.analyses.sla.events import run_curves
+from extrados.analyses.sla.measures import far_away
 from extrados.analyses.sla.model import build
 from extrados.core.sla import Softening, teeth
 from extrados.decks.reader import make_deck
@@ -161,3 +163,21 @@ def test_forces_of_bars_are_those_of_their_strains() -> None:
     assert (
         table.columns["tie at the haunches"][found.results["greatest_load_event"] - 1] == force.force_at_greatest_load_N
     )
+    assert found.results["greatest_load_displacement_m"] > 1.0
+    (told,) = found.warnings
+    assert "in a building of 21.1 m" in told and "99 % of it come at 7.98 mm" in told
+
+
+def test_a_load_that_only_grows_with_metres_is_no_capacity() -> None:
+    """Where nothing crushes, struts bear ever more: 99 % of the greatest load lie far away too. What counts is the way
+    from the constant loads on, and a tenth of the building."""
+    mesh = SimpleNamespace(xy=np.array([[0.0, 0.0], [1.0, 2.0]]))
+    moved, load = np.array([0.01, 0.1, 1.0]), np.array([1e3, 1e4, 1e5])
+
+    def told(before: float, scale: float) -> str | None:
+        events = SimpleNamespace(monitors=scale * moved[:, None] + before, equilibrium=np.ones(3, bool))
+        curve = SimpleNamespace(events=events, peak=2, before=before, force=lambda unit: load)
+        return far_away(SimpleNamespace(mesh=mesh, unit=1.0), curve)
+
+    assert "no capacity" in told(0.0, 1.0) and "no capacity" in told(5.0, 0.3)
+    assert told(0.0, 0.19) is None and told(5.0, 0.19) is None

@@ -14,7 +14,7 @@ from extrados.analyses.context import Context
 from extrados.core.errors import Cancelled
 from extrados.decks.reader import DeckError, make_deck
 from extrados.plots import comparing, html, style
-from extrados.results.compare import compare
+from extrados.results.compare import changes, compare, flat
 from extrados.running import survey
 from extrados.running.run import Run, compute
 
@@ -121,6 +121,24 @@ def test_what_changed_between_two_runs() -> None:
     assert numbers["collapse_acceleration_g"] == pytest.approx(1.2) and numbers["weight_N"] == pytest.approx(1.2)
     assert compare(ran(1.0), ran(1.0 + 1e-7), tolerance=1e-5).numbers == {}
     assert "collapse_acceleration_g" in html.page(comparing.document(("a", "b"), found), Path())
+
+
+def test_what_changed_of_an_assessment_is_told_by_names() -> None:
+    """Strategies and reasons by their names, whatever their place in the list; what follows from verdicts is not told again."""
+    old = {
+        "verdicts": [{"strategy": "tilt", "margin": 0.5}, {"strategy": "dem", "margin": None}],
+        "agreement": {"tilt": {"dem": "open"}},
+    }
+    new = {
+        "verdicts": [{"strategy": "dem", "margin": None}, {"strategy": "tilt", "margin": 0.8}],
+        "agreement": {"tilt": {"dem": "agree"}},
+    }
+    (only,) = changes(flat(old), flat(new), 0.0)
+    assert (only.key, only.ratio) == ("verdicts.tilt.margin", pytest.approx(1.6))
+    twice = {"rows": [{"name": "a", "n": 1}, {"name": "a", "n": 2}]}
+    assert set(flat(twice)) == {"rows.0.name", "rows.0.n", "rows.1.name", "rows.1.n"}, (
+        "names that stand twice name nothing"
+    )
 
 
 def test_on_the_command_line(folder: Path, tmp_path: Path) -> None:

@@ -255,3 +255,38 @@ def test_thick_walls_are_no_shells():
             Building(BARREL, MASONRY.model_copy(update={"density": 0.0})).shell(ShellOptions(size=0.8)),
             Pushover(kind="pushover"),
         )
+
+
+def test_a_released_load_is_never_raised_on_the_way(tmp_path):
+    """Force release keeps the load while a tooth's forces go onto the others, also where a crack that closes, or one that
+    just touches its strength, has its lower limit above the load."""
+    path = tmp_path / "dome.toml"
+    path.write_text(
+        textwrap.dedent("""
+        [structure]
+        kind = "dome"
+        radius = 5.0
+        thickness = 0.5
+        embrace = 150.0
+        rings = 12
+        lunes = 24
+        [material]
+        density = 2000
+        young = "5 GPa"
+        poisson = 0.0
+        tensile_strength = "1 kPa"
+        fracture_energy = "0.05 N/m"
+        [[analysis]]
+        kind = "pushover"
+        mesh = { size = "2 m", layers = 3 }
+        ripple = 0.2
+        events = 4500
+        without_equilibrium = "force-release"
+        crack_closure = true
+        """)
+    )
+    run = extrados.run(path).results[0]
+    load, held = run["event_load"], run["event_equilibrium"].astype(bool)
+    on_the_way = ~held[1:]
+    assert on_the_way.sum() > 1000 and held.sum() > 1000
+    assert np.abs(np.diff(load))[on_the_way].max() <= 1e-9 * np.abs(load).max()

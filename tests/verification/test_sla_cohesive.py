@@ -38,7 +38,15 @@ class Errors:
 
 
 @cache
-def errors(depth: float, law: str, elements: int, pattern: str = "structured", seed: int = 1, **options) -> Errors:
+def errors(
+    depth: float,
+    law: str,
+    elements: int,
+    pattern: str = "structured",
+    seed: int = 1,
+    selective: bool = False,
+    **options,
+) -> Errors:
     """A run with `elements` over the ligament, all else by default; events enough to come down to the last of TAIL."""
     size = 0.5 * depth / elements
     slot = (
@@ -71,7 +79,7 @@ def errors(depth: float, law: str, elements: int, pattern: str = "structured", s
             "target_displacement": 1.1 * found.opening_after_peak(TAIL[-1]),
             "events": 250_000,
             "mesh": {
-                "size": 0.1 * depth, "pattern": pattern, "seed": seed,
+                "size": 0.1 * depth, "pattern": pattern, "seed": seed, "selective": selective,
                 "element": "T3" if pattern == "random" else "Q4",
                 "refine": [{"x": [middle - zone, middle + zone], "size": size}, {"y": [0.0, depth], "size": size}],
             },
@@ -105,6 +113,15 @@ def test_the_reference_converges() -> None:
     assert coarse.opening_after_peak(TAIL[2]) == pytest.approx(fine.opening_after_peak(TAIL[2]), rel=5e-3)
     with pytest.raises(ValueError, match=r"above 0\.25"):
         reference(0.05, 0.002, "hordijk", 24).opening_after_peak(0.25)
+
+
+def test_few_elements_do_not_carry_a_discrete_crack_down_its_tail_either() -> None:
+    """Twelve pairs of nodes end above half of the peak, 24 above a quarter: with the last of them the crack is through."""
+    for elements, part in ((12, 0.5), (24, 0.25)):
+        few = reference(0.05, 0.025 / 24, "hordijk", elements)
+        assert few.load.max() == pytest.approx(reference(0.05, 0.025 / 24, "hordijk").load.max(), rel=0.01)
+        with pytest.raises(ValueError, match="the crack ends at"):
+            few.opening_after_peak(part)
 
 
 def test_a_small_beam_is_rigid_and_plastic() -> None:
@@ -175,12 +192,33 @@ def test_fine_teeth_meet_the_tail(law, depth, pattern, seed) -> None:
     assert max(abs(e) for e in (found.peak, *found.tail, found.work)) < 0.05
 
 
+@pytest.mark.verify
+@pytest.mark.parametrize(("pattern", "seed"), [("structured", 1), ("random", 1), ("random", 2)])
+@pytest.mark.parametrize("depth", DEPTHS)
+@pytest.mark.parametrize("law", LAWS)
+def test_fine_teeth_and_36_elements(law, depth, pattern, seed) -> None:
+    """Within 5 % to half of the peak, and in squares all along; at a quarter one mesh of triangles is 5.7 % too low."""
+    found = errors(depth, law, 36, pattern, seed, ripple=0.0125)
+    assert max(abs(e) for e in (found.peak, *found.tail[:2], found.work)) < 0.03
+    assert abs(found.tail[2]) < (0.05 if pattern == "structured" else 0.06)
+
+
+@pytest.mark.verify
+@pytest.mark.parametrize("depth", DEPTHS)
+@pytest.mark.parametrize("law", LAWS)
+def test_twelve_squares_without_shear_locking(law, depth) -> None:
+    """`selective` and teeth a quarter as wide: within 5 % to half of the peak, at a quarter in eight of nine beams."""
+    found = errors(depth, law, 12, selective=True, ripple=0.0125)
+    assert max(abs(e) for e in (found.peak, *found.tail[:2], found.work)) < 0.05
+    assert abs(found.tail[2]) < (0.07 if (law, depth) == ("linear", 0.05) else 0.05)
+
+
 #: What default elements are held to, by elements over the ligament: peak, tail at 75 and at 50 % of the peak, at 25 %, work.
 #: Near a quarter of the peak one or two elements carry the load, and a tooth of p ft is a large part of it.
 HELD = {
     "structured": {
         6: (0.05, 0.07, 0.09, 0.16, 0.05),
-        12: (0.04, 0.05, 0.06, 0.13, 0.02),
+        12: (0.04, 0.05, 0.06, 0.13, 0.03),
         24: (0.03, 0.03, 0.04, 0.12, 0.02),
     },
     "random": {

@@ -52,13 +52,20 @@ def _needs(context: Context, options: Analysis) -> Iterator[Need]:
         )
     if options.needs_motion:
         yield context.refuse_motion
-    if options.view == "blocks":
+    if as_shell(building, options):
+        yield building.shell
+    elif options.view == "blocks":
         yield lambda: _bound(building, options)
     elif options.view == "shell":
         yield lambda: building.shell(options.mesh)
     room = kinds.ANALYSES[options.kind].table.split(".")[1]
     if room in ROOMS:
         yield from importlib.import_module(f"extrados.analyses.{room}.needs").needs(context, options)
+
+
+def as_shell(building: Building, options: Analysis) -> bool:
+    """Whether an analysis of stones takes this building, which has none, as shells."""
+    return building.structure is not None and building.structure.kind in options.shells
 
 
 def stones_of(building: Building, options: Analysis) -> "Assembly | SolidAssembly":

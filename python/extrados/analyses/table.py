@@ -43,7 +43,8 @@ class Analysis(Table):
     """Base of the analysis kinds.
 
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
-    it takes, None any that has the view. solid: whether it takes solids, where there is no plane section. uses: properties of the building that its answer rests on, which every
+    it takes, None any that has the view. solid: whether it takes solids, where there is no plane section; shells: kinds without stones that it
+    takes as shells. uses: properties of the building that its answer rests on, which every
     answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
     starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
     Building.special_keys it reckons with; one that looks at a building with more is refused.
@@ -53,6 +54,7 @@ class Analysis(Table):
     view: ClassVar[str] = ""
     structures: ClassVar[tuple[str, ...] | None] = None
     solid: ClassVar[bool] = False
+    shells: ClassVar[tuple[str, ...]] = ()
     uses: ClassVar[tuple[str, ...]] = ()
     method: ClassVar[dict[str, str]] = {}
     needs_motion: ClassVar[bool] = False

@@ -1,5 +1,8 @@
 """What can be wrong with a building."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 #: The key of a deck that is to blame: its names and, within lists, numbers from 0
 Key = tuple[str | int, ...]
 
@@ -20,3 +23,14 @@ class NoView(BadGeometry):
 
     def __init__(self, text: str = "", at: Key = ()):
         super().__init__(text, at)
+
+
+@contextmanager
+def blaming(*key: str | int) -> Iterator[None]:
+    """BadGeometry that names no key but the structure's table is told of this key of it."""
+    try:
+        yield
+    except BadGeometry as error:
+        if error.at == ("structure",):
+            error.at = ("structure", *key)
+        raise

@@ -354,6 +354,11 @@ class Events:
         return len(self.load)
 
     @property
+    def ledger(self) -> tuple[float, float, float]:
+        """Work of the loads, energy dissipated and area of the teeth at the last event [J]; 0 without events."""
+        return tuple(float(e[-1]) if len(e) else 0.0 for e in (self.external, self.dissipated, self.crack))  # type: ignore[return-value]
+
+    @property
     def ledger_error(self) -> float:
         """Greatest imbalance of the energies over the greatest work."""
         if not len(self):

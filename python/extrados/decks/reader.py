@@ -326,8 +326,8 @@ class _Checker:
             self.complain(at[:-1], f"{place[-1]} is missing ({about})" if about else f"{place[-1]} is missing")
         elif sort == "value_error":
             text = str(problem.get("ctx", {}).get("error", problem["msg"]))
-            if not place and (inner := _leads(text, problem["input"])):
-                at, text = (*path, *inner), text.partition(": ")[2]
+            if inner := _leads(text, problem["input"]):
+                at, text = (*at, *inner), text.partition(": ")[2]
             elif not place:  # a rule over several keys: shown at the first one that it names
                 given = problem["input"]
                 found = (
@@ -358,20 +358,31 @@ class _Checker:
             lacks = kinds.table("structure", shape).lacks if known else {}
             if known and wanted is not None and shape not in wanted:
                 self.complain(path, f"{kind} does not take a structure of kind '{shape}'; expected {_words(wanted)}")
-            elif analysis.view in lacks and not (analysis.solid and "solids" not in lacks):
+            elif (
+                analysis.view in lacks
+                and not (analysis.solid and "solids" not in lacks)
+                and shape not in analysis.shells
+            ):
                 self.complain(path, f"{kind} cannot look at a structure of kind '{shape}': {lacks[analysis.view]}")
         if analysis.needs_motion and data.get("motion") is None:
             self.complain(path, f"{kind} needs a [motion]: expected one of {_words(kinds.MOTIONS)}")
 
 
 def _leads(text: str, given: Any) -> Key:
-    """The key of a table that words begin with, as "hazard.intensities: expected ..." do; empty where it has none."""
-    named = text.partition(": ")[0].split(".")
-    for part in named:
-        if not isinstance(given, dict) or part not in given:
+    """The key of a table that words begin with, as "hazard.intensities: expected ..." and "walls[0].openings[1]: ..." do,
+    numbers from 0; empty where it has none."""
+    found: list[str | int] = []
+    for part in text.partition(": ")[0].split("."):
+        named = re.fullmatch(r"(\w+)((?:\[\d+\])*)", part)
+        if named is None:
             return ()
-        given = given[part]
-    return tuple(named)
+        for step in (named[1], *map(int, re.findall(r"\d+", named[2]))):
+            there = len(given) if isinstance(given, list) else 0
+            if not (step in given if isinstance(given, dict) else isinstance(step, int) and step < there):
+                return ()
+            given = given[step]
+            found.append(step)
+    return tuple(found)
 
 
 def _place(problem: ErrorDetails) -> tuple:

@@ -49,6 +49,8 @@ STATIC = Path(__file__).parent / "static"
 TYPES = {".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".svg": "image/svg+xml"}
 #: Messages that wait; a page that sends more without waiting for answers is cut off
 MOST_WAITING = 200
+#: Seconds for which a page may leave unread what it is sent
+UNREAD = 30.0
 
 
 class Inbox:
@@ -96,14 +98,15 @@ async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
     context = contextvars.copy_context()
     context.run(confine)
     going: dict[str, Iterator[Reply]] = {}
-    with ThreadPoolExecutor(1, "session") as thread:
+    thread = ThreadPoolExecutor(1, "session")
 
-        async def step(work: Iterator[Reply]) -> bool:
-            frame = await loop.run_in_executor(thread, context.run, _next, work)
-            if frame is not None:
-                await page.send_bytes(frame)
-            return frame is not None
+    async def step(work: Iterator[Reply]) -> bool:
+        frame = await loop.run_in_executor(thread, context.run, _next, work)
+        if frame is not None:
+            await page.send_bytes(frame)
+        return frame is not None
 
+    try:
         while True:
             if going and not inbox.waiting:
                 lane, work = next(iter(going.items()))
@@ -116,6 +119,26 @@ async def _serve(page: WebSocket, session: Session, inbox: Inbox) -> None:
             if await step(work):
                 going.pop(lane, None)
                 going[lane] = work
+    finally:  # by the thread, once it has done what it is at: other pages do not wait for that
+        for work in going.values():
+            thread.submit(work.close)
+        thread.submit(session.close)
+        thread.shutdown(wait=False)
+
+
+async def _read(page: WebSocket, inbox: Inbox) -> None:
+    """Put what a page sends into the inbox until it goes, or is sent away for what it sends."""
+    messages, volume = Bucket(BURST, RATE), Bucket(BURST_BYTES, RATE_BYTES)
+    while (message := await page.receive())["type"] != "websocket.disconnect":
+        text = message.get("text")
+        words = None if text is None else _words(text)
+        if words is None:
+            await page.close(1003, "expected a JSON object with a word 'do'")
+            return
+        if not (messages.take() and volume.take(len(text))) or len(inbox.waiting) > MOST_WAITING:
+            await page.close(1008, "too many messages")
+            return
+        inbox.put(words)
 
 
 async def _page(page: WebSocket) -> None:
@@ -126,35 +149,18 @@ async def _page(page: WebSocket) -> None:
     await page.accept()
     state.pages += 1
     session, inbox = state.new_session(), Inbox()
-    serving = asyncio.create_task(_serve(page, session, inbox))
-    messages, volume = Bucket(BURST, RATE), Bucket(BURST_BYTES, RATE_BYTES)
+    tasks = [asyncio.create_task(_read(page, inbox)), asyncio.create_task(_serve(page, session, inbox))]
     try:
-        while True:
-            received = asyncio.ensure_future(page.receive())
-            await asyncio.wait({received, serving}, return_when=asyncio.FIRST_COMPLETED)
-            if serving.done():
-                received.cancel()
-                serving.result()
-            message = await received
-            if message["type"] == "websocket.disconnect":
-                break
-            text = message.get("text")
-            words = None if text is None else _words(text)
-            if words is None:
-                await page.close(1003, "expected a JSON object with a word 'do'")
-                break
-            if not (messages.take() and volume.take(len(text))) or len(inbox.waiting) > MOST_WAITING:
-                await page.close(1008, "too many messages")
-                break
-            inbox.put(words)
-    except WebSocketDisconnect:
-        pass
+        done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+        with contextlib.suppress(WebSocketDisconnect):
+            for task in done:
+                task.result()
     finally:
         state.pages -= 1
-        serving.cancel()
-        with contextlib.suppress(asyncio.CancelledError, Exception):
-            await serving
-        session.close()
+        for task in tasks:
+            task.cancel()
+            with contextlib.suppress(asyncio.CancelledError, Exception):
+                await task
 
 
 async def _file(request: Request) -> Response:
@@ -232,6 +238,38 @@ def new_token() -> str:
     return secrets.token_urlsafe(24)
 
 
+def _socket_protocol() -> type[asyncio.Protocol]:
+    """Sockets by uvicorn, but that one ends whose page has not taken for UNREAD what it is sent: uvicorn waits for ever to send
+    it, so that the page would keep its place among those that may be open."""
+    from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
+
+    class Protocol(WebSocketsSansIOProtocol):
+        unread: asyncio.TimerHandle | None = None
+
+        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+            super().connection_made(transport)
+            self.transport.set_write_buffer_limits(0)  # told as soon as anything is left unsent
+
+        def pause_writing(self) -> None:
+            super().pause_writing()
+            self.unread = asyncio.get_running_loop().call_later(UNREAD, self.transport.abort)
+
+        def resume_writing(self) -> None:
+            super().resume_writing()
+            self._taken()
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            super().connection_lost(exc)
+            self._taken()
+
+        def _taken(self) -> None:
+            if self.unread is not None:
+                self.unread.cancel()
+                self.unread = None
+
+    return Protocol
+
+
 def configured(sock: socket.socket, token: str, folder: Path, deck: str | None = None) -> "uvicorn.Config":
     """How uvicorn serves pages on a listening socket: bounded in all that a stranger could send."""
     import uvicorn
@@ -239,7 +277,7 @@ def configured(sock: socket.socket, token: str, folder: Path, deck: str | None =
     port = sock.getsockname()[1]
     return uvicorn.Config(
         application(token, hosts_of(port), folder, deck), log_level="warning", access_log=False, server_header=False,
-        ws="websockets-sansio", ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, ws_ping_interval=20.0,
+        ws=_socket_protocol(), ws_max_size=LARGEST_MESSAGE, ws_per_message_deflate=False, ws_ping_interval=20.0,
         ws_ping_timeout=60.0, limit_concurrency=64, timeout_keep_alive=10, timeout_graceful_shutdown=1,
         h11_max_incomplete_event_size=16_384, lifespan="off", proxy_headers=False, http="h11", loop="asyncio",
     )  # fmt: skip

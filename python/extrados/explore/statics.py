@@ -87,15 +87,22 @@ def picture(building: Building, options: LimitAnalysisTable, view: View, anchor:
     made = Picture(words, geometry(assembly, anchor), assembly)
     if building.ties:
         made.arrays["ties"] = building.anchored().point.reshape(-1, 2) - anchor
+    if building.dampers:
+        made.arrays["dampers"] = np.array([[d.start, d.far] for d in building.dampers]).reshape(-1, 2) - anchor
+    words["abutting_wall"] = building.supports.abutting_wall
+    words["head_mass_kg"] = getattr(building.structure, "head_mass", None) or None
+    if ignored := [what for what in building.special_keys if what not in options.bears]:
+        words |= {"stands": None, "unknown": f"{options.kind} does not reckon with {' and '.join(ignored)}."}
+        return made
     try:
         limit = limit_of(building, options)
         made.limit, words["weight_N"] = limit, limit.loads.scale
         ends = {"plus": limit.collapse(1), "minus": limit.collapse(-1)}
+    except Immovable as error:  # one of those that follow, and no failure
+        words |= {"stands": True, "immovable": str(error)}
+        return made
     except NoEquilibrium:
         words["stands"] = False
-        return made
-    except Immovable as error:
-        words |= {"stands": True, "immovable": str(error)}
         return made
     except (NoAnswer, NoView, Refused) as error:
         words |= {"stands": None, "unknown": str(error)}

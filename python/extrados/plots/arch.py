@@ -274,12 +274,8 @@ def draw_assessment(run: Stored, name: str, folder: Path) -> list[tuple[str, str
                 color=color,
                 markersize=7 if k == 0 else 5,
             )
-            curve.annotate(
-                str(i.rank),
-                (i.period_s, abs(i.amplitude_g)),
-                textcoords="offset points",
-                xytext=(6, 4),
-            )
+        at = [(i.period_s, abs(i.amplitude_g)) for i in r.impulses]
+        style.letters(curve, at, [str(i.rank) for i in r.impulses], style.EDGE)
         top = max([3.0 * gamma, *(1.3 * abs(i.amplitude_g) for i in r.impulses)])
         curve.set_ylim(0.0, top)
         curve.set_xlim(0.0, period[-1])

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.patches import Polygon
 
 from extrados.plots import style
 from extrados.plots.limit.section import outlines, stone
@@ -18,7 +19,11 @@ OFF = 0.07
 
 
 def draw_building(run: Stored, folder: Path) -> tuple[str, str] | None:
-    """The stones with spans, rises, widths and height; None where no analysis of the run looked at stones."""
+    """The stones with spans, rises, widths and height, or the plan of a building with the lengths of its walls; None where no
+    analysis of the run looked at either."""
+    structure = run.summary["deck"]["resolved"].get("structure") or {}
+    if structure.get("kind") == "building":
+        return _plan(structure, folder)
     name = next((n for n, there in run.arrays.items() if {"outline", "outline_start"} <= set(there)), None)
     rows = [d for d in run.summary["deck"].get("dimensions", []) if "start" in d]
     if name is None or not rows:
@@ -54,6 +59,45 @@ def draw_building(run: Stored, folder: Path) -> tuple[str, str] | None:
         saved = style.save(fig, folder, NAME)
     told = "; ".join(f"{d['name']} {d['length_m']:.4g} m" for d in rows)
     return saved, f"The building. {told[:1].upper()}{told[1:]}."
+
+
+def _plan(structure: dict[str, Any], folder: Path) -> tuple[str, str]:
+    """The walls of a building on its plan, with names, lengths and thicknesses; the heights of its storeys in the caption."""
+    ends = np.array([[wall["start"], wall["end"]] for wall in structure["walls"]], dtype=float)
+    low, high = ends.min(axis=(0, 1)), ends.max(axis=(0, 1))
+    span = np.maximum(high - low, 1.0)
+    width = 6.0
+    with style.figure(width, float(np.clip(width * span[1] / span[0], 2.4, 6.5))) as (fig, (ax,)):
+        middle = 0.5 * (low + high)
+        for wall, (start, end) in zip(structure["walls"], ends, strict=True):
+            thick = wall.get("thickness") or max(wall["thicknesses"])
+            along = (end - start) / np.linalg.norm(end - start)
+            across = np.array([-along[1], along[0]])
+            half = 0.5 * thick * across
+            ax.add_patch(
+                Polygon(
+                    [start + half, end + half, end - half, start - half], facecolor=style.STONE, edgecolor=style.EDGE
+                )
+            )
+            out = across if across @ (0.5 * (start + end) - middle) >= 0.0 else -across
+            place = 0.5 * (start + end) + out * (0.5 * thick + OFF * span.max())
+            turn = np.degrees(np.arctan2(along[1], along[0]))
+            ax.text(
+                *place, f"{wall['name']}: {np.linalg.norm(end - start):.4g} m, {1e2 * thick:.3g} cm", color=INK, ha="center", va="center",
+                rotation=90.0 - (90.0 - turn) % 180.0, fontsize=8,
+            )  # fmt: skip
+        reach = 2.0 * OFF * span.max()
+        ax.set_aspect("equal")
+        ax.set_xlim(low[0] - reach, high[0] + reach)
+        ax.set_ylim(low[1] - reach, high[1] + reach)
+        ax.grid(False)
+        ax.set_xlabel("x [m]")
+        ax.set_ylabel("y [m]")
+        ax.set_title("Plan")
+        saved = style.save(fig, folder, NAME)
+    heights = " and ".join(f"{h:.4g}" for h in structure["storeys"])
+    told = "with the length of each wall between the middle planes of those it meets, and its greatest thickness"
+    return saved, f"The building on its plan, {told}. Storeys of {heights} m from the ground up."
 
 
 def _dimension(ax: Axes, row: dict[str, Any], off: float, below: int) -> None:

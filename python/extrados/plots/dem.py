@@ -302,16 +302,23 @@ def _both_solvers(run: Stored, name: str, folder: Path) -> tuple[str, str]:
 
 
 def draw_parameters(run: Stored, name: str, folder: Path) -> list[tuple[str, str]]:
-    """Damping over frequency, with the impact frequencies of the joints (thesis Figs 7-4, 7-12)."""
-    beta = run[name].beta_s
+    """Damping over frequency, with the impact frequencies of the joints (thesis Figs 7-2, 7-4, 7-12)."""
+    beta, alpha = run[name].beta_s, run[name].mass_damping_per_s
+
+    def percent(frequency: np.ndarray) -> np.ndarray:
+        return 50.0 * (beta * frequency + alpha / frequency)
+
     with style.figure(6.5, 4.0) as (fig, (ax,)):
         lowest = min(run.array(name, f"{k}_frequency").min() for k in ("rotation", "corner", "edge"))
         highest = max(run.array(name, f"{k}_frequency").max() for k in ("rotation", "corner", "edge"))
+        if alpha > 0.0 and beta > 0.0:
+            lowest = min(lowest, np.sqrt(alpha / beta))  # where damping is least
         frequency = np.geomspace(0.1 * lowest, 3.0 * highest, 200)
-        ax.loglog(frequency, 50.0 * beta * frequency, color=style.EDGE, label=f"beta = {beta:.3g} s")
+        label = f"beta = {beta:.3g} s" + (f", alpha = {alpha:.3g} 1/s" if alpha > 0.0 else "")
+        ax.loglog(frequency, percent(frequency), color=style.EDGE, label=label)
         for kind, colour in (("rotation", style.THRUST), ("corner", style.HINGE), ("edge", style.GROUND)):
             values = run.array(name, f"{kind}_frequency")
-            ax.loglog(values, 50.0 * beta * values, "o", color=colour, label=f"{kind} impact")
+            ax.loglog(values, percent(values), "o", color=colour, label=f"{kind} impact")
         for level, word in ((10.0, "least at rotation"), (25.0, "least at edge"), (100.0, "critical")):
             ax.axhline(level, color="#bbbbbb", linewidth=0.8)
             ax.text(frequency[0], level * 1.05, f"{level:g} % {word}", fontsize=7)

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from extrados.plots.document import Block, Document, Figure, Heading, Table, Words
-from extrados.plots.telling import OUTCOMES, cell, margin
+from extrados.plots.telling import OUTCOMES, cell
 from extrados.results.store import Stored
 
 
@@ -49,7 +49,7 @@ def _page(name: str, run: Stored, out: Path, figures: bool) -> list[Block]:
                 cell(v.demand, ""),
                 cell(v.capacity, ""),
                 v.unit,
-                margin(v),
+                v.margin_told(""),
             )
             for v in r.verdicts
         ]

@@ -21,6 +21,7 @@ MOST_BESIDE = 3
 STAGES = ("#7b93ab", "#b3342d", "#1f4e79", "#d9822b", "#3a7d44", "#7b2d8b")
 #: What the names of the figures of each sense of the load have in them
 SENSES = dict(zip(PREFIXES, ("", "-minus"), strict=True))
+OPPOSITE = dict(zip(PREFIXES, ("", ", pushed the opposite way"), strict=True))
 MOST_NAMED = 12  # bars that a legend still names
 NOTHING = 1e-3  # of the greatest stress: less is drawn as none
 #: A curve is drawn as far as so many times the way to nearly its greatest load
@@ -254,7 +255,10 @@ def _peak(run: Stored, name: str, prefix: str) -> int:
 def _cracks(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, str]:
     shown = [(prefix, s, f"event {run.array(name, f'{prefix}state_event')[s]}") for s in _peak_state(run, name, prefix)]
     title = _draw_cracks(run, name, folder, shown, f"{name}{SENSES[prefix]}-cracks")
-    return title, "Cracks on the deformed shape, at the peak and at the end; colour and thickness give the width."
+    return (
+        title,
+        f"Cracks on the deformed shape{OPPOSITE[prefix]}, at the peak and at the end; colour and thickness give the width.",
+    )
 
 
 def _draw_cracks(run: Stored, name: str, folder: Path, shown: list[tuple[str, int, str]], file: str) -> str:
@@ -344,7 +348,10 @@ def _stresses(run: Stored, name: str, folder: Path, prefix: str) -> tuple[str, s
             style.section_axes(ax)
             ax.set_title(f"{title} principal stress")
         title = style.save(fig, folder, f"{name}{SENSES[prefix]}-stress")
-    return title, f"Principal stresses at the peak load ({load[s] / 1e3:.4g} kN); tension is positive."
+    return (
+        title,
+        f"Principal stresses at the peak load ({load[s] / 1e3:.4g} kN); tension is positive{OPPOSITE[prefix]}.",
+    )
 
 
 def _section(

@@ -66,7 +66,7 @@ def _histogram(run: Stored, name: str, folder: Path) -> tuple[str, str]:
         ax.set_axisbelow(True)
         ax.set_xticks([0, 0.2, 0.4, 0.6, 0.8, 1.0])
         ax.set_xlabel("greatest rotation over the critical rotation")
-        ax.set_ylabel("share of the motions [%]")
+        ax.set_ylabel("share of the runs [%]")
         ax.set_title(f"{r.count} runs, {100 * r.collapse_probability:.1f} % collapse")
         full = np.flatnonzero(counts)
         if len(full) == 1:  # one bar says nothing by its height

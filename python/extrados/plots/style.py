@@ -179,9 +179,9 @@ def _spread(fig: Figure) -> None:
         ax.apply_aspect()  # as the drawing will, after the layout
         places = ax.transData.transform(np.array([t.xy for t in texts]))
         drawn = [
-            _sampled(line.get_transform().transform(line.get_xydata()), 3.0 * pixel)
+            _sampled(seen, 3.0 * pixel)
             for line in ax.lines
-            if len(line.get_xydata()) > 1
+            if len(seen := _finite(line.get_transform().transform(line.get_xydata()))) > 1
         ]
         ink = np.concatenate([*drawn, np.empty((0, 2))])
         frame = ax.get_window_extent()
@@ -214,6 +214,10 @@ def _spread(fig: Figure) -> None:
                 ax.plot(*ends.T, color=text.get_color(), linewidth=0.5, zorder=4.5)
                 ax.set_xlim(limits[0])
                 ax.set_ylim(limits[1])
+
+
+def _finite(points: np.ndarray) -> np.ndarray:
+    return points[np.isfinite(points).all(axis=1)]
 
 
 def _sampled(points: np.ndarray, step: float) -> np.ndarray:

@@ -1,6 +1,7 @@
 """What the report of a run says, in order: the answer, the building, the hazard, every strategy, its limits, and how to
 repeat it. From stored results only."""
 
+import re
 from typing import Any
 
 from extrados.plots.document import Block, Code, Document, Figure, Heading, Table, Words
@@ -28,7 +29,7 @@ def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | Non
     facts += [("Made by", f"extrados {made['version']} {made['commit']}".strip())]
     blocks: list[Block] = []
     if deck.get("note"):
-        blocks.append(Words(deck["note"]))
+        blocks.append(Words(_flowing(deck["note"])))
     blocks += _verdicts(run)
     blocks += _building(deck, building)
     blocks += _hazard(run, deck)
@@ -40,6 +41,11 @@ def told(run: Stored, drawn: dict[str, Figures], building: tuple[str, str] | Non
     blocks += _repeat(run, deck, made)
     foot = f"{title}. extrados {made['version']} {made['commit']}, deck {deck['sha256'][:16]}"
     return Document(title, facts, blocks, foot)
+
+
+def _flowing(text: str) -> str:
+    """A note of a deck without the ends of its lines, which are those of the file; an empty line parts paragraphs."""
+    return "\n".join(" ".join(part.split()) for part in re.split(r"\n\s*\n", text))
 
 
 def _verdicts(run: Stored) -> list[Block]:
@@ -74,7 +80,7 @@ def _assessed(run: Stored, name: str) -> list[Block]:
     r = run[name]
     rows = []
     for v in r.verdicts:
-        factor = margin(v)
+        factor = v.margin_told("")
         if v.status == "ok":
             rows.append(
                 (v.label, OUTCOMES[v.outcome], cell(v.demand, ""), cell(v.capacity, ""), v.unit, factor, v.statement)
@@ -128,22 +134,12 @@ def _assessed(run: Stored, name: str) -> list[Block]:
             Table(("analysis", "other than in the deck", "verdict", "demand over capacity"), rows, (1.2, 4.0, 1.0, 1.2))
         )
     if r.not_done:
-        found.append(Words("Not done within the budget: " + "; ".join(r.not_done) + ".", "warn"))
+        found.append(Words("Not done, or not decided: " + "; ".join(r.not_done) + ".", "warn"))
     return found
 
 
 def _both(low: float | None, high: float | None) -> str:
     return f"{cell(low, '?')} to {cell(high, '?')}" if low is not None or high is not None else ""
-
-
-def margin(v: Any) -> str:
-    """The margin of a strategy in words: a factor, or between which ones it lies."""
-    if v.margin is not None:
-        return cell(v.margin)
-    low, high = v.margin_at_least, v.margin_below
-    if low is not None and high is not None:
-        return f"{low:.3g} to {high:.3g}"
-    return f"above {low:.3g}" if low is not None else f"below {high:.3g}" if high is not None else ""
 
 
 def _building(deck: dict[str, Any], drawing: tuple[str, str] | None) -> list[Block]:
@@ -255,6 +251,14 @@ def _own_tables(run: Stored) -> list[tuple[str, str, Table]]:
                     Table(("check", "demand", "capacity", "unit", "", "clause"), rows, (1.8, 0.8, 0.8, 0.6, 0.7, 3.6)),
                 )
             )
+        if walls := getattr(r, "walls", None) if a["kind"] == "local-mechanism" else None:
+            head = ("wall", "turns at the foot of storey", "alpha_0", "a_0* [g]", "d_0* [m]", "margin")
+            rows = [
+                (w.wall, str(w.storey), f"{w.multiplier:.4g}", f"{w.activation_acceleration_g:.4g}",
+                 "none" if w.zero_displacement_m is None else f"{w.zero_displacement_m:.3g}", "" if w.margin is None else f"{w.margin:.3g}")
+                for w in walls
+            ]  # fmt: skip
+            found.append(("walls", a["name"], Table(head, rows, (1.8, 1.6, 1.0, 1.0, 1.0, 1.0))))
     return found
 
 
@@ -272,7 +276,7 @@ def _numbers(run: Stored, hidden: set[str]) -> list[Block]:
         rows = [
             (k, v, unit, about)
             for k, v, unit, about in numbers(run[a["name"]])
-            if not (a["name"] in hidden and k.startswith("checks."))
+            if not (a["name"] in hidden and (k.startswith("checks.") or k == "walls"))
         ]
         if a["kind"] == "assess":
             rows = [

@@ -12,6 +12,8 @@ from extrados.results.store import StoreError
 LARGEST = 1_500_000
 #: Of a picture as wide as the page: height over width beyond which it is made narrower
 TALLEST = 1.1
+#: Marks after which a long key, path or list may break: between letters or names of files, not within a number
+BREAKS = re.compile(r"(?<=[A-Za-z]{2})[_.](?=[A-Za-z]{3})|(?<=[A-Za-z])/(?=\w)")
 COLOURS = {"stands": "#3b7a57", "holds": "#3b7a57", "falls": "#b3261e", "fails": "#b3261e", "open": "#a86400"}
 BOXES = {"answer": ("#f6f2ea", "#b3261e"), "bad": ("#fbe9e7", "#b3261e"), "warn": ("#fff7e0", "#d9a400")}
 
@@ -52,11 +54,8 @@ def text_of(value: str) -> str:
 
 
 def _words(value: str) -> str:
-    """Text that may break after the marks of long keys and paths."""
-    soft = value
-    for mark in ("_", ".", "/", ","):
-        soft = soft.replace(mark, mark + "\u200b")
-    return f"text({text_of(soft)})"
+    """Text that may break after the marks of long keys and paths; numbers are left whole."""
+    return f"text({text_of(BREAKS.sub(lambda found: found[0] + chr(0x200B), value))})"
 
 
 def markup(document: Document, folder: Path) -> str:

@@ -44,6 +44,16 @@ class StrategyVerdict(ResultModel):
     assumes: str = fact("what the strategy takes for granted")
     statement: str = fact("its verdict in one sentence")
 
+    def margin_told(self, nothing: str = "not known") -> str:
+        """The margin in words: a factor, or between which ones it lies; `nothing` where none is known."""
+        if self.margin is not None:
+            return f"{self.margin:.3g}"
+        low, high = self.margin_at_least, self.margin_below
+        if low is not None and high is not None:
+            digits = next((d for d in (3, 4, 5) if f"{low:.{d}g}" != f"{high:.{d}g}"), 6)
+            return f"{low:.{digits}g} to {high:.{digits}g}"
+        return f"above {low:.3g}" if low is not None else f"below {high:.3g}" if high is not None else nothing
+
 
 class Reason(ResultModel):
     """Why strategies differ, by a rule whose numbers show it."""
@@ -106,7 +116,7 @@ class Assess(KindResults):
     parts: dict[str, str] = fact("analyses of this run that it has asked for: name -> what they are, in words")
     probes: list[Probe] = fact("further runs")
     sensitivity: list[TurningValue] = maybe("what the verdicts hang on, the most decisive first")
-    not_done: list[str] = fact("what the budget did not allow")
+    not_done: list[str] = fact("what the budget did not allow, and further runs that decided nothing")
     least_margin: float | None = fact("least factor on the hazard at which a strategy turns to fall; null: none known")
     least_margin_strategy: str | None = fact("whose it is")
     budget_s: float = fact("time that it was given", "s")

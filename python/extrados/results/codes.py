@@ -30,9 +30,9 @@ class Checked(KindResults):
         """The overall verdict; the deck's motion is no demand of a code."""
         return self.overall()
 
-    def overall(self) -> Verdict:
-        """One verdict for all: of each code the check that allows most, of the codes the one that allows least. Formulas for
-        comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
+    def _best(self) -> tuple[list[tuple[float, str, Check]], list[str]]:
+        """Of each code that is decided the check that allows most, as margin, name and check, the worst first; the codes that
+        are not: one of their checks fails while another has no demand."""
         margins: dict[str, tuple[float, str, Check]] = {}
         open_codes = set()
         for name, check in self.checks.items():
@@ -43,12 +43,21 @@ class Checked(KindResults):
             elif check.demand > 0.0:
                 row = (check.capacity / check.demand, name, check)
                 margins[check.code] = max(margins.get(check.code, row), row, key=lambda r: r[0])
-        # A code one of whose checks fails while another has no demand is not decided
         undecided = {c for c in open_codes if c not in margins or margins[c][2].verdict == "fails"}
         decided = [row for code, row in margins.items() if code not in undecided]
-        left = f" Without a demand for a check of {' and of '.join(sorted(undecided))}." if undecided else ""
+        return sorted(decided, key=lambda row: row[0]), sorted(undecided)
+
+    def governing(self) -> list[tuple[float, str, Check]]:
+        """Margin, name and check by which each code that is decided says what it says, the code that allows least first."""
+        return self._best()[0]
+
+    def overall(self) -> Verdict:
+        """One verdict for all: of each code the check that allows most, of the codes the one that allows least. Formulas for
+        comparison and the computed rocking do not count; without a demand the weakest strength of a pier [N]."""
+        decided, undecided = self._best()
+        left = f" Left open for want of a demand: {', '.join(undecided)}." if undecided else ""
         if decided:
-            _, name, worst = min(decided, key=lambda row: row[0])
+            _, name, worst = decided[0]
             unit = f" {worst.unit}" if worst.unit else ""
             return judge(
                 f"{worst.code} governs and {worst.verdict}, by {name}: {worst.demand:.3g} against "
@@ -69,6 +78,18 @@ class CodeChecks(Checked):
     dynamic_peak_rotation_ratio: float = maybe("its greatest rotation over the critical one")
     peak_ground_acceleration_g: float | None = maybe("of a block: a_g S, the demand of the rules", "g")
     peak_ground_velocity_m_s: float | None = maybe("of a block: demand of Ishiyama's rule", "m/s")
+
+
+class WallMechanism(ResultModel):
+    """A wall of a building on a plan above the foot of one of its storeys."""
+
+    wall: str = fact("its name")
+    storey: int = fact("the storey at whose foot it turns, from 1")
+    foot_m: float = fact("height of that foot above the ground", "m")
+    multiplier: float = fact("alpha_0")
+    activation_acceleration_g: float = fact("a_0*", "g")
+    zero_displacement_m: float | None = fact("d_0*; null: none", "m")
+    margin: float | None = fact("capacity over demand of the check that governs; null without a demand")
 
 
 class LocalMechanism(Checked):
@@ -92,4 +113,7 @@ class LocalMechanism(Checked):
         "of a place above the ground: a_Z, the acceleration there, the demand of the linear check",
         "g",
         source="Circ. 7/2019 C7.2.3",
+    )
+    walls: list[WallMechanism] = maybe(
+        "of a building on a plan: every wall above the foot of each storey, the worst first, for which the numbers stand"
     )

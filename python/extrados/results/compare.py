@@ -8,6 +8,10 @@ from extrados.results.store import Stored
 
 #: Keys of results that tell how long something took, not what it found
 CLOCK = ("seconds", "seconds_per_event", "sections_per_second")
+#: Keys of an assessment that follow from its verdicts
+FOLLOWS = ("agreement", "explains")
+#: By which of their keys the elements of a list are known
+NAMES = ("strategy", "rule", "wall", "name")
 #: Texts longer than this are told by the verdicts, not again
 LONG = 60
 #: Relative differences of numbers up to this are rounding
@@ -82,17 +86,26 @@ def _told(outcome: str, ratio: float | None) -> str:
 
 
 def flat(value: Any, prefix: str = "") -> dict[str, Any]:
-    """Values by their dotted keys; elements of lists by their number."""
+    """Values by their dotted keys; elements of lists by their names where each has another, else by their number."""
     if isinstance(value, dict):
         pairs = [(str(k), v) for k, v in value.items()]
     elif isinstance(value, list):
-        pairs = [(str(k), v) for k, v in enumerate(value)]
+        pairs = list(zip(_names(value), value, strict=True))
     else:
         return {prefix[:-1]: value}
     found: dict[str, Any] = {}
     for key, inner in pairs:
         found |= flat(inner, f"{prefix}{key}.")
     return found
+
+
+def _names(values: list) -> list[str]:
+    """What the elements of a list are called."""
+    for key in NAMES:
+        names = [v.get(key) if isinstance(v, dict) else None for v in values]
+        if values and all(isinstance(n, str) for n in names) and len(set(names)) == len(names):
+            return [str(n) for n in names]
+    return [str(k) for k in range(len(values))]
 
 
 def changes(old: dict[str, Any], new: dict[str, Any], tolerance: float) -> list[Change]:
@@ -102,6 +115,7 @@ def changes(old: dict[str, Any], new: dict[str, Any], tolerance: float) -> list[
         one, two = old.get(key), new.get(key)
         if (
             key.rpartition(".")[2] in CLOCK
+            or any(part in FOLLOWS for part in key.split("."))
             or one == two
             or any(isinstance(v, str) and len(v) > LONG for v in (one, two))
         ):

@@ -297,6 +297,7 @@ class DemParameters(KindResults):
     critical_beta_corner_s: float = fact("damping that is critical at corner impact", "s", source="thesis Eq. 7.17")
     critical_beta_edge_s: float = fact("damping that is critical at edge impact", "s", source="thesis Eq. 7.17")
     beta_s: float = fact("stiffness-proportional damping in use", "s")
+    mass_damping_per_s: float = fact("mass-proportional damping in use", "1/s")
     damping_ratio_rotation: float = fact("least fraction of critical damping at rotational impact")
     damping_ratio_corner: float = fact("least fraction of critical damping at corner impact")
     damping_ratio_edge: float = fact("least fraction of critical damping at edge impact")

@@ -42,6 +42,12 @@ LIMITS: dict[str, tuple[str, str]] = {
         "Elastic stones or walls whose joints or elements crack one after the other under a growing load, in the plane.",
         "Static: it asks how hard, not how long. What it bears depends on the strengths that the deck gives.",
     ),
+    "pushover": (
+        "Flat shells that crack event by event under horizontal forces that grow in one proportion; corners and floors hold as the "
+        "deck says.",
+        "Static: it asks how hard, not how long. A wall that is not bonded to those across it, or not anchored to the floors, turns "
+        "out of its plane before: ask for local mechanisms too.",
+    ),
     "dem": (
         "Every stone moves by itself on springs that open, slide and damp; no mechanism is chosen before.",
         "The stiffness and damping of joints stand for what is not known; vary them before relying on one run.",

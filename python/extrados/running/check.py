@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from extrados.analyses.context import Context
-from extrados.analyses.needs import complaints, stones_of
+from extrados.analyses.needs import as_shell, complaints, stones_of
 from extrados.building.errors import BadGeometry
 from extrados.building.geometry.assembly import Assembly
 from extrados.decks.reader import Deck
@@ -76,8 +76,8 @@ def _in_space(deck: Deck) -> "tuple[SolidAssembly | None, ShellMesh | None]":
     """What of a sound deck's building stands in space, as one of its analyses looks at it."""
     solids, plan = None, None
     for options, building in zip(deck.analyses, deck.buildings, strict=True):
-        if options.view == "shell":
-            plan = building.shell(options.mesh)  # type: ignore[attr-defined]
+        if options.view == "shell" or as_shell(building, options):
+            plan = building.shell(getattr(options, "mesh", None))
         elif options.view == "blocks":
             stones = stones_of(building, options)
             solids = solids if isinstance(stones, Assembly) else stones

@@ -19,6 +19,8 @@ from extrados.decks.reader import DeckError, make_deck
 from extrados.results.assess import StrategyVerdict
 from extrados.results.limit import Tilt
 from extrados.results.model import Result
+from extrados.results.shell import Pushover
+from extrados.results.sla import Sla
 from extrados.results.statistics import Ensemble, OverLevels
 from extrados.results.verdict import acceleration
 
@@ -132,6 +134,10 @@ def row_of(
         broken = acceleration(cracked, demand)
         borne, outcome, margin = cracked, broken.outcome, broken.ratio
         statement = f"With the leeward buttress cracked: {broken.statement[:1].lower()}{broken.statement[1:]}"
+    elif isinstance(r, Sla | Pushover) and any(c.peak_load_N is None for c in (r, r.minus) if c is not None):
+        low = verdict.ratio  # it bears so much at least
+        if verdict.outcome == "stands":
+            statement = f"The run passed no peak, what it bears in the end is not known. {statement}"
     elif strategy.axis in ("acceleration", "pulse", "check"):
         margin = verdict.ratio
     return StrategyVerdict(

@@ -139,7 +139,16 @@ class _Work:
         return result
 
     def wants(self, name: str) -> bool:
-        return name in self.options.strategies
+        """Whether a strategy is to be asked; one that the deck names and that cannot look at the building is told."""
+        if name not in self.options.strategies:
+            return False
+        strategy = strategies.of(name)
+        if strategy.applies(self.context.building):
+            return True
+        if "strategies" in self.options.model_fields_set:
+            kind = self.context.building.structure.kind
+            self.rows[name] = no_row(strategy, "left out", f"it does not look at a structure of kind '{kind}'")
+        return False
 
     # ----- the three rounds
 
@@ -155,8 +164,13 @@ class _Work:
         self.context.progress(1.0, 3.0, "assess")
 
     def costly(self) -> None:
-        for name in ("probability", "sla", "dem"):
-            if self.wants(name) and name not in self.rows:
+        for name in ("probability", "sla", "push-x", "push-y", "dem"):
+            if not self.wants(name) or name in self.rows:
+                continue
+            if name == "probability" and "rocking" in self.rows and self.rows["rocking"].status == "refused":
+                text = "it is that of rocking, which this building does not do as one mechanism"
+                self.rows[name] = no_row(strategies.of(name), "left out", text)
+            else:
                 self.ask(strategies.of(name))
         self.context.progress(2.0, 3.0, "assess")
 
@@ -180,10 +194,12 @@ class _Work:
 
     def _scaled_set(self) -> None:
         """The share of a set that brings it down, and the motion that strategies of one motion take."""
-        found = self.ask(strategies.SCALED)
-        row = self.rows.pop("scaled")
+        found = row = None
+        if strategies.SCALED.applies(self.context.building):
+            found = self.ask(strategies.SCALED)
+            row = self.rows.pop("scaled")
         member, how = 1, "the first, for nothing rocks that could choose"
-        if found is not None:
+        if found is not None and row is not None:
             strategy = strategies.of("probability")
             self.rows["probability"] = row.model_copy(
                 update={
@@ -395,6 +411,11 @@ class _Work:
 
     def move(self) -> None:
         """Margins with values of the deck moved one by one; the clock that stops strategies begins anew."""
+        if not strategies.of("tilt").applies(self.context.building):
+            self.not_done.append(
+                "sensitivity: limit analysis and rocking do not look at a building on a plan; `pushover` has variants"
+            )
+            return
         self.asker.deadline = time.monotonic() + STOPPED_AFTER * self.options.budget
         rocked = self.results.get("rocking")
         restitution = rocked.results.restitution if rocked is not None else None

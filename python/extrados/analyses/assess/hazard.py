@@ -87,15 +87,21 @@ def primary(motion: Motion) -> tuple[float, float] | None:
     return (abs(found[0].amplitude) / GRAVITY, float(found[0].period)) if found else None
 
 
-def above(motion: Motion, level_g: float) -> tuple[int, float]:
-    """How often the ground's acceleration passes a level [g] to one side, and for how long at most [s]."""
+def passages(motion: Motion, level_g: float) -> list[tuple[float, float]]:
+    """Length [s] and mean acceleration [g] of each time that the ground's acceleration is above a level [g] to one side, that of
+    the greatest impulse first."""
     time, acceleration = motion.series()
     step = float(time[1] - time[0]) if len(time) > 1 else 0.0
-    count, longest = 0, 0
+    found = []
     for side in (1.0, -1.0):
         over = np.concatenate([[False], side * acceleration > level_g * GRAVITY, [False]])
         edges = np.flatnonzero(over[1:] != over[:-1])
-        lengths = edges[1::2] - edges[::2]
-        count += len(lengths)
-        longest = max([longest, *lengths.tolist()])
-    return count, longest * step
+        for first, end in zip(edges[::2], edges[1::2], strict=True):
+            found.append(((end - first) * step, float(side * acceleration[first:end].mean()) / GRAVITY))
+    return sorted(found, key=lambda p: p[0] * p[1], reverse=True)
+
+
+def above(motion: Motion, level_g: float) -> tuple[int, float]:
+    """How often the ground's acceleration passes a level [g] to one side, and for how long at most [s]."""
+    found = passages(motion, level_g)
+    return len(found), max((length for length, _ in found), default=0.0)

@@ -5,11 +5,12 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from extrados.analyses.assess.hazard import above
+from extrados.analyses.assess.hazard import above, passages
 from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
 from extrados.motions.motion import Motion
 from extrados.results.assess import Reason, StrategyVerdict
-from extrados.results.codes import Checked
+from extrados.results.codes import Check, Checked, LocalMechanism
 from extrados.results.dem import DemRun
 from extrados.results.limit import Tilt
 from extrados.results.model import Result
@@ -17,9 +18,13 @@ from extrados.results.rocking import Assessment, Rocking
 from extrados.results.verdict import KindResults
 
 #: Strategies that push for ever, and those that follow the motion or a part of it
-STATIC, DYNAMIC = ("tilt", "sla"), ("rocking", "assessment", "probability", "dem")
+STATIC, DYNAMIC = ("tilt", "sla", "push-x", "push-y"), ("rocking", "assessment", "probability", "dem")
+#: The push of a building on a plan along its two axes
+PUSHES = ("push-x", "push-y")
 #: A joint that slips by this part of its length has slid; a thrust line outside by this share of the time is elsewhere
 SLID, ELSEWHERE = 0.01, 0.1
+#: Passages of a motion over a capacity that are looked at one by one, those of the greatest impulse
+PASSAGES = 4
 #: Of a collapse displacement: what moved less than this was far from it
 FAR = 0.5
 
@@ -94,7 +99,8 @@ HEADLINES = {
     "sine-for-record": "what the motion holds beside its strongest sine", "sliding": "sliding of the stones",
     "drums": "stones that move by themselves", "hinges-elsewhere": "hinges that form elsewhere",
     "membrane-without-sliding": "elements that cannot slide", "tension": "tension that elements bear",
-    "mortar": "mortar", "code-factors": "the factors of codes", "crack": "a crack in the buttress", "left-out": "what holds the building", "chance": "sizes that nobody knows to 5 %",
+    "mortar": "mortar", "code-factors": "the factors of codes", "code-check": "which check of the codes governs", "torn-off": "whether corners and floors hold the walls",
+    "weaker-direction": "the walls along each axis", "crack": "a crack in the buttress", "left-out": "what holds the building", "chance": "sizes that nobody knows to 5 %",
 }  # fmt: skip
 
 
@@ -152,15 +158,15 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         "longest_s": longest,
         "needed_s": needed,
     }
-    if needed is not None:
-        if longest >= needed:
-            return None
+    if needed is not None and longest < needed:
         return reason(
             "static-peak",
             mine,
             f"{text}, while a constant push of that peak needs {needed:.3g} s to bring it down.",
             **numbers,
         )
+    if needed is not None:
+        return _by_passages(facts, mine, text, capacity / factor, factor, numbers)
     dem = facts.of("dem")
     if "rocking" in facts.results or not isinstance(dem, DemRun) or dem.outcome == "collapse":
         return None
@@ -172,6 +178,34 @@ def _static_peak(facts: Facts, names: list[str], mine: list[Pair]) -> Reason | N
         f"{text}: in that time the stones move by {100 * moved:.2g} % of what counts as collapse.", displacement_ratio=moved,
         **numbers,
     )  # fmt: skip
+
+
+def _by_passages(
+    facts: Facts, mine: list[Pair], text: str, level: float, factor: float, numbers: dict[str, float | None]
+) -> Reason | None:
+    """The strongest passages over the capacity one by one, each as a constant push of what it has on average."""
+    worst = None
+    for length, mean in passages(facts.motion, level)[:PASSAGES]:
+        needed = facts.needed_s(factor * mean)
+        if needed is None or length >= needed:
+            return None
+        if worst is None or length / needed > worst[0] / worst[2]:
+            worst = (length, factor * mean, needed)
+    if worst is None:
+        return None
+    length, mean, needed = worst
+    return reason(
+        "static-peak", mine,
+        f"{text}. No passage is long enough for what it holds: the one nearest to that has {mean:.3g} g on average for {length:.3g} s, "
+        f"and a constant push of {mean:.3g} g needs {needed:.3g} s to bring it down.",
+        **{**numbers, "passage_g": mean, "passage_s": length, "passage_needed_s": needed},
+    )  # fmt: skip
+
+
+def _unstopped(facts: Facts, r: Tilt) -> float:
+    """What limit analysis bears [g] in the weaker of the senses that no wall stops."""
+    right, left = r.collapse_acceleration_g, r.collapse_acceleration_opposite_g
+    return {"left": right, "right": left}.get(facts.building.supports.abutting_wall or "", min(right, left))
 
 
 def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
@@ -195,9 +229,9 @@ def crack(facts: Facts, pairs: list[Pair]) -> Reason | None:
 def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """One of them does not reckon with what holds the building; without it the other says the same."""
     without = facts.probes.get("without-restraints")
-    mine = [
-        p for p in pairs if (p[0] in facts.bare and p[1] == "rocking") or (p[1] in facts.bare and p[0] == "rocking")
-    ]
+    every = {w for there in facts.bare.values() for w in there}  # what the probe was asked without
+    bare = [n for n, there in facts.bare.items() if set(there) == every]
+    mine = [p for p in pairs if "rocking" in p and set(p) & set(bare)]
     r = facts.of("rocking")
     if not mine or without is None or not isinstance(without.results, Rocking) or not isinstance(r, Rocking):
         return None
@@ -206,9 +240,9 @@ def left_out(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     return reason(
         "left-out", mine,
-        f"{', '.join(sorted({w for p in mine for n in p for w in facts.bare.get(n, ())}))} hold what rocks; the others leave them "
-        f"out. Without them rocking turns by {100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them by "
-        f"{100 * r.peak_rotation_ratio:.3g} %.",
+        f"What rocks is held by {' and '.join(sorted(every))}, left out by "
+        f"{' and '.join(facts.rows[n].label for n in bare if any(n in p for p in mine))}. Without them rocking turns by "
+        f"{100 * other.peak_rotation_ratio:.3g} % of the critical rotation, with them by {100 * r.peak_rotation_ratio:.3g} %.",
         rotation_ratio_without=other.peak_rotation_ratio, rotation_ratio=r.peak_rotation_ratio,
     )  # fmt: skip
 
@@ -219,9 +253,7 @@ def ties_of_statics(facts: Facts, pairs: list[Pair]) -> Reason | None:
     without, tilt, sla = facts.probes.get("tilt-without"), facts.rows.get("tilt"), facts.rows.get("sla")
     if not mine or without is None or not isinstance(without.results, Tilt) or tilt is None or sla is None:
         return None
-    r, wall = without.results, facts.building.supports.abutting_wall
-    senses = {"left": (r.collapse_acceleration_g,), "right": (r.collapse_acceleration_opposite_g,)}
-    bare = min(senses.get(wall or "", (r.collapse_acceleration_g, r.collapse_acceleration_opposite_g)))
+    bare = _unstopped(facts, without.results)
     if sla.capacity is None or tilt.capacity is None or abs(bare - sla.capacity) > 0.1 * bare:
         return None
     return reason(
@@ -402,14 +434,15 @@ def membrane(facts: Facts, pairs: list[Pair]) -> Reason | None:
         return None
     held = facts.probes.get("tilt-no-sliding")
     strength = facts.building.material.tensile_strength
-    least = min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g)
+    least = _unstopped(facts, tilt)
     if held is not None and isinstance(held.results, Tilt):
-        stuck = min(held.results.collapse_acceleration_g, held.results.collapse_acceleration_opposite_g)
+        stuck = _unstopped(facts, held.results)
         if stuck > 1.05 * least and abs(sla.capacity - stuck) < abs(sla.capacity - least):
             return reason(
                 "membrane-without-sliding", mine,
                 f"The wall of finite elements cannot slide along its joints: its stones bear {least:.3g} g with friction "
-                f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g.",
+                f"{facts.building.joints.friction} and {stuck:.3g} g without sliding, the elements {sla.capacity:.3g} g"
+                f"{', which bear tension besides' if strength and sla.capacity > 1.05 * stuck else ''}.",
                 with_sliding=least, without_sliding=stuck, elements=sla.capacity,
             )  # fmt: skip
     if strength and sla.capacity > least:
@@ -436,32 +469,114 @@ def mortar(facts: Facts, pairs: list[Pair]) -> Reason | None:
 
 def code_factors(facts: Facts, pairs: list[Pair]) -> Reason | None:
     """Codes reduce the demand by q and the capacity by FC; without both the code would say as statics does."""
-    mine = [p for p in pairs if "code-checks" in p]
-    r = facts.of("code-checks")
-    if not mine or not isinstance(r, Checked):
-        return None
-    name = next((n for n in r.checks if n.startswith("NTC linear")), None)
+    found = _governing(facts, pairs)
     tilt = facts.of("tilt")
-    if name is None or not isinstance(tilt, Tilt):
+    if found is None or not isinstance(tilt, Tilt) or not found[1][0][1].startswith("NTC linear"):
         return None
-    check = r.checks[name]
-    least = min(tilt.collapse_acceleration_g, tilt.collapse_acceleration_opposite_g)
+    r, ((_, _, check), *_), mine = found
+    least = _unstopped(facts, tilt)
     if check.demand is None or abs(check.capacity / least - 1.0) < 0.05:
         return None
+    if abs(getattr(r, "multiplier", least) - least) > 0.02 * least:
+        return None  # the code turns another mechanism: its factors are not what differs
     other = [p for p in mine if "tilt" in p or "sla" in p] or mine
     part = getattr(r, "participating_part", 1.0)
     taking = "" if abs(part - 1.0) < 0.005 else f" over the part e* = {part:.3g} of the weight that takes part"
+    factor = check.capacity * part / least
     return reason(
         "code-factors", other,
-        f"The linear check of the code compares {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, over "
-        "the confidence factor, times the behaviour factor q. q stands for what rocking bears beyond its uplift.",
-        code_capacity=check.capacity, static_capacity=least, demand=check.demand,
+        f"The linear check of the code compares {check.demand:.3g} g with {check.capacity:.3g} g: the {least:.3g} g of statics{taking}, "
+        f"times {factor:.3g}, the behaviour factor q over the confidence factor FC. q stands for what rocking bears beyond its uplift.",
+        code_capacity=check.capacity, static_capacity=least, demand=check.demand, factor=factor,
     )  # fmt: skip
+
+
+def code_check(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Another check than the linear one governs, and by that one, or by the next code, the codes would say otherwise."""
+    found = _governing(facts, pairs)
+    if found is None:
+        return None
+    r, ((margin, name, check), *others), mine = found
+    if name.startswith("NTC linear") or check.demand is None:
+        return None
+    linear = next(((n, c) for n, c in r.checks.items() if n.startswith("NTC linear") and c.code == check.code), None)
+    if linear is not None and linear[1].demand:
+        other, what = (
+            linear[1].capacity / linear[1].demand,
+            f"its linear check, {linear[1].demand:.3g} against {linear[1].capacity:.3g} g,",
+        )
+    elif others:
+        other, what = others[0][0], f"{others[0][2].code}, the next code ({others[0][1]}),"
+    else:
+        return None
+    if (other > 1.0) == (margin > 1.0) and max(other, margin) < facts.apart * min(other, margin):
+        return None
+    moves = ", a displacement, which statics does not know" if check.unit == "m" else ""
+    return reason(
+        "code-check", mine,
+        f"What governs the codes is {name} of {check.code}, {check.demand:.3g} against {check.capacity:.3g} {check.unit}{moves}: a margin of "
+        f"{margin:.3g}. By {what} it would be {other:.3g}.",
+        governing_margin=margin, demand=check.demand, capacity=check.capacity, other_margin=other,
+    )  # fmt: skip
+
+
+def torn_off(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Codes take a wall apart from its neighbours; in the push of the whole corners and floors hold it."""
+    r = facts.of("code-checks")
+    mine = [p for p in pairs if "code-checks" in p and set(p) & set(PUSHES) and facts.split(p)[0] == "code-checks"]
+    if not mine or not isinstance(r, LocalMechanism) or not r.walls:
+        return None
+    wall = r.walls[0]
+    bears = {n: c for p in mine for n in p if n in PUSHES and (c := _reached(facts, n)) is not None}
+    if not bears or wall.multiplier >= min(bears.values()):
+        return None
+    weakest = min(bears, key=lambda n: bears[n])
+    return reason(
+        "torn-off", mine,
+        f"The codes take each wall apart from those across it: wall {wall.wall} turns out of its plane about the foot of storey "
+        f"{wall.storey} at alpha_0 = {wall.multiplier:.3g}. In the {facts.rows[weakest].label} corners and floors hold the walls together, and all "
+        f"of it bears {bears[weakest]:.3g} g: that holds as far as they are bonded and anchored.",
+        multiplier=wall.multiplier, whole_g=bears[weakest],
+    )  # fmt: skip
+
+
+def weaker_direction(facts: Facts, pairs: list[Pair]) -> Reason | None:
+    """Two directions on the plan differ where the one with less masonry along it bears less."""
+    plan = facts.building.structure
+    mine = [p for p in pairs if set(p) == set(PUSHES)]
+    if not mine or not isinstance(plan, Plan):
+        return None
+    weak, strong = facts.split(mine[0])
+    area = {"push-x": plan.foot_area(0), "push-y": plan.foot_area(1)}
+    if area[weak] >= 0.95 * area[strong]:
+        return None
+    return reason(
+        "weaker-direction", mine,
+        f"Along the {facts.rows[weak].label.removeprefix('push along ')} axis walls stand on {area[weak]:.3g} m^2, along the "
+        f"{facts.rows[strong].label.removeprefix('push along ')} axis on {area[strong]:.3g} m^2.",
+        weak_m2=area[weak], strong_m2=area[strong],
+    )  # fmt: skip
+
+
+def _reached(facts: Facts, name: str) -> float | None:
+    """The acceleration [g] up to which a push has come."""
+    row = facts.rows[name]
+    margin = row.margin if row.margin is not None else row.margin_at_least
+    return row.capacity if row.capacity is not None else None if margin is None else margin * facts.peak_g
+
+
+def _governing(facts: Facts, pairs: list[Pair]) -> tuple[Checked, list[tuple[float, str, Check]], list[Pair]] | None:
+    """The results of the codes with the checks by which they say what they say, and the pairs with them; None without any."""
+    r = facts.of("code-checks")
+    mine = [p for p in pairs if "code-checks" in p]
+    if not mine or not isinstance(r, Checked) or not (there := r.governing()):
+        return None
+    return r, there, mine
 
 
 Rule = Callable[[Facts, list[Pair]], Reason | list[Reason] | None]
 RULES: tuple[Rule, ...] = (
-    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors,
+    static_peak, crack, left_out, ties_of_statics, impact_rule, last_digits, elements_of_last_digits, sine_for_record, sliding, drums, hinges_elsewhere, membrane, mortar, code_factors, code_check, torn_off, weaker_direction,
     chance,
 )  # fmt: skip
 

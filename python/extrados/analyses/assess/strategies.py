@@ -10,22 +10,24 @@ from extrados.analyses.assess.hazard import STRONG, strong_end
 from extrados.analyses.assess.tables import Assess
 from extrados.analyses.context import Context
 from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
 from extrados.motions.tables import Compatible
 from extrados.results.limits import LIMITS
 from extrados.schema.constants import GRAVITY
 
 #: Shares of the budget that a strategy may take
-SHARES = {"probability": 0.15, "sla": 0.2, "dem": 0.15}
+SHARES = {"probability": 0.15, "sla": 0.2, "push-x": 0.3, "push-y": 0.3, "dem": 0.15}
 #: What of the budget is left to learn more where strategies differ or a margin is thin
 REFINING = 0.5
 #: Factors on the hazard that rocking is tried at, and those of a set, whose motions are many
 LEVELS = [round(float(v), 4) for v in np.geomspace(0.25, 4.0, 33)]
 LEVELS_OF_A_SET = [0.5, 0.7, 0.85, 1.0, 1.2, 1.5, 2.0, 3.0]
-#: Nominal seconds of counted work on one core of 2024: a run of rocking by the kind of structure; a stone under SLA; a
-#: step of discrete elements, and what each of its joints adds
+#: Nominal seconds of counted work on one core of 2024: a run of rocking by the kind of structure; a stone under SLA, an event
+#: of a wall's elements; a step of discrete elements, and what each of its joints adds
 RUN_SECONDS = {"block": 0.002, "column": 0.002, "arch": 0.012}
 RUN_SECONDS_ELSE = 0.15
-STONE_SECONDS, ELEMENT_SECONDS = 0.03, 0.02
+STONE_SECONDS, ELEMENT_SECONDS = 0.03, 5e-4
+PUSH_SECONDS = 1.6e-6  # of an element of shells in an event
 STEP_SECONDS, JOINT_SECONDS = 1.5e-6, 2.5e-7
 #: Of the greatest frequency of impact at an edge: what the critical step of discrete elements is at least
 STEP_RULE = 0.5
@@ -35,8 +37,10 @@ STIFF_ENOUGH = 1e-4
 SCATTER, STRAY = 0.05, 0.01
 #: Discrete elements come to rest, or down, within so many sqrt(size/g)
 AFTER = 12.0
-#: Elements along the longer side of a wall
-ELEMENTS = 24
+#: Elements along the longer side of a wall, and of all walls of a building on a plan; points through their thickness
+ELEMENTS, SHELLS, LAYERS = 24, 800, 3
+#: A push ends where its load has fallen to this part of the peak
+FALLEN = 0.8
 
 
 class LeftOut(Exception):
@@ -84,6 +88,11 @@ class Strategy:
     assumes: str
     choose: Callable[[Asked], Choice]
 
+    def applies(self, building: Building) -> bool:
+        """Whether it can look at the building: on a plan there are walls, which are pushed and checked, and no stones."""
+        on_plan = isinstance(building.structure, Plan)
+        return self.name == "code-checks" or on_plan == (self.kind == "pushover")
+
 
 def _as_it_is(asked: Asked) -> Choice:
     return Choice({}, "as the deck says")
@@ -109,6 +118,8 @@ def _scatter(asked: Asked) -> dict[str, float]:
         "block": {"width": SCATTER, "height": SCATTER, "restitution": SCATTER},
         "column": {"width": SCATTER, "height": SCATTER, "restitution": SCATTER},
     }.get(kind, {"density": SCATTER, "imperfection": STRAY, "restitution": SCATTER})
+    if asked.building.structure.rocks_as == "piers":
+        own = {"restitution": SCATTER}
     if kind == "block" and asked.building.structure.width is None:
         own = {"centre_height": SCATTER, "toe_right": SCATTER, "restitution": SCATTER}
     return own
@@ -130,16 +141,45 @@ def _probability(asked: Asked) -> Choice:
     )
 
 
+def _push(asked: Asked, direction: float) -> Choice:
+    """The push of a building on a plan along x or y, to both sides."""
+    building, plan = asked.building, asked.building.structure
+    assert isinstance(plan, Plan)
+    materials = [building.material, *building.materials.values()]
+    if not any(m.tensile_strength is not None and m.fracture_energy is not None for m in materials):
+        raise LeftOut("walls crack only with [material] tensile_strength and fracture_energy, which the deck lacks")
+    name = "push-x" if direction == 0.0 else "push-y"
+    size = round(min(float(np.sqrt(plan.wall_area / SHELLS)), 0.25 * min(plan.storeys)), 3)
+    elements = plan.wall_area / size**2
+    events = max(int(0.5 * asked.share(name) / (PUSH_SECONDS * elements)), 500)
+    keys = {
+        "direction": direction, "directions": ["+", "-"], "mesh": {"size": size, "layers": LAYERS}, "ripple": 0.2,
+        "events": events, "stop_fraction": FALLEN,
+    }  # fmt: skip
+    words = (
+        f"forces in proportion to the masses along {'x' if direction == 0.0 else 'y'}, to both sides; elements of {size:g} m, "
+        f"{LAYERS} points through the thickness, {events} events at most, until the load has fallen to {FALLEN:g} of its peak"
+    )
+    return Choice(keys, words)
+
+
 def _codes(asked: Asked) -> Choice:
     from extrados.analyses.codes.tables import CodeChecks
 
     spectrum = asked.options.spectrum
     if asked.building.structure.rocks_as == "piers":
-        raise LeftOut("the pier rules need axial_load: give options.code-checks")
+        raise LeftOut(
+            "the pier rules need the vertical load on top of the wall: give options.code-checks = { axial_load = ... }"
+        )
     own = asked.building.structure.kind in (CodeChecks.structures or ())
     own = own and set(asked.building.special_keys) <= set(CodeChecks.bears)
     keys: dict[str, Any] = {} if own else {"mechanism": "building"}
-    words = "" if own else "the local mechanism that limit analysis finds; "
+    on_plan = isinstance(asked.building.structure, Plan)
+    words = (
+        ""
+        if own
+        else f"{'each wall out of its plane' if on_plan else 'the local mechanism that limit analysis finds'}; "
+    )
     kind = None if own else "local-mechanism"
     if spectrum is not None:
         return Choice(
@@ -169,10 +209,16 @@ def _sla(asked: Asked) -> Choice:
     if building.material.tensile_strength is None:
         raise LeftOut("the wall cracks only with [material] tensile_strength and fracture_energy, which the deck lacks")
     size = getattr(building.structure, "size", None)
-    keys: dict[str, Any] = {"directions": ["+"], "events": int(asked.share("sla") / ELEMENT_SECONDS)}
+    keys: dict[str, Any] = {
+        "directions": ["+"], "events": int(asked.share("sla") / ELEMENT_SECONDS), "stop_fraction": FALLEN,
+    }  # fmt: skip
     if size is not None:
         keys["mesh"] = {"size": max(size) / ELEMENTS}
-    return Choice(keys, f"{ELEMENTS} elements along the longer side, {keys['events']} events at most, pushed to +x")
+    return Choice(
+        keys,
+        f"{ELEMENTS} elements along the longer side, pushed to +x until the load has fallen to {FALLEN:g} of its peak, "
+        f"{keys['events']} events at most",
+    )
 
 
 def _dem(asked: Asked) -> Choice:
@@ -237,6 +283,8 @@ ALL = tuple(
         ("code-checks", "code-checks", "codes", "check", _codes),
         ("probability", "fragility", "probability", "probability", _probability),
         ("sla", "sla", "sequentially linear analysis", "acceleration", _sla),
+        ("push-x", "pushover", "push along x", "acceleration", lambda asked: _push(asked, 0.0)),
+        ("push-y", "pushover", "push along y", "acceleration", lambda asked: _push(asked, 90.0)),
         ("dem", "dem", "discrete elements", "displacement", _dem),
     )
 )

@@ -9,8 +9,8 @@ from extrados.schema.spectrum import CodeSpectrum
 from extrados.schema.table import key
 
 #: Strategies in the order in which they are asked: cheap first
-STRATEGIES = ("tilt", "rocking", "assessment", "code-checks", "probability", "sla", "dem")
-Strategy = Literal["tilt", "rocking", "assessment", "code-checks", "probability", "sla", "dem"]
+STRATEGIES = ("tilt", "rocking", "assessment", "code-checks", "probability", "sla", "push-x", "push-y", "dem")
+Strategy = Literal["tilt", "rocking", "assessment", "code-checks", "probability", "sla", "push-x", "push-y", "dem"]
 
 
 class Assess(Analysis):
@@ -23,6 +23,7 @@ class Assess(Analysis):
     kind: Literal["assess"]
     view: ClassVar = "blocks"
     solid: ClassVar = True
+    shells: ClassVar = ("building",)
     needs_motion: ClassVar = True
     starter_motion: ClassVar = "record"
     bears: ClassVar = ("[[ties]]", "[[dampers]]", "[[hinges]]", "[supports] abutting_wall")
@@ -32,7 +33,7 @@ class Assess(Analysis):
         "the clock; what still runs when the time is over twice is stopped and told", ge=5, le=1e6,
     )  # fmt: skip
     strategies: list[Strategy] = key(
-        list(STRATEGIES), "those that are asked; `probability` is `fragility` with uncertain sizes, or with the motions of a set", min_length=1, max_length=len(STRATEGIES),
+        list(STRATEGIES), "those that are asked, where they apply; `probability` is `fragility` with uncertain sizes, or with the motions of a set; `push-x` and `push-y` are `pushover` of a building on a plan", min_length=1, max_length=len(STRATEGIES),
     )  # fmt: skip
     thin: float = key(
         1.5, "a margin below this, or above its inverse, is thin: what is near it is looked at again", gt=1, le=10

@@ -6,16 +6,6 @@ from extrados.results.assess import Overall, Reason, StrategyVerdict, TurningVal
 _HEAD = ("strategy", "verdict", "demand", "capacity", "unit", "margin")
 
 
-def margin_of(row: StrategyVerdict) -> str:
-    """The margin in words: a factor, or what is known of it."""
-    if row.margin is not None:
-        return f"{row.margin:.3g}"
-    low, high = row.margin_at_least, row.margin_below
-    if low is not None and high is not None:
-        return f"{low:.3g} to {high:.3g}"
-    return f"above {low:.3g}" if low is not None else f"below {high:.3g}" if high is not None else "not known"
-
-
 def _cells(row: StrategyVerdict) -> tuple[str, ...]:
     if row.status != "ok":
         return row.label, row.status, "", "", "", ""
@@ -26,7 +16,7 @@ def _cells(row: StrategyVerdict) -> tuple[str, ...]:
     unit = {"probability": "of all"}.get(row.unit, row.unit)
     if not unit and row.axis == "displacement":
         unit = "of the critical rotation"
-    return row.label, row.outcome, number(row.demand), number(row.capacity), unit, margin_of(row)
+    return row.label, row.outcome, number(row.demand), number(row.capacity), unit, row.margin_told()
 
 
 def table_of(rows: list[StrategyVerdict]) -> str:
@@ -91,7 +81,7 @@ def conclusion(
     if least[0] is not None:
         label = facts.rows[least[1]].label
         row = next(r for r in rows if r.strategy == least[1])
-        said.append(f"The least factor on the hazard at which a verdict turns is {margin_of(row)}, that of {label}.")
+        said.append(f"The least factor on the hazard at which a verdict turns is {row.margin_told()}, that of {label}.")
     none = [row.label for row in rows if row.status != "ok" or row.outcome == "none"]
     if none:
         said.append(f"Without an answer: {_list(none)}.")

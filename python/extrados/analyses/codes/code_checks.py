@@ -114,9 +114,11 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     return lines, beside
 
 
-def spectrum_of(context: Context, model: CodeSpectrum | None) -> Callable[[float, float], float] | None:
+def spectrum_of(
+    context: Context, model: CodeSpectrum | None, key: str = "spectrum"
+) -> Callable[[float, float], float] | None:
     """Pseudo-acceleration [m/s^2] of the code over period and damping ratio, whatever the seed of the motion; None
-    without a spectrum.
+    without a spectrum. key: of the analysis that says it, for what is wrong with it.
     """
     if model is None and isinstance(context.deck.motion, Compatible):
         model = context.deck.motion
@@ -127,7 +129,7 @@ def spectrum_of(context: Context, model: CodeSpectrum | None) -> Callable[[float
         try:
             value = float(code_spectrum(model, context.deck.folder, damping)(np.array([period]))[0])
         except ValueError as error:
-            raise Refused(str(error), ("analysis", "spectrum")) from None
+            raise Refused(str(error), ("analysis", key)) from None
         # ASCE 7 and a table are of 5 %; at period zero the ground itself has no damping
         five = model.code in ("ASCE7", "table") and period > 0.0
         return value * (damping_factor(damping) if five else 1.0)

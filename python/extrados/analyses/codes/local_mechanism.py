@@ -1,21 +1,24 @@
 """local-mechanism: facades, corners, gables, parapets, towers and any building's own mechanism by the rules of codes."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from extrados.analyses.codes import ntc
-from extrados.analyses.codes.code_checks import demanded_spectrum
+from extrados.analyses.codes.code_checks import demanded_spectrum, spectrum_of
 from extrados.analyses.codes.code_rules import Line
-from extrados.analyses.codes.kinematics import Capacity, capacity
+from extrados.analyses.codes.kinematics import Capacity, Overturning, capacity
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.tables import LocalMechanism
+from extrados.analyses.codes.walls import WallPart, wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import limit_of
 from extrados.analyses.limit.tables import Tilt
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, members_of
+from extrados.building.templates.plan import Plan
 from extrados.core.errors import CoreError
 from extrados.core.restraints import FREE
 from extrados.limit.linkage import laden
@@ -28,55 +31,128 @@ SLENDER = {"one-story": (20, 16, 13), "first": (20, 18, 15), "top": (14, 14, 9),
 STEPS = 61
 
 
+@dataclass(frozen=True)
+class _Turning:
+    """A mechanism: its capacity, its curve (displacement [m], multiplier), in words, and the keys that its checks take."""
+
+    found: Capacity
+    curve: tuple[np.ndarray, np.ndarray]
+    words: str
+    options: LocalMechanism
+    part: WallPart | None = None
+
+
 def run(context: Context, options: LocalMechanism) -> Result:
     """Multiplier, M*, a_0*, capacity curve, and the checks of the codes that apply."""
     material = context.building.material
+    if options.mechanism == "building" and isinstance(context.building.structure, Plan):
+        return _walls(context, options)
     if options.mechanism == "building":
-        found, curve, words = _of_building(context)
+        turning = _Turning(*_of_building(context), options)
     else:
         if options.mechanism == "corner" and material.compressive_strength is not None:
             context.warnings.append("a corner turns about its outer edge, as if the stone did not crush there")
         body = overturning(options, material.density, material.compressive_strength)
-        alpha0 = body.multiplier()
-        weight, displacement = body.swaying
-        end, alone = body.ultimate(), body.alone
-        found = capacity(alpha0, weight, displacement, alone.ultimate(), alone.multiplier())
-        turned = np.linspace(0.0, end if end else 0.1, STEPS)
-        scale = float(weight @ displacement**2) / float(weight @ displacement)
-        curve = (turned * scale, np.array([body.multiplier(q) for q in turned]))
-        words = f"the {options.mechanism}"
+        turning = _body(body, f"the {options.mechanism}", options)
+    found = turning.found
     if found.alpha0 <= 0.0:
-        raise Refused(f"{words} does not stand at rest: its multiplier is {found.alpha0:.3g}")
+        raise Refused(f"{turning.words} does not stand at rest: its multiplier is {found.alpha0:.3g}")
     if found.d0 is None and found.alone <= 0.0:
         context.warnings.append(
             "without its ties it would not stand at rest: the nonlinear check, which does not count on them, is left out"
         )
-    lines, more = _checks(context, options, found)
-    a0 = found.acceleration / options.confidence_factor
-    d0 = found.d0
-    r = out.LocalMechanism(
+    lines, more = _checks(context, turning.options, found)
+    return _result(turning, _results(turning, lines, more), lines)
+
+
+def _body(body: Overturning, words: str, options: LocalMechanism, part: WallPart | None = None) -> _Turning:
+    """A body that turns about a hinge."""
+    weight, displacement = body.swaying
+    end, alone = body.ultimate(), body.alone
+    found = capacity(body.multiplier(), weight, displacement, alone.ultimate(), alone.multiplier())
+    turned = np.linspace(0.0, end if end else 0.1, STEPS)
+    scale = float(weight @ displacement**2) / float(weight @ displacement)
+    return _Turning(found, (turned * scale, np.array([body.multiplier(q) for q in turned])), words, options, part)
+
+
+def _walls(context: Context, options: LocalMechanism) -> Result:
+    """Every wall of a building on a plan, above the foot of each of its storeys; that with the least margin stands for all,
+    where nothing is asked that with the least a_0*."""
+    plan = context.building.structure
+    assert isinstance(plan, Plan)
+    rows = []
+    for part in wall_parts(context.building):
+        own = options.model_copy(
+            update={
+                "base_height": part.foot, "building_height": float(plan.levels[-1]),
+                "storeys": max(options.storeys, len(plan.storeys)),
+            }
+        )  # fmt: skip
+        above = "" if part.storey == 1 else f" above the foot of storey {part.storey}"
+        turning = _body(part.body, f"wall {part.wall}{above}", own, part)
+        lines, more = _checks(context, own, turning.found)
+        r = _results(turning, lines, more)
+        governing = r.governing()
+        rows.append((governing[0][0] if governing else None, r, turning, lines))
+    rows.sort(key=lambda row: (row[0] is None, row[0] or 0.0, row[1].activation_acceleration_g))
+    _, worst, turning, lines = rows[0]
+    walls = [
+        out.WallMechanism(
+            wall=t.part.wall, storey=t.part.storey, foot_m=t.part.foot, multiplier=r.multiplier,
+            activation_acceleration_g=r.activation_acceleration_g, zero_displacement_m=r.zero_displacement_m, margin=margin,
+        ) for margin, r, t, _ in rows if t.part is not None
+    ]  # fmt: skip
+    worst = worst.model_copy(update={"walls": walls})
+    result = _result(turning, worst, lines)
+    result.tables["walls"] = TableData(
+        {
+            name: [np.nan if (v := getattr(row, name)) is None else v for row in walls]
+            for name in out.WallMechanism.model_fields
+        }
+    )
+    result.answer += (
+        f" It is the weakest of {len(rows)} parts of {len(plan.walls)} walls, each taken apart from the walls across it; flexible floors, "
+        "joists and rods hold none, rigid floors and props do."
+    )
+    if plan.rods:
+        context.warnings.append(
+            "rods are left out: the deck does not say what their anchorage bears; give it to a `facade` of its own as `ties`"
+        )
+    return result
+
+
+def _results(turning: _Turning, lines: list[Line], more: dict[str, float]) -> out.LocalMechanism:
+    found, options = turning.found, turning.options
+    d0, fc = found.d0, options.confidence_factor
+    return out.LocalMechanism(
         mechanism=options.mechanism, multiplier=found.alpha0, participating_mass_kg=found.mass, participating_part=found.part,
-        activation_acceleration_g=a0 / GRAVITY, zero_displacement_m=d0,
+        activation_acceleration_g=found.acceleration / fc / GRAVITY, zero_displacement_m=d0,
         ultimate_displacement_m=None if d0 is None else ntc.SLV * d0, collapse_displacement_m=None if d0 is None else ntc.SLC * d0,
-        equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / options.confidence_factor, d0),
+        equivalent_period_s=None if d0 is None else ntc.equivalent_period(found.alone / fc, d0),
         swaying_weight_N=found.mass * GRAVITY / found.part,
         checks={x.rule: out.Check(capacity=x.capacity, demand=x.demand, unit=x.unit, verdict=x.verdict, source=x.source, note=x.note, code=x.code)
                 for x in lines}, **more,
     )  # fmt: skip
+
+
+def _result(turning: _Turning, r: out.LocalMechanism, lines: list[Line]) -> Result:
+    """Results with arrays, table and answer."""
+    found, curve, words, fc = turning.found, turning.curve, turning.words, turning.options.confidence_factor
     result = Result("local-mechanism", results=r)
     result.arrays = {
         "displacement": Array(curve[0], ("point",), "m", "d* of the equivalent oscillator"),
-        "acceleration": Array(curve[1] * GRAVITY / (found.part * options.confidence_factor) / GRAVITY, ("point",), "g", "a* of the capacity curve"),
+        "acceleration": Array(curve[1] * GRAVITY / (found.part * fc) / GRAVITY, ("point",), "g", "a* of the capacity curve"),
     }  # fmt: skip
     result.tables["local_mechanism"] = TableData({
         "rule": [x.rule for x in lines], "capacity": [x.capacity for x in lines],
         "demand": [np.nan if x.demand is None else x.demand for x in lines], "unit": [x.unit for x in lines],
         "verdict": [x.verdict for x in lines], "source": [x.source for x in lines],
     })  # fmt: skip
+    d0 = found.d0
     limit = "" if d0 is None else f", and vanishes at d_0* = {d0:.3g} m"
     result.answer = (
         f"{words[:1].upper()}{words[1:]} starts at alpha_0 = {found.alpha0:.4g}; {100 * found.part:.3g} % of its swaying weight take part "
-        f"(M* = {found.mass:.4g} kg), a_0* = {a0 / GRAVITY:.4g} g with FC {options.confidence_factor:g}{limit}. {r.overall().statement}"
+        f"(M* = {found.mass:.4g} kg), a_0* = {r.activation_acceleration_g:.4g} g with FC {fc:g}{limit}. {r.overall().statement}"
     )
     return result
 
@@ -174,6 +250,11 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
         note += f", z/H {options.base_height / height:.3g}"
     fc = options.confidence_factor
     lines = ntc.checks(found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc)
+    if options.collapse_spectrum is not None and found.d0 is not None:
+        rare, above = spectrum_of(context, options.collapse_spectrum, "collapse_spectrum"), None
+        if options.base_height > 0.0 and height is not None:
+            above = ntc.floor(rare, options.base_height, height, options.storeys, options.building_period)
+        lines.append(ntc.collapse_check(found.alone / fc, found.d0, rare, above))
     more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
     if height is not None and options.base_height > 0.0 and a_g is not None:
         part = a_g / GRAVITY * (3.0 * (1.0 + options.base_height / height) / 2.0 - 0.5)

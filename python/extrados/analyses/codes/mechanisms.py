@@ -71,11 +71,17 @@ def _upright(options: LocalMechanism, density: float, strength: float | None) ->
     if options.side_walls is not None:
         weights, pushes = _with_side_walls(options, density, height, weights, pushes)
     if strength is not None:
-        setback = 2.0 * sum(w.weight for w in weights) / (3.0 * strength * width)
-        if setback >= thickness / 2.0:
-            raise Refused("the weight alone crushes the wall at the hinge", ("material", "compressive_strength"))
-        weights = [Weight(w.weight, w.arm - setback, w.height, w.sways) for w in weights]
+        weights = set_back(weights, strength, width, thickness)
     return Overturning(tuple(weights), tuple(pushes))
+
+
+def set_back(weights: list[Weight], strength: float, width: float, thickness: float) -> list[Weight]:
+    """Weights about a hinge that lies within the wall by 2 P/(3 f_d w), for a strength f_d [Pa] and a width w [m]; Refused where
+    that is the middle of the thickness [m]."""
+    setback = 2.0 * sum(w.weight for w in weights) / (3.0 * strength * width)
+    if setback >= thickness / 2.0:
+        raise Refused("the weight alone crushes the wall at the hinge", ("material", "compressive_strength"))
+    return [Weight(w.weight, w.arm - setback, w.height, w.sways) for w in weights]
 
 
 def _with_side_walls(

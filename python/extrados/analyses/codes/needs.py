@@ -5,10 +5,12 @@ from collections.abc import Iterator
 
 from extrados.analyses.codes.mechanisms import overturning
 from extrados.analyses.codes.tables import CodeChecks, LocalMechanism
+from extrados.analyses.codes.walls import wall_parts
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.needs import Need
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
+from extrados.building.templates.plan import Plan
 
 
 def needs(context: Context, options: Analysis) -> Iterator[Need]:
@@ -17,6 +19,8 @@ def needs(context: Context, options: Analysis) -> Iterator[Need]:
     if isinstance(options, LocalMechanism):
         if options.mechanism == "building":
             yield lambda: _refuse_nothing(building)
+            if isinstance(structure, Plan):
+                yield lambda: wall_parts(building)
         else:
             yield lambda: overturning(options, building.material.density, building.material.compressive_strength)
     if not isinstance(options, CodeChecks):

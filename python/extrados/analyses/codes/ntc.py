@@ -14,17 +14,19 @@ Spectrum = Callable[[float, float], float]
 
 #: Of the displacement d_0 at which the capacity vanishes: d_SLV and d_SLC (C8.7.1.2.1.6)
 SLV, SLC = 0.4, 0.6
-#: T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) [C8.7.1.10], and the damping of the mechanism there (C8.7.1.2.1.8)
+#: T_SLV = 1.68 pi sqrt(d_SLV/a(d_SLV)) [C8.7.1.10], T_SLC = 1.56 pi sqrt(d_SLC/a(d_SLC)) [C8.7.1.11], and the damping of the
+#: mechanism in each (C8.7.1.2.1.8)
 PERIOD, DAMPING = 1.68, 0.08
+COLLAPSE_PERIOD, COLLAPSE_DAMPING = 1.56, 0.10
 #: Of the floor spectrum: a and b between which it is greatest, and the damping of the building [%] (C7.2.3)
 A, B, BUILDING_DAMPING = 0.8, 1.1, 5.0
 #: Periods up to T_SLV at which the demand is looked for
 GRID = 60
 
 
-def equivalent_period(a0: float, d0: float) -> float:
-    """T_SLV [s] on the straight capacity curve from a0 [m/s^2] to 0 at d0 [m]."""
-    return float(PERIOD * np.pi * np.sqrt(SLV * d0 / (a0 * (1.0 - SLV))))
+def equivalent_period(a0: float, d0: float, part: float = SLV, factor: float = PERIOD) -> float:
+    """T_SLV [s] on the straight capacity curve from a0 [m/s^2] to 0 at d0 [m]; T_SLC by its own part of d0 and factor."""
+    return float(factor * np.pi * np.sqrt(part * d0 / (a0 * (1.0 - part))))
 
 
 def displacement(spectrum: Spectrum, period: float, damping: float = DAMPING, peak: float | None = None) -> float:
@@ -100,3 +102,21 @@ def checks(
                  "[C8.7.1.10], [C8.7.1.12]", f"T_SLV = {period:.3f} s", "NTC 2018")
         )  # fmt: skip
     return lines
+
+
+def collapse_check(alone: float, d0: float, spectrum: Spectrum | None, at_height: Floor | None) -> Line:
+    """The displacement at SLC, by the spectrum of SLC or the floor's of it; what holds at SLV does not stand for it.
+
+    alone: a0* [m/s^2] of the curve that falls to 0 at d0 [m].
+    """
+    period = equivalent_period(alone, d0, SLC, COLLAPSE_PERIOD)
+    asked = None
+    if at_height is not None:
+        asked = displacement(at_height, period, COLLAPSE_DAMPING, peak=B * at_height.first)
+    elif spectrum is not None:
+        asked = displacement(spectrum, period, COLLAPSE_DAMPING)
+    return Line(
+        "NTC nonlinear at SLC", "displacement", SLC * d0, asked, "m",
+        "NTC 2018, Circ. 7/2019 C8.7.1.2.1.8: d_SLC = 0.6 d_0 >= S_D(T_SLC) at 10 %, T_SLC = 1.56 pi sqrt(d_SLC/a(d_SLC)) [C8.7.1.11]",
+        f"T_SLC = {period:.3f} s", "NTC 2018, SLC",
+    )  # fmt: skip

@@ -78,7 +78,7 @@ class LocalMechanism(BuildingAnalysis):
     }  # fmt: skip
     mechanism: Literal["facade", "corner", "gable", "parapet", "wall", "tower", "building"] = key(
         about="facade, corner of two walls, gable, parapet on a building, free-standing wall, tower as one body; or `building`, "
-        "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults)"
+        "the collapse mechanism of the deck's [structure] (triumphal arches, bridges, vaults), of a building on a plan its walls"
     )
     height: Length | None = key(None, "top of what turns, above the foot of the wall", gt=0)
     thickness: Length | None = key(None, "thickness at the hinge", gt=0)
@@ -94,6 +94,11 @@ class LocalMechanism(BuildingAnalysis):
         source="EN 1998-1 3.2.2; NTC 2018 3.2.3",
     )
     peak_acceleration: Acceleration | None = key(None, "demand a_g S; default that of the spectrum", gt=0)
+    collapse_spectrum: CodeSpectrum | None = key(
+        None,
+        "elastic spectrum of the site for the limit state of collapse, SLC; asks for the check of d_SLC, which stands beside those at SLV",
+        source="Circ. 7/2019, C8.7.1.2.1.8",
+    )
     motion_spectrum: bool = key(
         False, "where there is no spectrum of a code, take the response spectrum of the deck's motion"
     )

@@ -18,13 +18,18 @@ def run(context: Context, options: DemParameters) -> Result:
     constants = {
         name: impact_rules.damping_constant(float(v.impact.of(name).max())) for name in ("rotation", "corner", "edge")
     }
-    ratios = v.ratios()
+    each = {
+        name: impact_rules.damping_ratio(v.beta, v.impact.of(name), options.mass_damping)
+        for name in ("rotation", "corner", "edge")
+    }
+    ratios = {name: float(of_joints.min()) for name, of_joints in each.items()}
     result.results = out.DemParameters(
         joint_stiffness_min_Pa_per_m=float(v.stiffness.min()),
         joint_stiffness_max_Pa_per_m=float(v.stiffness.max()),
         **{f"{name}_frequency_rad_s": float(v.impact.of(name).max()) for name in ("rotation", "corner", "edge")},
         **{f"critical_beta_{name}_s": constants[name] for name in constants},
         beta_s=v.beta,
+        mass_damping_per_s=options.mass_damping,
         **{f"damping_ratio_{name}": ratios[name] for name in ratios},
         convention=context.building.joints.stiffness_rule,
     )
@@ -36,10 +41,7 @@ def run(context: Context, options: DemParameters) -> Result:
         "rotation_frequency": v.impact.rotation,
         "corner_frequency": v.impact.corner,
         "edge_frequency": v.impact.edge,
-        **{
-            f"damping_ratio_{name}": impact_rules.damping_ratio(v.beta, v.impact.of(name))
-            for name in ("rotation", "corner", "edge")
-        },
+        **{f"damping_ratio_{name}": of_joints for name, of_joints in each.items()},
     }
     units = {"stiffness": "Pa/m", "stone_length": "m"}
     units |= {f"{name}_frequency": "rad/s" for name in ("rotation", "corner", "edge")}

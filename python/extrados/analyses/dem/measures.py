@@ -8,7 +8,7 @@ from extrados.analyses.dem.model import Model
 from extrados.analyses.dem.tables import Dem
 from extrados.building.geometry.assembly import GROUND
 from extrados.building.geometry.rigid import FOOTING
-from extrados.core import dem
+from extrados.core import dem, dem3
 from extrados.results.dem import APART, CLOSED, HINGED_FIRST, HINGED_SECOND, Convergence
 from extrados.results.model import Array, TableData
 from extrados.schema.constants import GRAVITY
@@ -109,6 +109,12 @@ def outcome(run: dem.Run, state: np.ndarray, farthest: float, limit: float) -> s
     if run.reason in ("collapse", "left") or farthest > limit:
         return "collapse"
     return "recovery" if (state != CLOSED).any() else "no-hinging"
+
+
+def peak_displacement(run: dem.Run | dem3.Run, farthest: float, limit: float) -> float:
+    """Greatest displacement of any block [m]: `farthest` of the output times; a run that was stopped since a block had passed
+    the limit [m] was stopped between two of them."""
+    return max(farthest, limit) if run.reason == "collapse" else farthest
 
 
 def collapse_time(run: dem.Run, far: np.ndarray, limit: float) -> float | None:

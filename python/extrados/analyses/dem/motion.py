@@ -109,7 +109,7 @@ def _numbers(options: Dem, trial: Trial, found: dem.Run, seen: Seen) -> dict[str
         "still_moving": found.reason == "end" and measures.moving(found, model),
         "peak_rotation_rad": {names[i]: float(seen.rotation[peak[i], i]) for i in seen.tracked},
         "collapse_displacement_m": trial.limit,
-        "peak_displacement_m": seen.farthest,
+        "peak_displacement_m": measures.peak_displacement(found, seen.farthest, trial.limit),
         "peak_slip_m": seen.sliding,
         "peak_kinetic_energy_J": float(found.energy["kinetic"].max(initial=0.0)),
         "friction_loss_J": float(found.energy["friction"][-1]) if len(found.time) else 0.0,

@@ -90,7 +90,7 @@ def _numbers(options: Dem, model: SolidModel, found: dem3.Run, seen: SolidsSeen)
         "contacts": len(model.assembly.a),
         "peak_rotation_rad": {names[i]: float(angle[i]) for i in seen.tracked},
         "collapse_displacement_m": limit,
-        "peak_displacement_m": float(seen.far.max(initial=0.0)),
+        "peak_displacement_m": measures.peak_displacement(found, float(seen.far.max(initial=0.0)), limit),
         "final_displacement_m": float(apart[-1].max(initial=0.0)) if len(found.time) else 0.0,
         "peak_opening_m": float(np.where(seen.state == out.APART, 0.0, seen.opening).max(initial=0.0)),
         "peak_slip_m": seen.sliding,

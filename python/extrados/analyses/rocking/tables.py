@@ -86,7 +86,7 @@ class FailureCurves(RockingTable):
     kind: Literal["failure-curves"]
     bears: ClassVar = (*HOLDS, *SOFT_BASE)
     soft_base: ClassVar = True
-    variants: list[dict[str, float | str]] = key(
+    variants: list[dict[str, int | float | str]] = key(
         [],
         "changes of [structure], a curve each, such as `{ radius = 5.0 }`; none: the structure as it is",
         max_length=24,

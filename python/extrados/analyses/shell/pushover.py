@@ -109,12 +109,12 @@ def _stages(
             context, own, options.model_copy(update={"probes": [] if prefix else options.probes}), curve, elastic
         )
         _describe(result, own, curve, prefix)
-        force = curve.force(own.unit)
+        held = curve.force(own.unit)[curve.events.equilibrium]
         rows.append(
             found
             | {
                 "name": options.stage_names[k], "prefix": prefix, "of": "settlement" if own.driven else "push",
-                "start_load_N": curve.already, "end_load_N": float(force[-1]) if len(force) else None,
+                "start_load_N": curve.already, "end_load_N": float(held[-1]) if len(held) else None,
             }
         )  # fmt: skip
         if not prefix:
@@ -502,7 +502,7 @@ def _answer(building: Building, options: Pushover, numbers: dict[str, Any]) -> s
 def _stage_told(stage: dict[str, Any]) -> str:
     end = stage["end_load_N"]
     if end is None:
-        return f"{stage['name']} without an event"
+        return f"{stage['name']} without a state in equilibrium"
     if stage["of"] == "settlement":
         return f"{stage['name']}, the ground gives way, {stage['damaged_points']} points crack"
     return f"{stage['name']}, a push to {stage['sense']}, ends at {end / 1e3:.4g} kN by: {stage['stop']}"

@@ -29,6 +29,7 @@ def run_stages(
     """
     found: list[tuple[ShellModel, Curve]] = []
     with model.open(options, threads) as core_model:
+        sound = {d: _compliance(core_model, mass_push(model, options, d)[0]) for d in _directions(options)}
         warnings: list[str] = []
         stage_a, _ = bring_on_constant_loads(core_model, model, options, progress, warnings, chain(["A"]))
         if stage_a is not None and stage_a.interrupted:
@@ -38,8 +39,7 @@ def run_stages(
         applied, moved, damage = model.constant, model.settled.copy(), core_model.damage()
         ledger, events = (0.0, 0.0, 0.0), 0
         if stage_a is not None and len(stage_a):
-            ledger = (float(stage_a.external[-1]), float(stage_a.dissipated[-1]), float(stage_a.crack[-1]))
-            events = int(stage_a.number[-1])
+            ledger, events = stage_a.ledger, int(stage_a.number[-1])
         pushed: list[tuple[np.ndarray, float]] = []  # the load of each push, and its multiplier
         for k, stage in enumerate(options.stages):
             name = options.stage_names[k]
@@ -63,6 +63,10 @@ def run_stages(
             )  # fmt: skip
             told = lambda done, total, text, name=name: progress(done, total, f"stage {name}, {text}")  # noqa: E731
             stop = _stop(model, staged, stage, before, k)
+            if not staged.driven:
+                # A mechanism by the compliance of the building as it was: a stage may begin with little of it left
+                softer = _softness(core_model, staged.reference, start) / sound[_direction(options, stage)]
+                stop = replace(stop, compliance=max(model.mechanism_ratio / softer, 1.0))
             curve = run_reference_loads(core_model, staged, own, 1, told, False, chain([k, damage, moved]), stop)
             curve.name, curve.before, curve.damage_start, curve.unit = name, before, damage, staged.unit
             curve.acceleration = staged.acceleration
@@ -71,20 +75,11 @@ def run_stages(
                 curve.stage_a = stage_a
                 curve.warnings += warnings
             found.append((staged, curve))
+            if not curve.leads_on(options.stage_names[k + 1 :]):
+                break
             done = curve.events
-            if done.interrupted:
-                break
-            if not len(done) or not done.equilibrium[-1] or done.reason == "mechanism":
-                if k + 1 < len(options.stages):
-                    curve.warnings.append(
-                        f"stage {name} ended by: {done.reason or 'number of events'}, without a state in equilibrium to go on "
-                        f"from; not run: {', '.join(options.stage_names[k + 1 :])}"
-                    )
-                break
-            reached = float(done.load[-1])
-            damage = curve.damage_end
-            events = int(done.number[-1])
-            ledger = (float(done.external[-1]), float(done.dissipated[-1]), float(done.crack[-1]))
+            reached, damage = float(done.load[-1]), curve.damage_end
+            ledger, events = done.ledger, int(done.number[-1])
             applied = staged.constant + reached * staged.reference
             if staged.driven:
                 moved = moved + reached * staged.rate
@@ -108,8 +103,7 @@ def _staged(
             model, constant=applied, reference=np.zeros_like(applied), unit=1.0, acceleration=None, rate=rate, settled=NOWHERE,
             stands=moved,
         )  # fmt: skip
-    direction = options.direction if stage.direction is None else stage.direction
-    force, along = mass_push(model, options, direction)
+    force, along = mass_push(model, options, _direction(options, stage))
     sign = 1.0 if stage.sense == "+" else -1.0
     axis, control = np.flatnonzero(along), model.control
     if options.control is None and stage.direction is not None:
@@ -131,6 +125,26 @@ def _staged(
         model, constant=applied, reference=reference, unit=unit, already=unit * already, along=along, settled=NOWHERE,
         stands=moved, control=core.Monitor(control.node, control.direction, sign * control.share),
     )  # fmt: skip
+
+
+def _direction(options: Pushover, stage: PushStage) -> float:
+    return options.direction if stage.direction is None else stage.direction
+
+
+def _directions(options: Pushover) -> set[float]:
+    """Of all pushes [deg]."""
+    return {_direction(options, stage) for stage in options.stages if not stage.settlements}
+
+
+def _compliance(core_model: core.Model, force: np.ndarray) -> float:
+    """Work of forces on the displacements of their own [J]."""
+    core_model.loads(np.zeros_like(force), force)
+    return float((force * core_model.displacement(1.0)).sum())
+
+
+def _softness(core_model: core.Model, force: np.ndarray, start: np.ndarray) -> float:
+    """The same in the state that the core has, beyond the displacements of what is on already [J]."""
+    return float((force * (core_model.displacement(1.0) - start)).sum())
 
 
 def _of_ground(staged: ShellModel) -> core.Monitor:

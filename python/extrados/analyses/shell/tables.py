@@ -4,7 +4,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from extrados.analyses.sla.tables import CrackOptions
+from extrados.analyses.sla.tables import CrackOptions, Staged
 from extrados.analyses.table import BuildingAnalysis
 from extrados.building.mesh.shells import ShellOptions
 from extrados.building.places import Range
@@ -109,7 +109,7 @@ class FrameRules(Table):
     )
 
 
-class Pushover(CrackOptions, BuildingAnalysis):
+class Pushover(Staged, CrackOptions, BuildingAnalysis):
     """The push of a building of walls and floors, or of a vault or dome as a shell, by growing horizontal forces; cracks event
     by event."""
 
@@ -183,10 +183,13 @@ class Pushover(CrackOptions, BuildingAnalysis):
     def _consistent(self) -> "Pushover":
         if len(set(self.directions)) < len(self.directions):
             raise ValueError(f"directions: each sense may stand once, not {self.directions}")
-        if self.stages:
-            self._consistent_stages()
-        elif self.main_stage is not None:
-            raise ValueError("main_stage names one of `stages`, and there are none")
+        self.check_stages(
+            {
+                "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
+                "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
+                "constant_damage = false": not self.constant_damage,
+            }
+        )  # fmt: skip
         if self.settlements and not self.constant_damage:
             raise ValueError("settlements come with the weight: they need constant_damage = true")
         if self.drives and self.pattern != "mass":
@@ -198,28 +201,9 @@ class Pushover(CrackOptions, BuildingAnalysis):
         return self
 
     @property
-    def stage_names(self) -> list[str]:
-        """The names of the stages, their numbers where they have none."""
-        return [stage.name or str(k) for k, stage in enumerate(self.stages, 1)]
-
-    @property
     def main(self) -> int:
         """The stage that stands for the analysis, from 0."""
         if self.main_stage is not None:
             return self.stage_names.index(self.main_stage)
         pushes = [k for k, stage in enumerate(self.stages) if not stage.settlements]
         return pushes[-1] if pushes else len(self.stages) - 1
-
-    def _consistent_stages(self) -> None:
-        names = self.stage_names
-        if len(set(names)) < len(names):
-            raise ValueError(f"stages: a name stands twice among {', '.join(names)}")
-        if self.main_stage is not None and self.main_stage not in names:
-            raise ValueError(f"main_stage: there is no stage '{self.main_stage}'; there are {', '.join(names)}")
-        alone = {
-            "directions": self.directions != ["+"], "drives": bool(self.drives), "variants": bool(self.variants),
-            "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
-            "constant_damage = false": not self.constant_damage,
-        }  # fmt: skip
-        if clash := [name for name, given in alone.items() if given]:
-            raise ValueError(f"{', '.join(clash)} cannot stand beside stages: say it in a stage, or run without stages")

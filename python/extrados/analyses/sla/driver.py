@@ -10,7 +10,7 @@ from extrados.analyses.context import Context
 from extrados.analyses.sla.bar_forces import bar_arrays
 from extrados.analyses.sla.events import Curve, run_curves
 from extrados.analyses.sla.measured import arrays, compare, read_measured
-from extrados.analyses.sla.measures import joint_openings, numbers_of, tooth_counts
+from extrados.analyses.sla.measures import far_away, joint_openings, numbers_of, tooth_counts
 from extrados.analyses.sla.model import SlaModel, build, strength_factors
 from extrados.analyses.sla.repetitions import repeat
 from extrados.analyses.sla.resume import carry_on, makeup, start_of
@@ -131,6 +131,8 @@ def _describe(result: Result, model: SlaModel, options: Sla, curves: list[Curve]
                 f"the load{sense} had not passed a peak when the run ended by: {events.reason or 'number of events'}; its "
                 f"greatest value, {curve.force(model.unit)[curve.peak]:.4g} N, is no capacity"
             )
+        if far := far_away(model, curve):
+            result.warnings.append(far)
         if len(events) and events.load[0] < 0.0 and not curve.name:
             result.warnings.append(
                 f"the first event{sense} has a negative load, {events.load[0] * model.unit:.4g} N: the constant loads "

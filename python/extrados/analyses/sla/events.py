@@ -91,6 +91,20 @@ class Curve:
             return True
         return fallen(*self.envelope(unit))
 
+    def leads_on(self, left: list[str]) -> bool:
+        """Does this stage end in a state from which another can go on? If not, a warning names those that are `left`."""
+        events = self.events
+        if events.interrupted:
+            return False
+        if len(events) and events.equilibrium[-1] and events.reason != "mechanism":
+            return True
+        if left:
+            self.warnings.append(
+                f"stage {self.name} ended by: {events.reason or 'number of events'}, without a state in equilibrium to go on "
+                f"from; not run: {', '.join(left)}"
+            )
+        return False
+
     @staticmethod
     def stopped(core_model: core.Model, stage_a: core.Events) -> "Curve":
         """No event of the reference load: the run was interrupted under the constant loads."""

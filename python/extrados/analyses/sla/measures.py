@@ -14,6 +14,10 @@ from extrados.core.sla import EVENT, teeth
 from extrados.results.model import Result, TableData
 from extrados.schema.constants import GRAVITY
 
+#: Displacements are taken as small: beyond this part of the building's greatest extent no load is told without a word
+FAR = 0.1
+#: Part of the greatest load whose displacement is told beside it
+NEARLY = 0.99
 #: Open part of a joint from which it counts as a hinge, and the part of the widest opening that it must have
 HINGE, WIDE = 0.9, 0.1
 
@@ -78,6 +82,27 @@ def numbers_of(model: SlaModel, options: Sla, curve: Curve) -> dict[str, Any]:
             "ductility": idea.ductility,
         }  # fmt: skip
     return numbers
+
+
+def far_away(model: SlaModel, curve: Curve) -> str | None:
+    """A warning where the greatest load comes with a displacement that small displacements do not cover.
+
+    Mechanisms of stones tend to a load that they reach in the end only, and a wall that nothing crushes bears ever more.
+    """
+    if curve.peak < 0:
+        return None
+    load, moved = curve.force(model.unit), curve.events.monitors[:, 0]
+    size = float(np.ptp(model.mesh.xy, axis=0).max())
+    if not abs(moved[curve.peak] - curve.before) > FAR * size:
+        return None
+    nearly = int(np.argmax(curve.events.equilibrium & (load >= NEARLY * load[curve.peak])))
+    text = (
+        f"the greatest load comes with a displacement of {moved[curve.peak]:.3g} m in a building of {size:.3g} m, and "
+        "displacements are taken as small: it is what the load tends to"
+    )
+    if abs(moved[nearly] - curve.before) > FAR * size:
+        return f"{text} where no strength limits it, and no capacity"
+    return f"{text}; {100.0 * NEARLY:.0f} % of it come at {1e3 * moved[nearly]:.3g} mm"
 
 
 def _acceleration(model: SlaModel, peak: float | None, greatest: float | None) -> dict[str, float | None]:

@@ -121,7 +121,7 @@ def run_stages(
             supports.held.copy(), [],
         )  # fmt: skip
         if stage_a is not None and len(stage_a):
-            wall.ledger = (float(stage_a.external[-1]), float(stage_a.dissipated[-1]), float(stage_a.crack[-1]))
+            wall.ledger = stage_a.ledger
             wall.events = int(stage_a.number[-1])
         elif np.any(model.constant):  # they are on, and nothing cracked
             work = 0.5 * float((model.constant * wall.displacement).sum())
@@ -158,14 +158,7 @@ def run_stages(
                 )
             curves.append(curve)
             events = curve.events
-            if events.interrupted:
-                break
-            if not len(events) or not events.equilibrium[-1] or events.reason == "mechanism":
-                if k + 1 < len(options.stages):
-                    curve.warnings.append(
-                        f"stage {name} ended by: {events.reason or 'number of events'}, without a state in equilibrium to "
-                        f"go on from; not run: {', '.join(options.stage_names[k + 1 :])}"
-                    )
+            if not curve.leads_on(options.stage_names[k + 1 :]):
                 break
             reached = float(events.load[-1])
             core_model.set_damage(curve.damage_end)  # the state of the peak was found again since
@@ -174,7 +167,7 @@ def run_stages(
             core_model.end_stage(reached)
             wall.damage = core_model.damage()
             wall.applied = staged.constant + reached * staged.reference
-            wall.ledger = (float(events.external[-1]), float(events.dissipated[-1]), float(events.crack[-1]))
+            wall.ledger = events.ledger
             if model.slides:
                 # Friction that slid is a spring again, whose energy was counted as dissipated
                 gained = _stored(core_model, staged, wall.applied, reached) - float(events.stored[-1])

@@ -1,6 +1,6 @@
 """The deck tables of sequentially linear analysis."""
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, field_validator, model_validator
 
@@ -163,7 +163,34 @@ class CrackOptions(Table):
     )
 
 
-class Sla(CrackOptions, BuildingAnalysis, Animated):
+class Staged:
+    """Stages one after the other: their names, and what cannot stand beside them."""
+
+    if TYPE_CHECKING:
+        stages: list[Any]
+        main_stage: str | None
+
+    @property
+    def stage_names(self) -> list[str]:
+        """The names of the stages, their numbers where they have none."""
+        return [stage.name or str(k) for k, stage in enumerate(self.stages, 1)]
+
+    def check_stages(self, alone: dict[str, bool]) -> None:
+        """ValueError where a name stands twice, `main_stage` is none of them, or something is given that only stands `alone`."""
+        names = self.stage_names
+        if not self.stages:
+            if self.main_stage is not None:
+                raise ValueError("main_stage names one of `stages`, and there are none")
+            return
+        if len(set(names)) < len(names):
+            raise ValueError(f"stages: a name stands twice among {', '.join(names)}")
+        if self.main_stage is not None and self.main_stage not in names:
+            raise ValueError(f"main_stage: there is no stage '{self.main_stage}'; there are {', '.join(names)}")
+        if clash := [name for name, given in alone.items() if given]:
+            raise ValueError(f"{', '.join(clash)} cannot stand beside stages: say it in a stage, or run without stages")
+
+
+class Sla(Staged, CrackOptions, BuildingAnalysis, Animated):
     """Sequentially linear analysis: cracks event by event under constant loads A and growing loads lambda B."""
 
     kind: Literal["sla"]
@@ -275,10 +302,15 @@ class Sla(CrackOptions, BuildingAnalysis, Animated):
         if any(load.kind == "displacement" for load in self.constant or []):
             raise ValueError("a displacement cannot be a constant load: the freedoms it ties could not follow B")
         reference = self.reference or []
-        if self.stages:
-            self._consistent_stages()
-        elif self.main_stage is not None:
-            raise ValueError("main_stage names one of `stages`, and there are none")
+        self.check_stages(
+            {
+                "reference": self.reference is not None, "directions": self.directions != ["+"], "seeds": bool(self.seeds),
+                "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
+                "resume_from": self.resume_from is not None, 'solution = "incremental"': self.solution == "incremental",
+                'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
+                "constant_damage = false": not self.constant_damage,
+            }
+        )  # fmt: skip
         if sum(load.kind == "displacement" for load in reference) and len(reference) > 1:
             raise ValueError("a prescribed displacement stands alone in reference; give its places as parts")
         if len(set(self.seeds)) < len(self.seeds):
@@ -290,27 +322,6 @@ class Sla(CrackOptions, BuildingAnalysis, Animated):
         return self
 
     @property
-    def stage_names(self) -> list[str]:
-        """The names of the stages, their numbers where they have none."""
-        return [stage.name or str(k) for k, stage in enumerate(self.stages, 1)]
-
-    @property
     def main(self) -> int:
         """The stage that stands for the analysis, from 0."""
         return self.stage_names.index(self.main_stage) if self.main_stage is not None else len(self.stages) - 1
-
-    def _consistent_stages(self) -> None:
-        names = self.stage_names
-        if len(set(names)) < len(names):
-            raise ValueError(f"stages: a name stands twice among {', '.join(names)}")
-        if self.main_stage is not None and self.main_stage not in names:
-            raise ValueError(f"main_stage: there is no stage '{self.main_stage}'; there are {', '.join(names)}")
-        alone = {
-            "reference": self.reference is not None, "directions": self.directions != ["+"], "seeds": bool(self.seeds),
-            "target_displacement": self.target_displacement is not None, "stop_fraction": self.stop_fraction > 0.0,
-            "resume_from": self.resume_from is not None, 'solution = "incremental"': self.solution == "incremental",
-            'without_equilibrium = "proportional"': self.without_equilibrium == "proportional",
-            "constant_damage = false": not self.constant_damage,
-        }  # fmt: skip
-        if clash := [name for name, given in alone.items() if given]:
-            raise ValueError(f"{', '.join(clash)} cannot stand beside stages: say it in a stage, or run without stages")

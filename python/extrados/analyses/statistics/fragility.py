@@ -228,11 +228,16 @@ def _describe(
         "bin_count": Array(counts, ("bin",), "", "members that stay up"),
     }
     p, (low, high) = r["collapse_probability"], r["confidence_interval"]
+    many = context.deck.motion is None or is_set(context.deck.motion)
+    counted = (
+        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down" if many
+        else f"Of {r['count']} buildings of uncertain values {r['collapsed']} come down"
+    )  # fmt: skip
     result.answer = (
-        f"Of {r['count']} motions {r['collapsed']} bring the {base.word} down: probability of collapse {100 * p:.1f} % "
+        f"{counted}: probability of collapse {100 * p:.1f} % "
         f"({100 * options.confidence:g} % interval {100 * low:.1f} to {100 * high:.1f} %). It rocks in {100 * r['uplift_probability']:.1f} %; "
         f"the mean of the greatest rotation is {r['mean_peak_rotation_ratio']:.2f} of the critical one (collapse counted as 1). "
-        f"The motions have a median peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
+        f"The {'motions have a median' if many else 'motion has a'} peak acceleration of {r['median_pga_g']:.3f} g; uplift needs {base.uplift:.3f} g."
     ) if p is not None else "No motion could be run."  # fmt: skip
     if options.cloud:
         name, _, unit = INTENSITIES[options.intensity]

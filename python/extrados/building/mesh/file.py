@@ -24,6 +24,9 @@ IN_PARTS = {".xdmf", ".xmf", ".node", ".ele"}
 _INCLUDE = re.compile(rb"^\s*\*\s*include\b", re.IGNORECASE | re.MULTILINE)
 KINDS = {"triangle": "T3", "triangle6": "T6", "quad": "Q4", "quad8": "Q8"}
 LARGEST = 500_000_000  # bytes
+EXPECTED = "expected a whole file of gmsh, Abaqus, VTU or another format of its list, with the ending of its format"
+#: Farther from the origin no place of a building is [m]
+FARTHEST = 1e6
 
 
 def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]:
@@ -37,13 +40,25 @@ def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]
     _refuse_parts(file)
     try:
         # meshio prints its warnings and ends the process on some errors
-        with file.copied() as copy, contextlib.redirect_stdout(io.StringIO()):
+        quiet = io.StringIO()
+        with file.copied() as copy, contextlib.redirect_stdout(quiet), contextlib.redirect_stderr(quiet):
             mesh = meshio.read(copy)
-    except (SystemExit, Exception) as error:
-        raise BadGeometry(f"{path.name}: is not a mesh that meshio reads: {str(error) or 'unknown format'}") from None
+    except SystemExit:
+        raise BadGeometry(f"{path.name}: is not a mesh that meshio reads; {EXPECTED}") from None
+    except Exception as error:
+        text = re.sub(r"'?\S*extrados-\S*'?", "the file", str(error))  # the name of the copy
+        raise BadGeometry(
+            f"{path.name}: is not a mesh that meshio reads: {text or 'unknown format'}; {EXPECTED}"
+        ) from None
     points = np.asarray(mesh.points, dtype=float)
     if not np.isfinite(points).all():
         raise BadGeometry(f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place")
+    far = np.abs(points).max(initial=0.0) * wall.scale
+    if far > FARTHEST:
+        node = int(np.abs(points).max(axis=1).argmax()) + 1
+        raise BadGeometry(
+            f"{path.name}: node {node} lies {far:.3g} m from the origin; expected places within {FARTHEST:g} m"
+        )
     for cells in mesh.cells:
         data = np.asarray(cells.data)
         if data.size and (data.min() < 0 or data.max() >= len(points)):
@@ -56,7 +71,10 @@ def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]
 def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mesh:
     """The plane elements of a file, of one kind; other cells (lines, points) are passed over."""
     if wall.groups:
-        raise BadGeometry("groups are of shells in space, which `pushover` looks at; a plane wall takes regions")
+        raise BadGeometry(
+            "groups are of shells in space, which `pushover` looks at; a plane wall takes regions",
+            ("structure", "groups"),
+        )
     name, mesh = open_mesh(wall, building)
     found: dict[str, list[np.ndarray]] = {}
     for cells in mesh.cells:

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import BadGeometry, blaming
 from extrados.building.mesh.options import LARGEST_MESH
-from extrados.building.mesh.shells import Foot, ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane
+from extrados.building.mesh.shells import Foot, ShellBar, ShellMesh, ShellOptions, ShellPart, WallPlane, pieces
 from extrados.building.mesh.triangles import fill_ring
 from extrados.building.properties import Material
 from extrados.building.templates.plan import MEETS, Plan, PlanWall, Prestress, Rod, StoreyFloor, meeting, nearly_meeting
@@ -51,7 +51,10 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
     size = options.size or min(0.1 * plan.storeys[0], min(wall.length for wall in plan.walls) / 8.0)
     area = sum(wall.length for wall in plan.walls) * plan.levels[-1]
     if area / size**2 > LARGEST_MESH:
-        raise BadGeometry(f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}")
+        raise BadGeometry(
+            f"about {area / size**2:.2g} elements of {size:g} m: the most are {LARGEST_MESH:g}",
+            ("analysis", "mesh", "size"),
+        )
     warnings: list[str] = []
     junctions = {
         (a, b): at
@@ -64,25 +67,38 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
             warnings.append(
                 f"walls '{one.name}' and '{two.name}' end {gap:.3g} m apart and do not meet: nothing joins them"
             )
+    _check_corners(plan, junctions)
     grids = _grids(plan, junctions, size, warnings)
     xyz, number = _join(plan, grids, junctions)
     materials, names = [building.material, *building.materials.values()], list(building.materials)
-    parts = [_wall_part(plan, w, grids, junctions, number, names) for w in range(len(grids))]
+    parts = []
+    for w in range(len(grids)):
+        with blaming("walls", w):
+            parts.append(_wall_part(plan, w, grids, junctions, number, names))
     planes = [_plane(plan, grid) for grid in grids]
     mass, push = np.zeros(len(xyz)), np.zeros((len(xyz), 3))
     bars: list[ShellBar] = []
     grown = xyz
-    for floor in plan.floors:
-        grown, mass, push = _add_floor(
-            plan, floor, grids, number, grown, mass, push, parts, materials, bars, size, warnings
-        )
+    rings: dict[tuple[int, frozenset[int]], int] = {}
+    for k, floor in enumerate(plan.floors):
+        with blaming("floors", k):
+            walls, ring = _ring(plan, floor, grids, number, xyz)
+            if (first := rings.setdefault((floor.storey, frozenset(ring)), k)) != k:
+                raise BadGeometry(f"floor {first + 1} lies between the same walls on storey {floor.storey}")
+            grown, mass, push = _add_floor(
+                plan, floor, walls, ring, grids, number, grown, mass, push, parts, materials, bars, size
+            )
     used = np.zeros(len(grown), dtype=bool)
     for part in parts:
         used[part.connect] = True
-    for load in plan.prestress:
-        _prestress(plan, load, grids, number, used, push)
-    bars += [_rod(rod, k, grown, used, building) for k, rod in enumerate(plan.rods, 1)]
+    for k, load in enumerate(plan.prestress):
+        with blaming("prestress", k):
+            _prestress(plan, load, grids, number, used, push)
+    for k, rod in enumerate(plan.rods):
+        with blaming("rods", k):
+            bars.append(_rod(rod, k + 1, grown, used, building, size))
     held, springs = _supports(plan, parts, grown, used)
+    warnings += _apart(plan, parts, bars, grown)
     for prop in plan.props:
         w = next(i for i, wall in enumerate(plan.walls) if wall.name == prop.wall)
         nodes, _ = _level_nodes(plan, prop.storey, grids[w], number)
@@ -100,6 +116,43 @@ def mesh_plan(plan: Plan, building: "Building", options: ShellOptions) -> ShellM
         [(int(kept[n]), d, k) for n, d, k in springs], bars, mass[used], push[used], warnings,
         _feet(plan, grids, number, kept, used),
     )  # fmt: skip
+
+
+def _check_corners(plan: Plan, junctions: dict) -> None:
+    """BadGeometry where walls of a corner do not meet."""
+    names = [wall.name for wall in plan.walls]
+    for k, corner in enumerate(plan.corners):
+        if tuple(sorted(map(names.index, corner.walls))) not in junctions:
+            raise BadGeometry(
+                f"walls '{corner.walls[0]}' and '{corner.walls[1]}' do not meet", ("structure", "corners", k)
+            )
+
+
+def _apart(plan: Plan, parts: list[ShellPart], bars: list[ShellBar], xyz: np.ndarray) -> list[str]:
+    """What to tell of walls that nothing joins with the others; BadGeometry where a wall does not reach the ground."""
+    walls, ground = [part for part in parts if part.bends], xyz[:, 2] <= MEETS
+    piece = pieces(len(xyz), walls, bars)  # a floor holds no wall up
+    stands = np.isin(
+        piece, piece[ground & np.isin(np.arange(len(xyz)), np.concatenate([p.connect.ravel() for p in walls]))]
+    )
+    for part in walls:
+        loose = part.connect[~stands[part.connect[:, 0]]]
+        if len(loose):
+            x, y, z = xyz[loose].mean(axis=(0, 1))
+            raise BadGeometry(
+                f"wall '{part.name}': what of it is at x {x:.3g}, y {y:.3g}, z {z:.3g} m hangs on nothing: no masonry joins it with "
+                "the ground", ("structure", "walls", part.wall),
+            )  # fmt: skip
+    piece = pieces(len(xyz), parts, bars)
+    joined: dict[frozenset[int], list[str]] = {}
+    for part in walls:
+        joined.setdefault(frozenset(piece[part.connect[:, 0]].tolist()), []).append(part.name)
+    alone = [names for which, names in joined.items() if not any(which & other for other in joined if other != which)]
+    if len(alone) < 2:
+        return []
+    return [
+        f"nothing joins {' with '.join(', '.join(names) for names in alone)}: no corner, floor or rod; each stands by itself"
+    ]
 
 
 def _lines(breaks: Iterable[float], length: float, size: float, what: str, warnings: list[str]) -> np.ndarray:
@@ -210,6 +263,10 @@ def _wall_part(
     linear, strength = np.zeros(len(i), dtype=bool), np.ones(len(i))
     for *box, name in _lintels(plan, wall):
         inside = grid.cells((box[0], box[1]), (box[2], box[3]))[i, k]
+        if not inside.any():
+            raise BadGeometry(
+                f"wall '{wall.name}': a lintel at x {box[0]:g} to {box[1]:g}, z {box[2]:g} to {box[3]:g} m is all in openings"
+            )
         linear |= inside
         if name is not None:
             material[inside] = _named(name, names, f"a lintel of wall '{wall.name}'")
@@ -240,10 +297,8 @@ def _level_nodes(plan: Plan, storey: int, grid: _Grid, number: np.ndarray) -> tu
     return number[grid.number(i, np.full(len(i), k))], grid.s[i]
 
 
-def _ring(
-    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
-) -> tuple[list[int], list[int]]:
-    """Walls around a floor and the nodes on them in order, counter-clockwise."""
+def around(plan: Plan, floor: StoreyFloor) -> list[tuple[int, float, float]]:
+    """The walls around a floor in order: number, and the places along it where the one before and the one after meet it [m]."""
     what = f"floor on storey {floor.storey}"
     reach = [plan.reach(wall) for wall in plan.walls]
     names = floor.walls or [w.name for w, r in zip(plan.walls, reach, strict=True) if r[0] <= floor.storey <= r[1]]
@@ -256,10 +311,20 @@ def _ring(
         if at is None:
             raise BadGeometry(f"{what}: walls '{plan.walls[a].name}' and '{plan.walls[b].name}' do not meet")
         corners.append(at)
+    return [(w, corners[k - 1][1], corners[k][0]) for k, w in enumerate(walls)]
+
+
+def _ring(
+    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray
+) -> tuple[list[int], list[int]]:
+    """Walls around a floor and the nodes on them in order, counter-clockwise."""
+    what = f"floor on storey {floor.storey}"
+    walls = around(plan, floor)
     nodes: list[int] = []
-    for k, w in enumerate(walls):
-        start, end = corners[k - 1][1], corners[k][0]
+    for w, start, end in walls:
         own, s = _level_nodes(plan, floor.storey, grids[w], number)
+        if not len(own):
+            raise BadGeometry(f"{what}: wall '{plan.walls[w].name}' has no masonry there")
         inside = (s >= min(start, end) - MEETS) & (s <= max(start, end) + MEETS)
         order = np.argsort(s[inside] if end > start else -s[inside], kind="stable")
         nodes += own[inside][order].tolist()
@@ -273,7 +338,7 @@ def _ring(
     x, y = xyz[ring, 0], xyz[ring, 1]
     if np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y) < 0.0:
         ring.reverse()
-    return walls, ring
+    return [w for w, _, _ in walls], ring
 
 
 def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
@@ -295,11 +360,10 @@ def _in_order(plan: Plan, walls: list[int], what: str) -> list[int]:
 
 
 def _add_floor(
-    plan: Plan, floor: StoreyFloor, grids: list[_Grid], number: np.ndarray, xyz: np.ndarray, mass: np.ndarray, push: np.ndarray,
-    parts: list[ShellPart], materials: list[Material], bars: list[ShellBar], size: float, warnings: list[str],
+    plan: Plan, floor: StoreyFloor, walls: list[int], ring: list[int], grids: list[_Grid], number: np.ndarray, xyz: np.ndarray,
+    mass: np.ndarray, push: np.ndarray, parts: list[ShellPart], materials: list[Material], bars: list[ShellBar], size: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
-    """Elements, bars and masses of a floor; the nodes with those within it."""
-    walls, ring = _ring(plan, floor, grids, number, xyz)
+    """Elements, bars and masses of a floor between walls; the nodes with those within it."""
     level = float(plan.levels[floor.storey])
     outline = xyz[ring, :2]
     x, y = outline.T
@@ -377,9 +441,17 @@ def _prestress(
     push[nodes, 2] -= load.force * share / share.sum()
 
 
-def _rod(rod: Rod, k: int, xyz: np.ndarray, used: np.ndarray, building: "Building") -> ShellBar:
-    there = np.flatnonzero(used)
-    ends = [int(there[np.linalg.norm(xyz[there] - np.asarray(p), axis=1).argmin()]) for p in (rod.start, rod.end)]
+def _rod(rod: Rod, k: int, xyz: np.ndarray, used: np.ndarray, building: "Building", size: float) -> ShellBar:
+    there, ends = np.flatnonzero(used), []
+    for place in (rod.start, rod.end):
+        away = np.linalg.norm(xyz[there] - np.asarray(place), axis=1)
+        if away.min() > size:
+            x, y, z = xyz[there[away.argmin()]]
+            raise BadGeometry(
+                f"rod {k}: its end at {', '.join(f'{v:g}' for v in place)} m lies {away.min():.3g} m from the nearest node, at "
+                f"{x:g}, {y:g}, {z:g} m; expected a place on a wall, within an element ({size:g} m)"
+            )
+        ends.append(int(there[away.argmin()]))
     if ends[0] == ends[1]:
         raise BadGeometry(f"rod {k}: both of its ends are at one node")
     if rod.material not in building.materials:

@@ -7,7 +7,7 @@ import numpy as np
 from extrados.building.errors import BadGeometry, Key
 from extrados.building.mesh.file import open_mesh
 from extrados.building.mesh.options import LARGEST_MESH
-from extrados.building.mesh.shells import Foot, ShellMesh, ShellOptions, ShellPart, nodal_areas
+from extrados.building.mesh.shells import Foot, ShellMesh, ShellOptions, ShellPart, nodal_areas, pieces
 from extrados.building.templates.walls import MeshFile, MeshGroup
 from extrados.schema.constants import GRAVITY
 
@@ -26,15 +26,24 @@ NUMBERED = ("gmsh:physical", "medit:ref", "CellEntityIds", "group", "material", 
 HOLDS = {"fixed": range(6), "pinned": range(3), "vertical": (2,)}
 #: Distance of the corners of a quadrilateral from its plane, over its size, from which it is told
 WARPED = 0.1
+#: Area of a corner, over the square of the longest side, up to which an element is none
+LEAST = 1e-9
+#: Cosine of the angle at an edge below which two elements lie on each other
+ON_EACH_OTHER = 1.0 - 1e-6
+#: Nodes nearer to each other than this part of the size lie at one place
+APART = 1e-6
 
 
 def read_shell(structure: MeshFile, building: "Building", options: ShellOptions) -> ShellMesh:
     """The triangles and quadrilaterals of a file with what its groups say; BadGeometry names file, group and what fits."""
-    if structure.regions or structure.ties or structure.bars:
-        raise BadGeometry("regions, ties and bars are of a wall in a plane; shells in space take groups")
+    for name in ("regions", "ties", "bars"):
+        if getattr(structure, name):
+            raise BadGeometry(f"{name} are of a wall in a plane; shells in space take groups", ("structure", name))
     file, mesh = open_mesh(structure, building)
     if options.size is not None:
-        raise BadGeometry(f"{file}: the elements are those of the file; leave mesh.size out")
+        raise BadGeometry(
+            f"{file}: the elements are those of the file; leave mesh.size out", ("analysis", "mesh", "size")
+        )
     xyz = structure.scale * np.asarray(mesh.points, dtype=float)
     if xyz.shape[1] != 3:
         raise BadGeometry(f"{file}: its points have {xyz.shape[1]} coordinates; shells in space need 3")
@@ -47,6 +56,9 @@ def read_shell(structure: MeshFile, building: "Building", options: ShellOptions)
         raise BadGeometry(f"{file}: holds no shells; expected cells of kind {' or '.join(KINDS)}")
     if count > LARGEST_MESH:
         raise BadGeometry(f"{file}: {count} elements: the most are {LARGEST_MESH:g}")
+    for connect in shells.values():
+        _check_corners(xyz, connect, file)
+    _check_overlaps(xyz, list(shells.values()), file)
     known = _groups(mesh)
     there = ", ".join(sorted(known)) or "no groups"
     names = list(building.materials)
@@ -157,6 +169,103 @@ def _foot(name: str, nodes: np.ndarray, xyz: np.ndarray, middle: np.ndarray) -> 
     return Foot(name, nodes, np.tile(out, (len(nodes), 1)), np.arange(len(nodes), dtype=float))
 
 
+def _nodes_told(nodes: np.ndarray) -> str:
+    return ", ".join(str(n + 1) for n in nodes)
+
+
+def _check_corners(xyz: np.ndarray, connect: np.ndarray, file: str) -> None:
+    """BadGeometry where an element names a node twice, has no area, folds over itself or turns inward at a corner."""
+    word = "triangle" if connect.shape[1] == 3 else "quadrilateral"
+    c = xyz[connect]
+    twice = (np.diff(np.sort(connect, axis=1), axis=1) == 0).any(axis=1)
+    side = np.roll(c, -1, axis=1) - c
+    at = np.cross(np.roll(side, 1, axis=1), side)  # twice the area of the triangle at each corner
+    normal = at.sum(axis=1)
+    size = np.linalg.norm(side, axis=2).max(axis=1)
+    flat = np.linalg.norm(normal, axis=1) <= LEAST * size**2
+    unit = normal / np.where(flat, 1.0, np.linalg.norm(normal, axis=1))[:, None]
+    inward = (np.einsum("ecx,ex->ec", at, unit) <= LEAST * size[:, None] ** 2).any(axis=1)
+    for wrong, what in (
+        (twice, f"names a node twice; expected {connect.shape[1]} different ones"),
+        (flat, "has no area"),
+        (
+            inward,
+            "folds over itself, or turns by 180 degrees or more at a corner; expected its corners in order, all convex",
+        ),
+    ):
+        if wrong.any():
+            e = int(wrong.argmax())
+            x, y, z = c[e].mean(axis=0)
+            more = f" ({int(wrong.sum())} such elements)" if wrong.sum() > 1 else ""
+            raise BadGeometry(
+                f"{file}: a {word} of nodes {_nodes_told(connect[e])}, at x {x:.4g}, y {y:.4g}, z {z:.4g} m, {what}{more}"
+            )
+
+
+def _check_overlaps(xyz: np.ndarray, shells: list[np.ndarray], file: str) -> None:
+    """BadGeometry where two elements lie on the same side of an edge, in one plane: they would bear and weigh twice."""
+    edge, inward = [], []
+    for connect in shells:
+        a, b = connect, np.roll(connect, -1, axis=1)
+        way = xyz[b] - xyz[a]
+        into = xyz[connect].mean(axis=1, keepdims=True) - xyz[a]
+        into = into - (np.einsum("ecx,ecx->ec", into, way) / np.einsum("ecx,ecx->ec", way, way))[..., None] * way
+        edge.append(np.sort(np.stack([a, b], axis=-1).reshape(-1, 2), axis=1))
+        inward.append((into / np.linalg.norm(into, axis=2)[..., None]).reshape(-1, 3))
+    edges, into = np.concatenate(edge), np.concatenate(inward)
+    order = np.lexsort(edges.T)
+    edges, into = edges[order], into[order]
+    for step in range(1, int(np.unique(edges, axis=0, return_counts=True)[1].max())):
+        same = (edges[step:] == edges[:-step]).all(axis=1)
+        on = same & (np.einsum("ex,ex->e", into[step:], into[:-step]) > ON_EACH_OTHER)
+        if on.any():
+            nodes = edges[:-step][on.argmax()]
+            x, y, z = xyz[nodes].mean(axis=0)
+            raise BadGeometry(
+                f"{file}: two elements lie on each other at the edge of nodes {_nodes_told(nodes)}, at x {x:.4g}, y {y:.4g}, z {z:.4g} m; "
+                "expected each place covered once"
+            )
+
+
+def _unjoined(xyz: np.ndarray, parts: list[ShellPart], size: float) -> list[str]:
+    """What to tell of nodes at which elements touch and do not hang together."""
+    from scipy.spatial import cKDTree
+
+    edges = np.concatenate(
+        [np.stack([p.connect, np.roll(p.connect, -1, axis=1)], axis=-1).reshape(-1, 2) for p in parts]
+    )
+    each, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    free = each[count == 1]
+    if not len(free):
+        return []
+    ends = np.unique(free)
+    tree, near = cKDTree(xyz[ends]), APART * size
+    told = []
+    pairs = tree.query_pairs(near, output_type="ndarray")
+    if len(pairs):
+        a, b = ends[pairs[0]]
+        told.append((f"nodes {a + 1} and {b + 1}", xyz[a], "are two nodes at one place", len(pairs)))
+    a, b = xyz[free[:, 0]], xyz[free[:, 1]]
+    middle, way, length = 0.5 * (a + b), b - a, np.linalg.norm(b - a, axis=1)
+    between = [
+        (edge, node)
+        for edge, found in enumerate(tree.query_ball_point(middle, 0.5 * length - near))
+        for node in ends[found].tolist()
+        if np.linalg.norm(np.cross(xyz[node] - a[edge], way[edge])) <= near * length[edge]
+    ]
+    if between:
+        node = between[0][1]
+        nodes = len({n for _, n in between})
+        told.append(
+            (f"node {node + 1}", xyz[node], "lies on the edge of an element that has it not as a corner", nodes)
+        )
+    return [
+        f"{who}, at x {at[0]:.4g}, y {at[1]:.4g}, z {at[2]:.4g} m, {what}{f' ({many} such)' if many > 1 else ''}: nothing joins the "
+        "elements there"
+        for who, at, what, many in told
+    ]  # fmt: skip
+
+
 def _warping(xyz: np.ndarray, connect: np.ndarray) -> float:
     """Greatest distance of a corner from the plane of its quadrilateral, over the root of its area."""
     if connect.shape[1] < 4:
@@ -187,19 +296,29 @@ def _mesh(
         raise BadGeometry(f"{file}: node {lonely[0] + 1} of a support is no node of a shell")
     if push[~used].any():
         raise BadGeometry(f"{file}: a force acts on a node that is no node of a shell")
+    support, of_file = sorted(held), parts
     held |= {(int(n), d) for n in np.flatnonzero(used & ~bent) for d in (2, 3, 4, 5)}
     number = np.cumsum(used) - 1
     kept = xyz[used]
     parts = [ShellPart(**{**part.__dict__, "connect": number[part.connect]}) for part in parts]
     feet = [Foot(foot.name, number[foot.nodes], foot.out, foot.along) for foot in feet]
     areas = np.concatenate([nodal_areas(kept, part.connect).sum(axis=1) for part in parts])
-    if not (areas > 0.0).all():
-        raise BadGeometry(f"{file}: {int((areas <= 0.0).sum())} of its elements have no area")
+    size = float(np.sqrt(np.median(areas)))
+    loose = _unjoined(xyz, of_file, size)
+    warnings += [f"{file}: {text}" for text in loose]
+    piece = pieces(len(kept), parts, [])
+    stands = np.isin(piece, piece[[number[n] for n, _ in support]])
+    if not stands.all():
+        x, y, z = kept[~stands].mean(axis=0)
+        raise BadGeometry(
+            f"{file}: {int((~stands).sum())} nodes around x {x:.4g}, y {y:.4g}, z {z:.4g} m hang on nothing: no elements join them "
+            f"with a support{f'; {loose[0]}' if loose else ''}"
+        )
     levels = np.array([kept[:, 2].min(), kept[:, 2].max()])
     if not levels[1] > levels[0]:
         raise BadGeometry(f"{file}: all nodes lie at one height; z is up")
     return ShellMesh(
-        kept, parts, [], levels, [building.material, *building.materials.values()], float(np.sqrt(np.median(areas))),
+        kept, parts, [], levels, [building.material, *building.materials.values()], size,
         sorted((int(number[n]), d) for n, d in held), [], [], np.zeros(len(kept)), push[used], warnings, feet,
     )  # fmt: skip
 

@@ -72,6 +72,28 @@ class ShellPart:
 
 
 @dataclass(frozen=True)
+class ShellBar:
+    """A bar between two nodes."""
+
+    name: str
+    nodes: tuple[int, int]
+    area: float  # [m^2]
+    material: Material
+    prestress: float = 0.0  # [N]
+
+
+def pieces(nodes: int, parts: list[ShellPart], bars: list[ShellBar]) -> np.ndarray:
+    """Which piece each node is of, from 0: nodes of one piece are joined by elements and bars."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    ends = [np.column_stack([p.connect, np.roll(p.connect, -1, axis=1)]).reshape(len(p.connect), 2, -1) for p in parts]
+    one = np.concatenate([*(e[:, 0].ravel() for e in ends), np.array([bar.nodes[0] for bar in bars], dtype=int)])
+    two = np.concatenate([*(e[:, 1].ravel() for e in ends), np.array([bar.nodes[1] for bar in bars], dtype=int)])
+    return connected_components(coo_array((np.ones(len(one)), (one, two)), shape=(nodes, nodes)), directed=False)[1]
+
+
+@dataclass(frozen=True)
 class WallPlane:
     """Where a wall stands: its plane, by which it is unfolded. place = origin + s along + z up."""
 
@@ -84,17 +106,6 @@ class WallPlane:
     def unfolded(self, xyz: np.ndarray) -> np.ndarray:
         """(s, z) of points (n, 3) [m]."""
         return np.column_stack([(xyz[:, :2] - self.origin) @ self.along, xyz[:, 2]])
-
-
-@dataclass(frozen=True)
-class ShellBar:
-    """A bar between two nodes."""
-
-    name: str
-    nodes: tuple[int, int]
-    area: float  # [m^2]
-    material: Material
-    prestress: float = 0.0  # [N]
 
 
 @dataclass(frozen=True)

@@ -43,6 +43,11 @@ class WallOpening(Table):
     @model_validator(mode="after")
     def _area(self) -> "WallOpening":
         Opening(x=self.x, y=self.z)
+        for name, (low, high) in (("x", self.x), ("z", self.z)):
+            if high - low <= 2 * MEETS:
+                raise ValueError(
+                    f"{name}: the opening is {high - low:.3g} m wide or high; expected more than {2 * MEETS:g} m"
+                )
         return self
 
 
@@ -88,6 +93,12 @@ class Corner(Table):
     )
     strength: float = key(0.5, "of a weak corner: its tensile strength over that of the wall", gt=0, le=1)
 
+    @model_validator(mode="after")
+    def _two(self) -> "Corner":
+        if self.walls[0] == self.walls[1]:
+            raise ValueError(f"walls: '{self.walls[0]}' stands twice; expected two walls that meet")
+        return self
+
 
 class StoreyFloor(Table):
     """A floor or roof on top of a storey: a membrane between walls, or joists, and what it carries."""
@@ -119,8 +130,10 @@ class StoreyFloor(Table):
         for name in ("young", "thickness", "joist_area", "joist_spacing"):
             if (getattr(self, name) is None) == (name in needed):
                 raise ValueError(f"a floor of kind '{self.kind}' {'needs' if name in needed else 'takes no'} {name}")
-        if self.kind == "joists" and len(self.bears_on) != 2:
-            raise ValueError("joists: bears_on names the two walls that they reach from and to")
+        if self.kind == "joists" and len(set(self.bears_on)) != 2:
+            raise ValueError("bears_on: of joists, expected the two walls that they reach from and to")
+        if self.walls is not None and (twice := [name for name, n in Counter(self.walls).items() if n > 1]):
+            raise ValueError(f"walls: wall '{twice[0]}' stands twice")
         return self
 
 
@@ -189,50 +202,73 @@ class Plan(Structure):
     def _sound(self) -> "Plan":
         if not all(h > 0.0 for h in self.storeys):
             raise ValueError("storeys: every height must be above 0")
-        names = Counter(wall.name for wall in self.walls)
-        if twice := [name for name, count in names.items() if count > 1]:
-            raise ValueError(f"walls: the name '{twice[0]}' stands twice")
-        for wall in self.walls:
-            self._check_wall(wall)
+        names = [wall.name for wall in self.walls]
+        for w, wall in enumerate(self.walls):
+            if wall.name in names[:w]:
+                raise ValueError(f"walls[{w}].name: the name '{wall.name}' stands twice")
+            self._check_wall(w, wall)
         for what, named in (
-            *(("corners", corner.walls) for corner in self.corners),
-            *(("floors", [*(floor.walls or []), *floor.bears_on]) for floor in self.floors),
-            ("prestress", [part.wall for part in self.prestress]),
-            ("props", [part.wall for part in self.props]),
+            *((f"corners[{k}].walls", corner.walls) for k, corner in enumerate(self.corners)),
+            *((f"floors[{k}].walls", floor.walls or []) for k, floor in enumerate(self.floors)),
+            *((f"floors[{k}].bears_on", floor.bears_on) for k, floor in enumerate(self.floors)),
+            *((f"prestress[{k}].wall", [part.wall]) for k, part in enumerate(self.prestress)),
+            *((f"props[{k}].wall", [part.wall]) for k, part in enumerate(self.props)),
         ):
             if strange := [name for name in named if name not in names]:
                 raise ValueError(f"{what}: there is no wall '{strange[0]}'; there are {', '.join(names)}")
-        for prop in self.props:
+        told: dict[frozenset[str], int] = {}
+        for k, corner in enumerate(self.corners):
+            if (first := told.setdefault(frozenset(corner.walls), k)) != k:
+                raise ValueError(f"corners[{k}].walls: corner {first + 1} is of the same two walls")
+        for k, prop in enumerate(self.props):
             if np.abs(self.wall(prop.wall).direction).max() < 1.0 - 1e-9:
-                raise ValueError(f"props: wall '{prop.wall}' stands askew on the plan; a prop holds walls along x or y")
-            first, last = self.reach(self.wall(prop.wall))
-            if not first <= prop.storey <= last:
-                raise ValueError(f"props: wall '{prop.wall}' has no storey {prop.storey}")
-        for floor in self.floors:
+                raise ValueError(
+                    f"props[{k}].wall: wall '{prop.wall}' stands askew on the plan; a prop holds walls along x or y"
+                )
+            self._check_storey(f"props[{k}].storey", prop.wall, prop.storey)
+        for k, part in enumerate(self.prestress):
+            if part.level is not None:
+                self._check_storey(f"prestress[{k}].level", part.wall, part.level)
+        for k, floor in enumerate(self.floors):
             if floor.storey > len(self.storeys):
-                raise ValueError(f"floors: there is no storey {floor.storey}, there are {len(self.storeys)}")
+                raise ValueError(
+                    f"floors[{k}].storey: there is no storey {floor.storey}, there are {len(self.storeys)}"
+                )
         return self
 
-    def _check_wall(self, wall: PlanWall) -> None:
+    def _check_storey(self, what: str, wall: str, storey: int) -> None:
+        first, last = self.reach(self.wall(wall))
+        if not first <= storey <= last:
+            raise ValueError(f"{what}: wall '{wall}' has no storey {storey}, it has {first} to {last}")
+
+    def _check_wall(self, w: int, wall: PlanWall) -> None:
         first, last = self.reach(wall)
         if not 1 <= first <= last <= len(self.storeys):
-            raise ValueError(f"wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}")
+            raise ValueError(
+                f"walls[{w}].storeys: wall '{wall.name}': storeys {first} to {last}, there are 1 to {len(self.storeys)}"
+            )
         if wall.thicknesses and len(wall.thicknesses) != last - first + 1:
             raise ValueError(
-                f"wall '{wall.name}': {len(wall.thicknesses)} thicknesses for {last - first + 1} storeys; expected one for each"
+                f"walls[{w}].thicknesses: wall '{wall.name}': {len(wall.thicknesses)} thicknesses for {last - first + 1} storeys; "
+                "expected one for each"
             )
-        for i, opening in enumerate(wall.openings, 1):
-            at = f"wall '{wall.name}', opening {i}"
+        for i, opening in enumerate(wall.openings):
+            at, said = f"walls[{w}].openings[{i}]", f"wall '{wall.name}', opening {i + 1}"
             if not first <= opening.storey <= last:
-                raise ValueError(f"{at}: the wall has no storey {opening.storey}")
+                raise ValueError(f"{at}: {said}: the wall has no storey {opening.storey}")
             if opening.x[0] < 0.0 or opening.x[1] > wall.length:
                 raise ValueError(
-                    f"{at}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long"
+                    f"{at}: {said}: x from {opening.x[0]:g} to {opening.x[1]:g} m, the wall is {wall.length:g} m long"
                 )
-            if opening.z[0] < 0.0 or opening.z[1] >= self.storeys[opening.storey - 1]:
+            tall = self.storeys[opening.storey - 1]
+            if opening.z[0] < 0.0 or opening.z[1] >= tall:
                 raise ValueError(
-                    f"{at}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of "
-                    f"{self.storeys[opening.storey - 1]:g} m"
+                    f"{at}: {said}: z from {opening.z[0]:g} to {opening.z[1]:g} m does not fit in a storey of {tall:g} m"
+                )
+            above = float(sum(self.storeys[opening.storey - 1 : last])) - opening.z[1]
+            if opening.lintel is not None and opening.lintel.depth > above + MEETS:
+                raise ValueError(
+                    f"{at}.lintel: {said}: a lintel of {opening.lintel.depth:g} m under {above:g} m of wall"
                 )
 
     def reach(self, wall: PlanWall) -> tuple[int, int]:
@@ -243,6 +279,26 @@ class Plan(Structure):
     def levels(self) -> np.ndarray:
         """Heights of the ground and of the top of each storey [m]."""
         return np.concatenate([[0.0], np.cumsum(self.storeys)])
+
+    def foot_area(self, axis: int) -> float:
+        """Of the walls on the ground, doors left out, each by how far it runs along x (0) or y (1) [m^2]."""
+        total = 0.0
+        for wall in self.walls:
+            if self.reach(wall)[0] == 1:
+                doors = sum(o.x[1] - o.x[0] for o in wall.openings if o.storey == 1 and o.z[0] == 0.0)
+                total += (wall.thickness or wall.thicknesses[0]) * (wall.length - doors) * abs(wall.direction[axis])
+        return float(total)
+
+    @property
+    def wall_area(self) -> float:
+        """Of all walls in their planes, openings counted [m^2]."""
+        return float(
+            sum(
+                wall.length * np.diff(self.levels[[r[0] - 1, r[1]]])[0]
+                for wall in self.walls
+                if (r := self.reach(wall))
+            )
+        )
 
     def wall(self, name: str) -> PlanWall:
         return next(wall for wall in self.walls if wall.name == name)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
-from extrados.building.errors import BadGeometry, NoView
+from extrados.building.errors import BadGeometry, NoView, blaming
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.places import Placed
 from extrados.building.structure import RocksAs, Structure
@@ -206,9 +206,11 @@ class MeshFile(MeshedWall):
     def mesh(self, building: "Building", options: "MeshOptions", seed: int | None) -> "Mesh":
         from extrados.building.mesh.file import read_mesh
 
-        return read_mesh(self, building, options)
+        with blaming("file"):
+            return read_mesh(self, building, options)
 
     def shell(self, building: "Building", options: "ShellOptions") -> "ShellMesh":
         from extrados.building.mesh.shell_file import read_shell
 
-        return read_shell(self, building, options)
+        with blaming("file"):
+            return read_shell(self, building, options)

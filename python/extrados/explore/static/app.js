@@ -204,9 +204,10 @@ export function mount(root, transport, film, { embedded = false } = {}) {
       channel.port2.postMessage(0);
     });
   }
-  /** From the event to the picture that the next frame has put on the screen. */
+  /** From the event to the picture that the next frame has put on the screen; `drawn`, to where that frame is waited for. */
   function painted(entry, server, what = entry.message.do) {
-    afterwards(() => { app.timings.push({ do: what, ms: performance.now() - entry.when, server }); if (app.timings.length > 5000) app.timings.shift(); });
+    const drawn = performance.now() - entry.when;
+    afterwards(() => { app.timings.push({ do: what, ms: performance.now() - entry.when, drawn, server }); if (app.timings.length > 5000) app.timings.shift(); });
   }
   /** The drawing comes first: what stands beside it follows when the picture is on the screen, and not with each picture of a hand that moves. */
   function follow() {

@@ -5,9 +5,13 @@ const MARGIN = { left: 58, right: 14, top: 24, bottom: 36 };
 
 function nice(low, high, count) {
   const span = high - low || 1, rough = span / Math.max(count, 1), power = 10 ** Math.floor(Math.log10(rough));
-  const step = power * ([1, 2, 5, 10].find((f) => f * power >= rough * 0.999) ?? 10);
-  const found = [];
-  for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * span; k += 1) found.push(k * step === 0 ? 0 : k * step);
+  const wide = [1, 2, 5, 10].findIndex((f) => f * power >= rough * 0.999), found = [];
+  let step = 0;
+  for (let k = wide < 0 ? 3 : wide; k >= 0 && found.length < 2; k -= 1) { // one number tells no scale
+    step = [1, 2, 5, 10][k] * power;
+    found.length = 0;
+    for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * span; i += 1) found.push(i * step === 0 ? 0 : i * step);
+  }
   return { found, step };
 }
 const tick = (value, step) => {
@@ -127,7 +131,7 @@ export function chart(box, options = {}) {
     const named = rows.filter((r) => r.label && rows.length > 1 && !r.unnamed);
     legend.replaceChildren(...named.map((r) => h("span", { class: `key c${colour(r, rows)}${r.dashed ? " dashed" : ""}` }, h("i"), r.label)));
     title.textContent = spec.title;
-    set(title, { x: MARGIN.left, y: 15 });
+    set(title, { x: Math.max(4, Math.min(MARGIN.left, width - 7.2 * spec.title.length)), y: 15 });
     const legendHeight = named.length ? legend.offsetHeight : 0;
     if (Math.abs(box.clientHeight - legendHeight - height) > 2 && box.clientHeight - legendHeight >= 60) { height = box.clientHeight - legendHeight; if (!it.again) { it.again = true; draw(spec, given); it.again = false; } }
     options.ondraw?.(it);

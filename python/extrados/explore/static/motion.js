@@ -152,7 +152,7 @@ export function motionPanel(app, lower, frame) {
   }
   function dot(c) {
     const p = pulse();
-    if (!p || !c.X || shownThird !== "map") { c.front.replaceChildren(); return; }
+    if (!p || !c.X || shownThird !== "map" || it.map?.why) { c.front.replaceChildren(); return; }
     const where = c.place(), x = Math.min(Math.max(c.X(p.duration_s), where.left), where.left + where.w), y = Math.min(Math.max(c.Y(p.amplitude_g), where.top), where.top + where.h);
     const label = p.record ? "primary impulse" : "present pulse";
     const text = `${label}: ${quantity(p.amplitude_g, "g", 3)} for ${quantity(p.duration_s, "s", 3)}`;
@@ -204,6 +204,8 @@ export function motionPanel(app, lower, frame) {
       if (knob.parentNode !== c.front) c.front.append(knob);
       set(knob, { transform: `translate(${c.X(t)} ${c.Y(a)})`, "aria-valuenow": name === "amplitude" ? p.amplitude_g : p.duration_s, "aria-valuetext": text });
       knob.tagText.textContent = text;
+      const where = c.place(), cut = c.X(t) + 14 + 6 * text.length > where.left + where.w + 14;
+      set(knob.tagText, { x: cut ? -12 : 10, "text-anchor": cut ? "end" : null });
     }
   }
   function write(name) {

@@ -1,5 +1,5 @@
 // What is seen, taken out: PNG, SVG, and films of what moves.
-import { download, h } from "./dom.js";
+import { download, h, number } from "./dom.js";
 
 const STYLED = ["fill", "stroke", "stroke-width", "stroke-dasharray", "stroke-linejoin", "stroke-linecap", "opacity", "fill-opacity", "stroke-opacity", "font-size", "font-family", "font-weight", "text-anchor", "vector-effect", "visibility", "display"];
 
@@ -68,7 +68,7 @@ export function outMenu(app) {
       await picture(alone(seen(), paper()), canvas, 1280, 720);
       const context = canvas.getContext("2d");
       context.fillStyle = getComputedStyle(app.root).getPropertyValue("--ink"); context.font = "22px sans-serif";
-      context.fillText(moves.label(), 24, 40);
+      context.fillText(moves.real && slow !== 1 ? `${moves.label()}, ${number(slow, 2)} of real speed` : moves.label(), 24, 40);
       const blob = await new Promise((done) => canvas.toBlob(done, "image/jpeg", 0.92));
       const length = new Uint8Array(4);
       new DataView(length.buffer).setUint32(0, blob.size);

@@ -87,17 +87,24 @@ export function resultsPanel(app, wide) {
         if (first) app.ask({ do: "run", path, analysis: first.name, side });
       } });
     }
+    /** Nothing of an earlier run stands below the words of another. */
+    function clear() {
+      pause();
+      it.arrays = {}; it.charts = [];
+      figure.hidden = player.hidden = true;
+      for (const part of [area, tables, numbers]) part.replaceChildren();
+    }
     function take(words, arrays) {
       it.words = words;
       runs.value = words.path;
       kinds.replaceChildren(...words.analyses.map((a) => h("option", { value: a.name, selected: a.name === words.analysis }, `${a.name}${a.status === "ok" ? "" : ` (${a.status})`}`)));
       const told = words.analyses.find((a) => a.name === words.analysis) ?? words.analyses[0];
       answer.textContent = told ? told.answer || `${told.status}: ${told.reason}` : "";
-      if (words.charts === undefined) return;
+      if (words.charts === undefined) { clear(); return; }
       it.arrays = arrays;
       numbers.replaceChildren(h("tbody", {}, (words.numbers ?? []).map(([k, v]) => h("tr", {}, h("th", { scope: "row" }, k), h("td", {}, typeof v === "number" ? number(v, 6) : String(v))))));
       const cell = (v) => (Number.isInteger(v) && Math.abs(v) < 1e7 ? String(v).replace("-", "−") : typeof v === "number" ? number(v, 5) : v === null ? "" : String(v));
-      tables.replaceChildren(...(words.tables ?? []).map((t) => h("figure", {}, h("figcaption", {}, t.title), h("table", { class: "numbers rows" }, h("thead", {}, h("tr", {}, t.columns.map((c) => h("th", { scope: "col" }, c.replaceAll("_", " "))))), h("tbody", {}, t.rows.map((row) => h("tr", {}, row.map((v) => h("td", { class: typeof v === "number" ? "" : "text" }, cell(v))))))), t.left_out ? h("p", {}, `and ${t.left_out} more, in the folder of the run`) : null)));
+      tables.replaceChildren(...(words.tables ?? []).map((t) => h("figure", {}, h("figcaption", {}, t.title), h("table", { class: "numbers rows" }, h("thead", {}, h("tr", {}, t.columns.map((c, k) => h("th", { scope: "col", class: typeof t.rows[0]?.[k] === "string" ? "text" : "" }, c.replaceAll("_", " "))))), h("tbody", {}, t.rows.map((row) => h("tr", {}, row.map((v) => h("td", { class: typeof v === "number" ? "" : "text" }, cell(v))))))), t.left_out ? h("p", {}, `and ${t.left_out} more, in the folder of the run`) : null)));
       more.open = !words.charts.length && !words.body;
       area.replaceChildren();
       it.charts = words.charts.map((spec) => {

@@ -44,12 +44,12 @@ export function stage(box, hands) {
   const svg = s("svg", { class: "stage", role: "group", "aria-label": "Drawing of the structure" });
   const world = s("g"), screen = s("g"), overlay = s("g");
   const ground = s("path", { class: "ground" }), earth = s("path", { class: "earth" });
-  const ties = s("path", { class: "tie" }), stones = s("path", { class: "stones" }), ghost = s("path", { class: "ghost" });
+  const ties = s("path", { class: "tie" }), dampers = s("path", { class: "tie damper" }), mass = s("path", { class: "mass" }), stones = s("path", { class: "stones" }), ghost = s("path", { class: "ghost" });
   const joints = s("path", { class: "joints" }), supports = s("path", { class: "supports" });
   const lines = Object.fromEntries(LINES.map(([name]) => [name, s("path", { class: `thrust ${name}` })]));
   const dynamic = s("path", { class: "thrust dynamic" });
   const marks = s("g", { class: "marks" }), loads = s("g"), knobs = s("g", { class: "knobs" }), ruler = s("g", { class: "ruler" });
-  world.append(earth, supports, ghost, stones, joints, ties, ...Object.values(lines), dynamic);
+  world.append(earth, supports, ghost, stones, mass, joints, ties, dampers, ...Object.values(lines), dynamic);
   svg.append(ground, world, screen, overlay);
   screen.append(ruler, loads, marks, knobs);
   box.append(svg);
@@ -120,7 +120,7 @@ export function stage(box, hands) {
   }
   function clear() {
     it.bounds = null; shownPose = null;
-    for (const part of [stones, ties, ghost, joints, supports, earth, dynamic, ground, ...Object.values(lines)]) set(part, { d: "" });
+    for (const part of [stones, ties, dampers, mass, ghost, joints, supports, earth, dynamic, ground, ...Object.values(lines)]) set(part, { d: "" });
     marks.replaceChildren(); loads.replaceChildren(); ruler.replaceChildren();
     for (const element of knob.values()) element.remove();
     knob.clear();
@@ -139,20 +139,24 @@ export function stage(box, hands) {
     if (layers.joints !== false && !shownPose) for (let j = 0; j < arrays.joint_p.length; j += 2) d += `M${f(arrays.joint_p[j])} ${f(arrays.joint_p[j + 1])}L${f(arrays.joint_q[j])} ${f(arrays.joint_q[j + 1])}`;
     set(joints, { d });
     set(earth, { d: arrays.earth ? `M${Array.from({ length: arrays.earth.length / 2 }, (_, i) => `${f(arrays.earth[2 * i])} ${f(arrays.earth[2 * i + 1])}`).join("L")}Z` : "" });
-    d = "";
-    if (arrays.ties && !shownPose) for (let i = 0; i < arrays.ties.length; i += 4) d += `M${f(arrays.ties[i])} ${f(arrays.ties[i + 1])}L${f(arrays.ties[i + 2])} ${f(arrays.ties[i + 3])}`;
-    set(ties, { d });
+    for (const [path, ends] of [[ties, arrays.ties], [dampers, arrays.dampers]]) {
+      d = "";
+      if (ends && !shownPose) for (let i = 0; i < ends.length; i += 4) d += `M${f(ends[i])} ${f(ends[i + 1])}L${f(ends[i + 2])} ${f(ends[i + 3])}`;
+      set(path, { d });
+    }
+    const [x0, , x1, top] = it.bounds, r = 0.05 * (top - it.bounds[1]), middle = (x0 + x1) / 2;
+    set(mass, { d: scene.head_mass_kg && !shownPose ? `M${f(middle - r)} ${f(top)}a${f(r)} ${f(r)} 0 1 0 ${f(2 * r)} 0a${f(r)} ${f(r)} 0 1 0 ${f(-2 * r)} 0Z` : "" });
     for (const [name, path] of Object.entries(lines)) {
       const drawn = layers[name] && !shownPose && arrays[`${name}_line`];
       set(path, { d: drawn ? piecesPath(arrays[`${name}_line`], arrays[`${name}_start`]) : "" });
     }
-    supported(arrays);
+    supported(arrays, scene.abutting_wall);
     drawGround(scene);
     drawMarks(scene, layers);
     drawLoads(scene);
     drawKnobs(handles ?? [], scene);
   }
-  function supported(arrays) {
+  function supported(arrays, wall) {
     let d = "";
     const size = 0.02 * Math.max(it.bounds[2] - it.bounds[0], it.bounds[3] - it.bounds[1]);
     for (let j = 0; j < arrays.joint_p.length / 2; j += 1) {
@@ -168,6 +172,10 @@ export function stage(box, hands) {
     for (let i = 0; arrays.held && i < arrays.held.length; i += 2) {
       const [x, y] = [arrays.held[i], arrays.held[i + 1]];
       d += `M${f(x)} ${f(y)}l${f(-0.3 * size)} ${f(-0.6 * size)}h${f(0.6 * size)}Z`;
+    }
+    if (wall) {
+      const [x0, y0, x1, y1] = it.bounds;
+      d += `M${f(wall === "left" ? x0 : x1)} ${f(y0)}V${f(y1)}h${f(wall === "left" ? -size : size)}V${f(y0)}Z`;
     }
     set(supports, { d });
   }

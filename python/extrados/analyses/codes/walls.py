@@ -1,0 +1,98 @@
+"""The walls of a building on a plan out of their planes: each, above the foot of each of its storeys, as one body that turns."""
+
+from collections import defaultdict
+from dataclasses import dataclass
+
+import numpy as np
+
+from extrados.analyses.codes.kinematics import Overturning, Weight
+from extrados.analyses.codes.mechanisms import set_back
+from extrados.analyses.context import Refused
+from extrados.building.building import Building
+from extrados.building.mesh.plan import around
+from extrados.building.properties import Material
+from extrados.building.templates.plan import Plan, PlanWall
+from extrados.schema.constants import GRAVITY
+
+
+@dataclass(frozen=True)
+class WallPart:
+    """A wall above the foot of a storey (from 1), which stands `foot` [m] above the ground, as a body about its edge there."""
+
+    wall: str
+    storey: int
+    foot: float
+    body: Overturning
+
+
+def wall_parts(building: Building) -> list[WallPart]:
+    """Every wall above the foot of each storey above which nothing holds it.
+
+    Simple overturning: walls across, flexible floors, joists and rods hold no wall; rigid floors and props do. Floors load the
+    walls that they bear on, by their length, on the middle plane. Refused where every wall is held.
+    """
+    plan = building.structure
+    assert isinstance(plan, Plan)
+    loads, held = _floors(plan)
+    parts = []
+    for wall in plan.walls:
+        first, last = plan.reach(wall)
+        free = max((k + 1 for k in held[wall.name] if first <= k <= last), default=first)
+        parts += [_part(building, plan, wall, storey, loads) for storey in range(free, last + 1)]
+    if not parts:
+        raise Refused(
+            "rigid floors or props hold the top of every wall: none turns out of its plane as one body", ("structure",)
+        )
+    return parts
+
+
+def _floors(plan: Plan) -> tuple[dict[tuple[str, int], float], dict[str, set[int]]]:
+    """Load [N] that each wall bears on top of each storey, and the storeys on top of which each wall is held."""
+    loads: dict[tuple[str, int], float] = defaultdict(float)
+    held: dict[str, set[int]] = defaultdict(set)
+    for floor in plan.floors:
+        ring = around(plan, floor)
+        corner = np.array([np.asarray(plan.walls[w].start) + s * plan.walls[w].direction for w, s, _ in ring])
+        x, y = corner.T
+        area = 0.5 * abs(float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)))
+        lengths = {plan.walls[w].name: abs(end - start) for w, start, end in ring}
+        bearing = {name: lengths[name] for name in floor.bears_on if name in lengths} if floor.bears_on else lengths
+        for name, length in bearing.items():
+            loads[name, floor.storey] += floor.load * area * length / sum(bearing.values())
+        if floor.kind == "rigid":
+            for name in lengths:
+                held[name].add(floor.storey)
+    for prop in plan.props:
+        held[prop.wall].add(prop.storey)
+    return loads, held
+
+
+def _part(building: Building, plan: Plan, wall: PlanWall, storey: int, loads: dict[tuple[str, int], float]) -> WallPart:
+    first, last = plan.reach(wall)
+    material: Material = building.materials[wall.material] if wall.material else building.material
+    thickness = [wall.thickness or wall.thicknesses[k - first] for k in range(first, last + 1)]
+    foot, arm = float(plan.levels[storey - 1]), 0.5 * thickness[storey - first]
+    volume = moment = 0.0  # m^3, and about the foot m^4
+    for k in range(storey, last + 1):
+        floor = float(plan.levels[k - 1]) - foot
+        holes = [(o.x[1] - o.x[0], o.z[0], min(o.z[1], plan.storeys[k - 1])) for o in wall.openings if o.storey == k]
+        pieces = [(wall.length, 0.0, plan.storeys[k - 1]), *((-width, low, high) for width, low, high in holes)]
+        for width, low, high in pieces:
+            volume += thickness[k - first] * width * (high - low)
+            moment += thickness[k - first] * width * (high - low) * (floor + 0.5 * (low + high))
+    if not volume * material.density > 0.0:
+        raise Refused("nothing that sways has weight: give a density above zero", ("material", "density"))
+    weights = [Weight(material.density * GRAVITY * volume, arm, moment / volume)]
+    for k in range(storey, last + 1):
+        top = float(plan.levels[k]) - foot
+        if loads.get((wall.name, k), 0.0) > 0.0:
+            weights.append(Weight(loads[wall.name, k], arm, top))
+        weights += [
+            Weight(p.force, arm, top, sways=False)
+            for p in plan.prestress
+            if p.wall == wall.name and (p.level or last) == k
+        ]
+    doors = sum(o.x[1] - o.x[0] for o in wall.openings if o.storey == storey and o.z[0] == 0.0)
+    if material.compressive_strength is not None:
+        weights = set_back(weights, material.compressive_strength, wall.length - doors, 2.0 * arm)
+    return WallPart(wall.name, storey, foot, Overturning(tuple(weights)))
