@@ -8,7 +8,7 @@ module api_limit
 contains
 
    !> The x of least cost with gradients^T x >= least and low <= x <= high
-   subroutine vertex(n, k, gradients, least, cost, low, high, x, rows, sides, solved)
+   subroutine vertex(n, k, gradients, least, cost, low, high, x, rows, sides, solved, status)
       use limit_vertex, only : least_vertex
       integer(c_int), intent(in) :: n                 !! unknowns
       integer(c_int), intent(in) :: k                 !! rows
@@ -21,9 +21,10 @@ contains
       real(c_double), intent(out) :: rows(k)          !! multipliers of the rows
       real(c_double), intent(out) :: sides(n)         !! multipliers of the box, negative at its upper side
       integer(c_int), intent(out) :: solved           !! 1, or 0 where another method must decide
+      integer(c_int), intent(out) :: status
       logical :: found
       !f2py threadsafe
-      call least_vertex(gradients, least, cost, low, high, x, rows, sides, found)
+      call least_vertex(gradients, least, cost, low, high, x, rows, sides, found, status)
       solved = merge(1, 0, found)
    end subroutine vertex
 

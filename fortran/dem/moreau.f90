@@ -149,11 +149,14 @@ contains
 
       call prepare(model)
       if (model%quasi_static) then
-         where (.not. model%set%item%fixed)
-            model%set%item%vx = 0.0_wp
-            model%set%item%vy = 0.0_wp
-            model%set%item%spin = 0.0_wp
-         end where
+         do k = 1, size(model%set%item)
+            associate (b => model%set%item(k))
+               if (b%fixed) cycle
+               b%vx = 0.0_wp
+               b%vy = 0.0_wp
+               b%spin = 0.0_wp
+            end associate
+         end do
       end if
       associate (rigid => model%rigid, problem => model%rigid%problem)
          do k = 1, size(model%set%item)

@@ -1,6 +1,8 @@
 !> Linear programmes of few unknowns and many rows: the dual simplex method from vertex to vertex.
 module limit_vertex
    use common_kinds, only : wp
+   use common_status, only : status_ok, status_out_of_memory
+   use, intrinsic :: iso_c_binding, only : c_int
    implicit none
    private
    public :: least_vertex
@@ -20,7 +22,7 @@ contains
    !> the row that is broken most, and gives up the side whose multiplier vanishes first (Lemke 1954): the cost only
    !> grows, and where no row is broken it is least. Not solved where a row can be met by giving up no side (then no x
    !> obeys all), or where rounding stands in the way: the caller asks another method.
-   pure subroutine least_vertex(a, b, cost, low, high, x, rows, sides, solved)
+   pure subroutine least_vertex(a, b, cost, low, high, x, rows, sides, solved, status)
       real(wp), intent(in) :: a(:, :)    !! (n, k) gradients of the rows
       real(wp), intent(in) :: b(:)       !! (k) least values
       real(wp), intent(in) :: cost(:)    !! (n)
@@ -30,9 +32,12 @@ contains
       real(wp), intent(out) :: rows(:)   !! (k) multipliers of the rows, not negative
       real(wp), intent(out) :: sides(:)  !! (n) of the box: positive where x is at its least, negative at its greatest
       logical, intent(out) :: solved     !! false: another method must decide
-      real(wp) :: inverse(size(cost), size(cost)), lambda(size(cost)), share(size(cost)), bound(size(cost))
-      real(wp) :: length(size(b)), leaving(size(cost)), gain
-      integer :: active(size(cost)), i, out, enters, step, idle, n, k
+      integer(c_int), intent(out) :: status  !! status_out_of_memory, else ok
+      real(wp), allocatable :: inverse(:, :), lambda(:), share(:), bound(:), length(:), leaving(:), entering(:)
+      real(wp), allocatable :: work(:, :), line(:)   ! of renew
+      integer, allocatable :: active(:)
+      real(wp) :: gain
+      integer :: i, out, enters, step, idle, n, k, failed
       logical :: fresh
 
       n = size(cost)
@@ -40,6 +45,11 @@ contains
       solved = .false.
       rows = 0.0_wp
       sides = 0.0_wp
+      x = 0.0_wp
+      allocate (inverse(n, n), lambda(n), share(n), bound(n), length(k), leaving(n), entering(n), work(n, 2 * n), &
+         line(2 * n), active(n), stat=failed)
+      status = merge(status_ok, status_out_of_memory, failed == 0)
+      if (failed /= 0) return
       do i = 1, k
          length(i) = max(norm2(a(:, i)), tiny(1.0_wp))
       end do
@@ -54,28 +64,29 @@ contains
       idle = 0
       do step = 1, 50 * (n + 10)
          x = matmul(inverse, bound)
-         lambda = matmul(cost, inverse)
+         lambda(:) = matmul(cost, inverse)
          enters = broken()
          if (enters == 0) then
             if (fresh) then
                solved = all(lambda > -tolerance * max(1.0_wp, maxval(abs(cost))))
                exit
             end if
-            call renew(inverse, fresh)
+            call renew(inverse, work, line, fresh)
             if (.not. fresh) return
             cycle
          end if
-         share = matmul(gradient(enters), inverse)
+         call put_gradient(enters, entering)
+         share(:) = matmul(entering, inverse)
          out = vanishing()
          if (out == 0) then
             if (fresh) return
-            call renew(inverse, fresh)
+            call renew(inverse, work, line, fresh)
             if (.not. fresh) return
             cycle
          end if
          gain = lambda(out) / share(out)
          idle = merge(0, idle + 1, gain > tolerance)
-         leaving = inverse(:, out) / share(out)
+         leaving(:) = inverse(:, out) / share(out)
          do i = 1, n
             if (i /= out) inverse(:, i) = inverse(:, i) - share(i) * leaving
          end do
@@ -84,7 +95,7 @@ contains
          bound(out) = least(enters)
          fresh = .false.
          if (mod(step, stale) == 0) then
-            call renew(inverse, fresh)
+            call renew(inverse, work, line, fresh)
             if (.not. fresh) return
          end if
       end do
@@ -103,9 +114,9 @@ contains
    contains
 
       !> Gradient of a side
-      pure function gradient(side) result(g)
+      pure subroutine put_gradient(side, g)
          integer, intent(in) :: side
-         real(wp) :: g(size(cost))
+         real(wp), intent(out) :: g(:)
          if (side <= k) then
             g = a(:, side)
          else
@@ -116,7 +127,7 @@ contains
                g(side - k - n) = -1.0_wp
             end if
          end if
-      end function gradient
+      end subroutine put_gradient
 
       !> Least value of a side
       pure function least(side) result(value)
@@ -182,14 +193,15 @@ contains
       end function vanishing
 
       !> The inverse of the gradients of the vertex anew, by elimination with pivots; false where it has none
-      pure subroutine renew(inverse, there)
+      pure subroutine renew(inverse, work, line, there)
          real(wp), intent(inout) :: inverse(:, :)
+         real(wp), intent(out) :: work(:, :)
+         real(wp), intent(out) :: line(:)
          logical, intent(out) :: there
-         real(wp) :: work(size(cost), 2 * size(cost)), line(2 * size(cost))
          integer :: row, other, best
          work = 0.0_wp
          do row = 1, n
-            work(row, :n) = gradient(active(row))
+            call put_gradient(active(row), work(row, :n))
             work(row, n + row) = 1.0_wp
          end do
          there = .false.

@@ -19,7 +19,8 @@ def least_vertex(
         raise ValueError(
             f"{k} rows of {n} unknowns do not go with {len(least)} and {len(cost)}, {len(low)}, {len(high)}"
         )
-    x, multipliers, sides, solved = _core.api_limit.vertex(rows.T, least, cost, low, high)
+    x, multipliers, sides, solved, status = _core.api_limit.vertex(rows.T, least, cost, low, high)
+    check(status, "linear programme")
     return (x, multipliers, sides) if solved else None
 
 
