@@ -79,7 +79,7 @@ def _block(context: Context, options: CodeChecks, block: BlockAssembly) -> tuple
     width, height = block.toe_right + block.toe_left, 2.0 * block.centre_height
     spectrum = demanded_spectrum(context, options.spectrum, options.motion_spectrum)
     pga, sa, pgv = None, None, options.peak_velocity
-    if options.motion_spectrum and pgv is None:
+    if options.motion_spectrum and pgv is None and spectrum_of(context, options.spectrum) is None:
         pgv = float(core_motion.measures(*_sampled(context.motion)).pgv[0])
     if spectrum is not None:
         pga = spectrum(0.0, 0.05) / GRAVITY

@@ -165,17 +165,24 @@ def _checks(context: Context, options: LocalMechanism, found: Capacity) -> tuple
     a_g = spectrum(0.0, 0.05) if spectrum is not None else None
     if options.peak_acceleration is not None:
         a_g = options.peak_acceleration
-    q, height = options.behaviour_factor, options.building_height
+    q, height = options.behaviour_factor, options.building_height if options.base_height > 0.0 else None
     at_height = None
-    if spectrum is not None and options.base_height > 0.0 and height is not None:
+    if height is not None and spectrum is not None:
         at_height = ntc.floor(spectrum, options.base_height, height, options.storeys, options.building_period)
+    elif height is not None and a_g is not None:
+        context.warnings.append(
+            f"at {options.base_height:g} m above the foundation the checks of NTC ask how the building answers at its period: without "
+            "a spectrum they have no demand"
+        )
     note = f"alpha_0 {found.alpha0:.4g}, e* {found.part:.3g}, q {q:g}"
     if height is not None:
         note += f", z/H {options.base_height / height:.3g}"
     fc = options.confidence_factor
-    lines = ntc.checks(found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc)
+    lines = ntc.checks(
+        found.acceleration / fc, found.d0, q, a_g, spectrum, note, at_height, found.alone / fc, height is not None
+    )
     more = {} if at_height is None else {"floor_acceleration_g": at_height.acceleration / GRAVITY}
-    if height is not None and options.base_height > 0.0 and a_g is not None:
+    if height is not None and a_g is not None:
         part = a_g / GRAVITY * (3.0 * (1.0 + options.base_height / height) / 2.0 - 0.5)
         lines.append(
             Line("EN 1998-1 part of a building", "S_a", found.alpha0 * q, part, "g",
