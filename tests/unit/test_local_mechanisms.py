@@ -277,3 +277,21 @@ def test_ties_of_the_table_are_not_counted_on_to_collapse() -> None:
     assert pushed.zero_displacement_m < bare.zero_displacement_m
     only = mechanism(**base, floors=[{"height": 6.0, "thrust": 8e3}], ties=[{"height": 6.0, "force": 9e3}])
     assert only["local-mechanism"].zero_displacement_m is None and "without its ties" in only.analyses[0]["warnings"][0]
+
+
+def test_a_mechanism_whose_stones_crush_is_not_said_to_slide() -> None:
+    arch = {"kind": "arch", "radius": 10.0, "thickness": 1.5, "embrace": 157.5, "voussoirs": 7}
+    own = {"kind": "local-mechanism", "mechanism": "building"}
+    deck = {
+        "structure": arch,
+        "material": {"compressive_strength": 1e6},
+        "joints": {"friction": "no-sliding"},
+        "analysis": own,
+    }
+    found = extrados.run(deck).results[0]
+    assert (
+        any("its stones crush at the hinges before it turns" in w for w in found.warnings) and "crushes" in found.answer
+    )
+    assert found.results.multiplier == pytest.approx(
+        extrados.run({**deck, "analysis": {"kind": "tilt"}})["tilt"].collapse_acceleration_g
+    )

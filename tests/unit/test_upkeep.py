@@ -91,3 +91,20 @@ def test_the_forge_calls_what_is_there() -> None:
     for command, word in called:
         assert word in targets if command == "make" else (ROOT / command).exists() or command == "git", (command, word)
     assert sys.version_info >= (3, 11)
+
+
+def test_a_build_apart_holds_no_source_that_is_gone(tmp_path: Path, monkeypatch) -> None:
+    apart = tool("tools/apart.py")
+    root, place = tmp_path / "root", tmp_path / "place"
+    for name in ("python/extrados/kept.py", "python/extrados/gone.py"):
+        (root / name).parent.mkdir(parents=True, exist_ok=True)
+        (root / name).write_text("")
+    monkeypatch.setattr(apart, "ROOT", root)
+    monkeypatch.setattr(apart, "PARTS", ("python",))
+    apart.copy(place)
+    made = [place / "python/extrados" / name for name in ("_core.cpython.so", "_build_info.py")]
+    for path in made:
+        path.write_text("")
+    (root / "python/extrados/gone.py").unlink()
+    apart.copy(place)
+    assert sorted(place.rglob("*.*")) == sorted([place / "python/extrados/kept.py", *made])

@@ -6,10 +6,11 @@ from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
+from extrados.analyses.left_out import left_out
 from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
-from extrados.building.errors import BadGeometry
+from extrados.building.errors import WHOLE, BadGeometry
 from extrados.core.errors import Cancelled, CoreError
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
@@ -30,6 +31,7 @@ def run_analyses(context: Context) -> list[Result]:
     """All analyses of the deck in order; after Ctrl-C the rest is marked interrupted."""
     results: list[Result] = []
     told: tuple[str, ...] = ()
+    ignored = left_out(context.deck)
     for options, building in zip(context.deck.analyses, context.deck.buildings, strict=True):
         if results and results[-1].status == "interrupted":
             results.append(Result(options.kind, "interrupted", "not run: interrupted before"))
@@ -38,6 +40,7 @@ def run_analyses(context: Context) -> list[Result]:
         _, notes = building.told()
         if notes != told:  # what was made of a survey is told once
             result.warnings, told = [*notes, *result.warnings], notes
+        result.warnings += [remark.text for remark in ignored if remark.analysis == len(results)]
         results.append(result)
     return results
 
@@ -48,7 +51,7 @@ def run_one(context: Context, options: Analysis, building: Building) -> Result:
     try:
         context.warnings = []
         if wrong := complaints(context, options, building):
-            raise Refused("; ".join(wrong))
+            raise Refused("; ".join(wrong), WHOLE)
         result = kinds.load(kinds.ANALYSES[options.kind].driver)(context, options)
         _check(result)
         result.warnings = [*context.warnings, *result.warnings]

@@ -44,7 +44,7 @@ class Analysis(Table):
 
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. solid: whether it takes solids, where there is no plane section. uses: properties of the building that its answer rests on, which every
-    answer tells; method: what the method itself fixes of them, whatever the deck says. starter_structure,
+    answer tells; method: what the method itself fixes of them, whatever the deck says; beside: what else it looks at, or refuses, without telling it. starter_structure,
     starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
     Building.special_keys it reckons with; one that looks at a building with more is refused.
     """
@@ -55,6 +55,7 @@ class Analysis(Table):
     solid: ClassVar[bool] = False
     uses: ClassVar[tuple[str, ...]] = ()
     method: ClassVar[dict[str, str]] = {}
+    beside: ClassVar[tuple[str, ...]] = ()
     needs_motion: ClassVar[bool] = False
     bears: ClassVar[tuple[str, ...]] = ()
     starter_structure: ClassVar[str] = "arch"
@@ -63,6 +64,11 @@ class Analysis(Table):
     def rests_on(self, building: "Building") -> dict[str, str | None]:
         """The properties of this building that its answer rests on, with what the method fixes of them, else None."""
         return {key: self.method.get(key) for key in self.uses}
+
+    def reckons_with(self, building: "Building") -> set[str]:
+        """The keys of [material], [joints], [supports] and [initial] of which another value may change the answer for this
+        building, or which the answer or a refusal names; what a deck says in others is told to be left out."""
+        return {*self.rests_on(building), *self.beside}
 
 
 class BuildingAnalysis(Analysis):

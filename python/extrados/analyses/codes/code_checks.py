@@ -177,7 +177,7 @@ def _pier(
     assert strength is not None and options.axial_load is not None
     load = options.axial_load + weight
     if load >= 0.7 * strength * width * thickness:
-        raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)")
+        raise Refused("the vertical load alone crushes the pier (P >= 0.7 f_m A)", ("analysis", "axial_load"))
     fixed = options.fixity == "double"
     return [
         *piers(width, height, thickness, load, strength, joints.cohesion, options.sliding_friction, fixed),

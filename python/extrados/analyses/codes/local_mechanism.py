@@ -13,6 +13,7 @@ from extrados.analyses.codes.tables import LocalMechanism
 from extrados.analyses.context import Context, Refused
 from extrados.analyses.limit.common import limit_of
 from extrados.analyses.limit.tables import Tilt
+from extrados.building.errors import WHOLE
 from extrados.building.geometry.assembly import Assembly
 from extrados.building.rockers.mechanism import MechanismModel
 from extrados.building.rockers.restraints import Restraints, members_of
@@ -46,7 +47,9 @@ def run(context: Context, options: LocalMechanism) -> Result:
         curve = (turned * scale, np.array([body.multiplier(q) for q in turned]))
         words = f"the {options.mechanism}"
     if found.alpha0 <= 0.0:
-        raise Refused(f"{words} does not stand at rest: its multiplier is {found.alpha0:.3g}")
+        raise Refused(
+            f"{words} does not stand at rest: its multiplier is {found.alpha0:.3g}", ("analysis", "mechanism")
+        )
     if found.d0 is None and found.alone <= 0.0:
         context.warnings.append(
             "without its ties it would not stand at rest: the nonlinear check, which does not count on them, is left out"
@@ -97,7 +100,7 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
         try:
             table = model.tables[side]
         except CoreError as error:
-            raise Refused(f"the mechanism cannot be carried through its motion: {error}") from None
+            raise Refused(f"the mechanism cannot be carried through its motion: {error}", WHOLE) from None
         turned = np.linspace(0.0, table.critical, STEPS)
         c = model.coefficients((1, -1)[side], turned)
         drive = np.abs(c.drive) * GRAVITY
@@ -109,17 +112,19 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
             "the mechanism is the one without ties, dampers and added hinges, which then hold it: an upper bound"
         )
     words = f"the mechanism of the {building.structure.word}"
-    slides = _sliding(context, tuple(curves), float(alpha[0]))
-    if slides is not None:
+    weaker = _weaker(context, tuple(curves), float(alpha[0]))
+    if weaker is not None:
+        multiplier, field, slides = weaker
+        why, without = "its stones crush at the hinges", "crushing"
+        if slides:
+            why, without = f"its joints slide, at a friction of {building.joints.friction},", "sliding"
         context.warnings.append(
-            f"its joints slide, at a friction of {building.joints.friction}, before it turns (multiplier {float(alpha[0]):.4g} without "
-            "sliding): the displacement that it bears is not known"
+            f"{why} before it turns (multiplier {float(alpha[0]):.4g} without {without}): the displacement that it bears is not known"
         )
-        multiplier, field = slides
         return (
             capacity(multiplier, weight, field, None),
             (np.zeros(1), np.array([multiplier])),
-            f"{words}, which slides,",
+            f"{words}, which {'slides' if slides else 'crushes'},",
         )
     field = model.fields[side][:, 0] * (1.0, -1.0)[side]
     found = capacity(float(alpha[0]), weight, field, critical, model.uplift[side])
@@ -127,9 +132,9 @@ def _of_building(context: Context) -> tuple[Capacity, tuple[np.ndarray, np.ndarr
     return found, (turned * scale, alpha), words
 
 
-def _sliding(context: Context, sides: tuple[int, ...], turning: float) -> tuple[float, np.ndarray] | None:
-    """Multiplier of limit analysis with the deck's friction, and the sideways velocities of its mechanism; None where sliding
-    does not make it less than `turning`, that of the mechanism which turns."""
+def _weaker(context: Context, sides: tuple[int, ...], turning: float) -> tuple[float, np.ndarray, bool] | None:
+    """Multiplier of limit analysis with the deck's friction and compressive strength, the sideways velocities of its mechanism,
+    and whether joints slide in it; None where neither makes it less than `turning`, that of the mechanism which turns."""
     building = context.building
     stones = building.blocks()
     mass, place, _ = laden(stones)
@@ -138,11 +143,12 @@ def _sliding(context: Context, sides: tuple[int, ...], turning: float) -> tuple[
     for side in sides:
         state, mechanism = limit.collapse((1, -1)[side])
         move = mechanism.velocity
-        found.append((abs(state.gamma), move[:, 0] - move[:, 2] * (place - stones.centroid)[:, 1]))
-    multiplier, sideways = min(found, key=lambda one: one[0])
+        sideways = move[:, 0] - move[:, 2] * (place - stones.centroid)[:, 1]
+        found.append((abs(state.gamma), sideways, bool(len(mechanism.sliding))))
+    multiplier, sideways, slides = min(found, key=lambda one: one[0])
     if multiplier > 0.99 * turning:
         return None
-    return multiplier, sideways * np.sign(mass @ sideways)
+    return multiplier, sideways * np.sign(mass @ sideways), slides
 
 
 def _held(held: Restraints, side: int, rotation: np.ndarray) -> np.ndarray:

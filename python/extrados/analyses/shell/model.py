@@ -76,10 +76,11 @@ class ShellModel:
             x, y, z = self.mesh.xyz[error.node]
             raise Refused(
                 f"the building is a mechanism: node {error.node + 1} at x {x:g}, y {y:g}, z {z:g} m is free to move in "
-                f"{error.direction}; what stands there hangs on nothing"
+                f"{error.direction}; what stands there hangs on nothing",
+                ("structure",),
             ) from None
         except core.BadElement as error:
-            raise Refused(str(error)) from None
+            raise Refused(str(error), ("structure",)) from None
 
     def borne(self, options: Pushover, curve: Curve, state: State, threads: int) -> np.ndarray:
         """What each ground bears in a state [N], in the direction in which it may give way."""
