@@ -1,16 +1,31 @@
-"""Write docs/verification.md: every row of every case with what was found, grouped by kind of proof."""
+"""Write docs/verification.md: what every quantity was compared with, how well it fits, and every row of every case.
 
+    python tools/verification_book.py [--pages | --trials]
+
+Runs what the cases of cases/ name, keeps what was found in build/verification.json, so that a run that was broken off
+goes on, and writes the book with a scatter plot for each quantity. `--pages` writes the book from what was kept;
+`--trials` writes its section of trials alone anew.
+"""
+
+import argparse
+import hashlib
 import json
 import math
 import sys
+from collections.abc import Iterable
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import mean, stdev
+from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 BOOK = ROOT / "docs" / "verification.md"
-sys.path.insert(0, str(ROOT / "tests" / "cases"))
+PLOTS = ROOT / "docs" / "verification"
+KEPT = ROOT / "build" / "verification.json"
+sys.path[:0] = [str(ROOT / "tests" / "cases"), str(ROOT / "tools")]
 
-from expectations import KINDS, Row, load_cases, pick, results_of  # noqa: E402
+from expectations import KINDS, Case, Row, load_cases, pick, results_of  # noqa: E402
+from verification_quantities import QUANTITIES, quantity_of  # noqa: E402
 
 TRIALS = "## Trials"
 TITLES = {
@@ -18,10 +33,15 @@ TITLES = {
     "peer": "Verification: independent programs, and unlike methods of this one",
     "thesis": "Reproduction of the dissertation",
     "experiment": "Validation: experiments",
+    "calibration": "Calibrations: fitted to come out, no proof",
     "regression": "Regression: unchanged numbers",
 }
-
-
+#: What proves something, the strongest first; a regression compares the program with itself, a calibration was fitted
+PROOFS = ("exact", "peer", "thesis", "experiment")
+COLOURS = {"exact": "#0072B2", "peer": "#009E73", "thesis": "#E69F00", "experiment": "#D55E00"}
+MARKS = {"exact": "o", "peer": "s", "thesis": "^", "experiment": "D"}
+#: Relative tolerance from which on a row is listed apart
+LOOSE = 0.15
 #: Measured numbers of one folder from which on bias and scatter are told
 ENOUGH = 5
 #: What a row of a measured curve compares
@@ -31,35 +51,183 @@ COMPARED = {
 }  # fmt: skip
 
 
+@dataclass(frozen=True)
+class Found:
+    """A row of a case and what the program gave for it."""
+
+    case: str
+    row: Row
+    value: Any
+
+    @property
+    def quantity(self) -> str:
+        return quantity_of(self.row.quantity)
+
+    @property
+    def ratio(self) -> float | None:
+        """Found over expected; None for words, and where zero is expected."""
+        if isinstance(self.row.value, str) or isinstance(self.value, str) or not self.value or not self.row.value:
+            return None
+        return float(self.value) / float(self.row.value)
+
+    @property
+    def loose(self) -> bool:
+        """Whether so much is allowed that the row proves little."""
+        return not isinstance(self.row.value, str) and 0.0 < LOOSE * abs(self.row.value) < self.row.allowed
+
+
 def shown(value: object) -> str:
     """A value in a table cell."""
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def line(case: str, row: Row, found: object) -> str:
+def percent(value: float) -> str:
+    """A share in percent with two digits, as small as it may be."""
+    return f"{100 * value:+.2g} %" if abs(value) < 0.1 else f"{100 * value:+.0f} %"
+
+
+def line(found: Found) -> str:
     """One row of a table."""
+    row = found.row
     change = ", ".join(f"{k} = {v}" for k, v in row.change)
-    verdict = "" if row.fits(found) else " **differs**"
+    verdict = "" if row.fits(found.value) else " **differs**"
     allowed = "" if isinstance(row.value, str) else f" ± {row.allowed:.2g}"
     note = f" ({row.note})" if row.note else ""
     return (
-        f"| {case} | {change} | `{row.quantity}` | {shown(row.value)}{allowed} | {shown(found)}{verdict} "
+        f"| {found.case} | {change} | `{row.quantity}` | {shown(row.value)}{allowed} | {shown(found.value)}{verdict} "
         f"| {row.source}{note} |"
     )
 
 
-def of_loads(ratios: dict[str, list[float]]) -> list[str]:
+def table(rows: Iterable[Found]) -> list[str]:
+    """Rows one by one."""
+    head = "| case | change | quantity | expected | found | source |\n|---|---|---|---|---|---|"
+    return [head, *map(line, rows), ""]
+
+
+def told(rows: list[Found], proof: str) -> str:
+    """How rows of one quantity and proof fit: number, and bias and scatter of found over expected or, where the
+    answer is exact, the greatest deviation."""
+    if not rows:
+        return ""
+    ratios = [found.ratio for found in rows if found.ratio is not None]
+    cell = str(len(rows))
+    if not ratios:
+        return cell
+    if proof in ("exact", "peer"):
+        return f"{cell}: within {100 * max(abs(ratio - 1.0) for ratio in ratios):.2g} %"
+    spread = f" ± {100 * stdev(ratios):.2g} %" if len(ratios) > 1 else ""
+    return f"{cell}: {percent(mean(ratios) - 1.0)}{spread}"
+
+
+def by_quantity(rows: list[Found]) -> list[str]:
+    """What every quantity was compared with, and how well it fits."""
+    lines = []
+    for quantity in QUANTITIES:
+        of = [found for found in rows if found.quantity == quantity]
+        cells = [told([found for found in of if found.row.kind == proof], proof) for proof in PROOFS]
+        others = [str(sum(found.row.kind == kind for found in of) or "") for kind in ("calibration", "regression")]
+        picture = f"[{quantity}](verification/{slug(quantity)}.svg)" if plotted(of) else quantity
+        lines.append(f"| {picture} | {' | '.join([*cells, *others])} |")
+    return [
+        "## Quantity by quantity", "",
+        "Rows of each quantity, by what they were compared with. Exact answers and other programs: the greatest deviation;",
+        "the dissertation and experiments: bias (mean of found over expected, less one) and scatter (standard deviation).",
+        "Zeros and words have no ratio: they are in the tables below. Calibrated rows were fitted to come out and regressions",
+        "compare the program with itself: neither proves anything. Crack paths are compared by eye (docs/sla.md): no number of",
+        "a path is in print.", "",
+        "| quantity | exact | other programs and methods | dissertation | experiments | calibrated | regression |",
+        "|---|---|---|---|---|---|---|", *lines, "",
+    ]  # fmt: skip
+
+
+def slug(quantity: str) -> str:
+    """A quantity as the name of a file."""
+    return quantity.replace(",", "").replace(" ", "-")
+
+
+def plotted(rows: Iterable[Found]) -> list[Found]:
+    """The rows that a scatter plot can show: of positive numbers that were compared with something else."""
+    return [
+        found for found in rows if found.row.kind in PROOFS and (found.ratio or 0.0) > 0.0 and found.row.value > 0.0
+    ]
+
+
+def draw(rows: list[Found]) -> None:
+    """A scatter plot for each quantity, found over expected on both axes' logarithms."""
+    import matplotlib
+
+    matplotlib.use("svg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams |= {"svg.hashsalt": "verification", "font.size": 9}
+    PLOTS.mkdir(exist_ok=True)
+    for old in PLOTS.glob("*.svg"):
+        old.unlink()
+    for quantity in QUANTITIES:
+        shown_rows = plotted(found for found in rows if found.quantity == quantity)
+        if not shown_rows:
+            continue
+        figure, axes = plt.subplots(figsize=(4.2, 4.2), layout="constrained")
+        numbers = [float(value) for found in shown_rows for value in (found.row.value, found.value)]
+        low, high = min(numbers) / 1.5, max(numbers) * 1.5
+        axes.plot([low, high], [low, high], color="0.3", lw=0.8, label="equal")
+        axes.fill_between(
+            [low, high], [0.85 * low, 0.85 * high], [1.15 * low, 1.15 * high], color="0.9", label="within 15 %"
+        )
+        for proof in PROOFS:
+            of = [found for found in shown_rows if found.row.kind == proof]
+            if of:
+                axes.plot(
+                    [found.row.value for found in of], [found.value for found in of], MARKS[proof], ms=4.5, mew=0.8,
+                    mfc="none", color=COLOURS[proof], label=f"{proof} ({len(of)})",
+                )  # fmt: skip
+        axes.set(
+            xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), xlabel="expected (units of each row)",
+            ylabel="found", title=quantity, aspect="equal",
+        )  # fmt: skip
+        axes.legend(frameon=False, fontsize=8, loc="upper left")
+        figure.savefig(PLOTS / f"{slug(quantity)}.svg", metadata={"Date": None})
+        plt.close(figure)
+
+
+def of_loads(rows: list[Found]) -> list[str]:
     """Bias and scatter of measured over computed, by folder of cases, where there are enough rows."""
-    rows = []
+    ratios: dict[str, list[float]] = {}
+    for found in rows:
+        if found.row.kind == "experiment" and ".measured." not in found.row.quantity and (found.ratio or 0.0) > 0.0:
+            ratios.setdefault(found.case.split("/")[0], []).append(1.0 / float(found.ratio or 1.0))
+    lines = []
     for folder, values in ratios.items():
         if len(values) >= ENOUGH:
             logs = [math.log(v) for v in values]
             middle, spread = math.exp(mean(logs)), math.exp(stdev(logs))
-            rows.append(f"| {folder} | {len(values)} | {middle:.2f} | {spread:.2f} |")
-    if not rows:
+            lines.append(f"| {folder} | {len(values)} | {middle:.2f} | {spread:.2f} |")
+    if not lines:
         return []
     head = "| cases | rows | bias (geometric mean of measured over computed) | scatter (factor of one standard deviation) |"
-    return ["### Bias and scatter of single numbers", "", f"{head}\n|---|---|---|---|", *rows, ""]
+    return ["### Bias and scatter of single numbers", "", f"{head}\n|---|---|---|---|", *lines, ""]
+
+
+def of_curves(rows: list[Found]) -> list[str]:
+    """Bias and scatter of the curves that were compared with measured ones, by what of them was compared."""
+    groups: dict[str, list[tuple[str, float]]] = {}
+    for found in rows:
+        place, _, name = found.row.quantity.partition(".measured.")
+        if found.row.kind == "experiment" and name and isinstance(found.value, int | float):
+            groups.setdefault(f"{place}: {COMPARED[name]}", []).append((found.case, float(found.value)))
+    lines = []
+    for what, pairs in groups.items():
+        values = [value for _, value in pairs]
+        spread = f"{100 * stdev(values):.0f} %" if len(values) > 1 else "-"
+        each = ", ".join(f"{case.rpartition('/')[2]} {value:.2f}" for case, value in pairs)
+        lines.append(f"| {what} | {len(values)} | {100 * (mean(values) - 1):+.0f} % | {spread} | {each} |")
+    if not lines:
+        return []
+    return [
+        "Computed over measured, of whole measured curves (bias: mean less one; scatter: standard deviation):", "",
+        "| | tests | bias | scatter | each |\n|---|---|---|---|---|", *lines, "",
+    ]  # fmt: skip
 
 
 def trials(book: str) -> list[str]:
@@ -84,61 +252,76 @@ def with_trials_alone(book: str) -> str:
     return book.split(f"{TRIALS}\n")[0].rstrip() + "\n\n" + "\n".join(trials(book))
 
 
-def bias(rows: list[tuple[str, Row, object]]) -> list[str]:
-    """Bias and scatter of the curves that were compared with measured ones, by what of them was compared."""
-    groups: dict[str, list[tuple[str, float]]] = {}
-    for case, row, found in rows:
-        place, _, name = row.quantity.partition(".measured.")
-        if row.kind == "experiment" and name and isinstance(found, int | float):
-            groups.setdefault(f"{place}: {COMPARED[name]}", []).append((case, float(found)))
-    lines = []
-    for what, found in groups.items():
-        values = [value for _, value in found]
-        spread = f"{100 * stdev(values):.0f} %" if len(values) > 1 else "-"
-        each = ", ".join(f"{case.rpartition('/')[2]} {value:.2f}" for case, value in found)
-        lines.append(f"| {what} | {len(values)} | {100 * (mean(values) - 1):+.0f} % | {spread} | {each} |")
-    return lines
+def pages(rows: list[Found], book: str) -> str:
+    """The whole book; `book`: what stood there before."""
+    parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", "", *by_quantity(rows)]
+    loose = [found for found in rows if found.loose and found.row.kind in PROOFS]
+    parts += [
+        f"## Rows that allow more than {100 * LOOSE:.0f} %", "", f"{len(loose)} rows prove less than the others.", "",
+        *table(loose),
+    ]  # fmt: skip
+    for kind, title in TITLES.items():
+        of = [found for found in rows if found.row.kind == kind]
+        if of:
+            parts += [f"## {title}", "", f"{len(of)} rows.", ""]
+            parts += of_curves(of) if kind == "experiment" else []
+            parts += table(of)
+            parts += of_loads(of) if kind == "experiment" else []
+    return "\n".join([*parts, *trials(book)])
+
+
+def sources() -> str:
+    """A checksum of all that computes."""
+    total = hashlib.sha256()
+    for root, ends in (("fortran", "*.f90"), ("c", "*.[ch]"), ("python/extrados", "*.py")):
+        for path in sorted((ROOT / root).rglob(ends)):
+            total.update(path.read_bytes())
+    return total.hexdigest()
+
+
+def find(case: Case, kept: dict[str, Any], computed_by: str) -> list[Found]:
+    """What the program gives for the rows of a case; taken from what was kept where nothing has changed since."""
+    expected = case.deck.with_name(case.deck.stem + ".expect.toml").read_bytes()
+    state = hashlib.sha256(computed_by.encode() + case.deck.read_bytes() + expected).hexdigest()
+    if kept.get(case.name, {}).get("state") != state:
+        values: dict[int, Any] = {}
+        for change in dict.fromkeys(row.change for row in case.rows):
+            results = results_of(case, change)
+            values |= {i: pick(results, row.quantity) for i, row in enumerate(case.rows) if row.change == change}
+        kept[case.name] = {"state": state, "values": [values[i] for i in range(len(case.rows))]}
+        KEPT.parent.mkdir(exist_ok=True)
+        KEPT.write_text(json.dumps(kept), encoding="utf-8")
+    return [Found(case.name, row, value) for row, value in zip(case.rows, kept[case.name]["values"], strict=True)]
 
 
 def main() -> int:
     """Run all cases; the number of rows that differ."""
-    tables: dict[str, list[str]] = {kind: [] for kind in KINDS}
-    ratios: dict[str, list[float]] = {}
-    all_rows: list[tuple[str, Row, object]] = []
-    wrong = 0
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--pages", action="store_true", help="from what was kept, computing nothing")
+    parser.add_argument("--trials", action="store_true", help="the section of trials alone")
+    options = parser.parse_args()
+    before = BOOK.read_text(encoding="utf-8") if BOOK.exists() else ""
+    if options.trials:
+        BOOK.write_text(with_trials_alone(before), encoding="utf-8")
+        return 0
+    kept: dict[str, Any] = json.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+    computed_by = sources()
+    rows: list[Found] = []
     for case in load_cases():
-        for change in dict.fromkeys(row.change for row in case.rows):
-            results = results_of(case, change)
-            for row in (r for r in case.rows if r.change == change):
-                found = pick(results, row.quantity)
-                wrong += not row.fits(found)
-                measured = row.kind == "experiment" and ".measured." not in row.quantity
-                if measured and isinstance(found, float) and row.value > 0.0 and found > 0.0:
-                    ratios.setdefault(case.name.split("/")[0], []).append(row.value / found)
-                tables[row.kind].append(line(case.name, row, found))
-                all_rows.append((case.name, row, found))
-        print(case.name, flush=True)
-    parts = ["# Verification book", "", "Written by `make verify` from `cases/`; do not edit.", ""]
-    for kind, title in TITLES.items():
-        if tables[kind]:
-            head = "| case | change | quantity | expected | found | source |\n|---|---|---|---|---|---|"
-            parts += [f"## {title}", "", f"{len(tables[kind])} rows.", ""]
-            if kind == "experiment" and (found := bias(all_rows)):
-                parts += [
-                    "Computed over measured, of whole measured curves (bias: mean less one; scatter: standard deviation):", "",
-                    "| | tests | bias | scatter | each |\n|---|---|---|---|---|", *found, "",
-                ]  # fmt: skip
-            parts += [head, *tables[kind], ""]
-        if kind == "experiment":
-            parts += of_loads(ratios)
-    parts += trials(BOOK.read_text(encoding="utf-8") if BOOK.exists() else "")
-    BOOK.write_text("\n".join(parts), encoding="utf-8")
-    print(f"docs/verification.md: {sum(map(len, tables.values()))} rows, {wrong} differ")
+        if options.pages and len(kept.get(case.name, {}).get("values", [])) != len(case.rows):
+            print(f"{case.name}: not kept, left out", file=sys.stderr)
+        elif options.pages:
+            rows += [Found(case.name, row, v) for row, v in zip(case.rows, kept[case.name]["values"], strict=True)]
+        else:
+            rows += find(case, kept, computed_by)
+            print(case.name, flush=True)
+    assert set(TITLES) == set(KINDS)
+    draw(rows)
+    BOOK.write_text(pages(rows, before), encoding="utf-8")
+    wrong = sum(not found.row.fits(found.value) for found in rows)
+    print(f"docs/verification.md: {len(rows)} rows, {wrong} differ")
     return wrong
 
 
 if __name__ == "__main__":
-    if sys.argv[1:] == ["--trials"]:
-        BOOK.write_text(with_trials_alone(BOOK.read_text(encoding="utf-8")), encoding="utf-8")
-        sys.exit()
     sys.exit(min(main(), 1))

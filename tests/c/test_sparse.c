@@ -52,7 +52,33 @@ static void change(int sign, int count, const int *index, const double *w) {
     for (int j = 0; j < count; j++) dense[index[i]][index[j]] += sign * w[i] * w[j];
 }
 
+/* The band factor against the same matrix, for widths on both sides of a panel's, and a pivot that is lost. */
+static void band(void) {
+  enum { width = side + 3 };
+  for (int w = 1; w <= width; w += 1) {
+    static double entries[n * (width + 1)];
+    double full[n][n], x[n], b[n];
+    memset(entries, 0, sizeof entries);
+    memset(full, 0, sizeof full);
+    for (int j = 0; j < n; j++)
+      for (int i = j; i < n && i <= j + w; i++)
+        full[i][j] = full[j][i] = entries[j * (w + 1) + i - j] = i == j ? 2.0 * w + 1.0 : sin(7.0 * i + j);
+    for (int i = 0; i < n; i++) {
+      x[i] = cos(3.0 * i);
+      b[i] = 0.0;
+    }
+    for (int i = 0; i < n; i++)
+      for (int j = 0; j < n; j++) b[i] += full[i][j] * x[j];
+    assert(extrados_band_factor(n, w, entries) == EXTRADOS_ok);
+    extrados_band_solve(n, w, entries, b);
+    for (int i = 0; i < n; i++) assert(fabs(b[i] - x[i]) < 1e-12);
+  }
+  double lost[6] = {1.0, 1.0, 1.0, 0.0, 1.0, 0.0}; /* [[1, 1], [1, 1]] and more */
+  assert(extrados_band_factor(3, 1, lost) == EXTRADOS_not_positive_definite);
+}
+
 int main(void) {
+  band();
   int64_t order[n], values, weakest;
   double ratio, b[2 * n], x[2 * n], both_z[2 * n], full[n];
   void *handle;

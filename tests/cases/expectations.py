@@ -1,7 +1,7 @@
 """Cases and what is expected of them: NAME.toml beside NAME.expect.toml.
 
 Each [[expect]] row has quantity ("rocking.impact_times_s[0]"), value (null cannot be written in TOML: use
-"none"), tolerance (absolute) or relative_tolerance, kind (exact | thesis | experiment | peer | regression),
+"none"), tolerance (absolute) or relative_tolerance, kind (exact | thesis | experiment | peer | calibration | regression),
 source, and optionally `change`, deck keys with other values ("structure.thickness" = 0.12, "none" leaves one out). `slow = true` at
 the top moves a case to `make verify`.
 """
@@ -20,7 +20,7 @@ from extrados.results.explain import json_schema
 
 ROOT = Path(__file__).resolve().parents[2]
 CASES = ROOT / "cases"
-KINDS = ("exact", "thesis", "experiment", "peer", "regression")
+KINDS = ("exact", "thesis", "experiment", "peer", "calibration", "regression")
 
 
 @dataclass(frozen=True)

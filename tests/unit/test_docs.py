@@ -60,8 +60,12 @@ def test_the_verification_book_names_cases_that_exist() -> None:
 
 
 @pytest.mark.parametrize("deck", DECKS, ids=lambda p: f"{p.parent.name}/{p.stem}")
-def test_every_case_has_expected_rows(deck: Path) -> None:
-    assert tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8"))["expect"]
+def test_every_case_has_expected_rows_of_a_quantity(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    from verification_quantities import quantity_of
+
+    rows = tomllib.loads(deck.with_suffix(".expect.toml").read_text(encoding="utf-8"))["expect"]
+    assert rows and all(quantity_of(row["quantity"]) for row in rows)
 
 
 def test_the_deck_reference_is_up_to_date() -> None:

@@ -1,5 +1,7 @@
 """The results folder: whole or not at all."""
 
+import contextlib
+import errno
 import json
 import os
 import shutil
@@ -37,6 +39,23 @@ def sample() -> Result:
 
 
 HEAD = {"extrados": {"version": "0"}, "deck": {"path": "d", "sha256": "", "title": "", "resolved": {}}}
+
+
+def test_nothing_is_left_beside_where_the_disk_fails_after_the_exchange(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    out, sync = tmp_path / "run", store._sync
+    for old in (True, False):
+        with contextlib.suppress(store.StoreError), store.NewFolder(out) as folder:
+            store.write(folder, HEAD, [sample()])
+            if not old:
+                monkeypatch.setattr(store, "_sync", lambda path: _fail() if path == tmp_path else sync(path))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["run"]
+    assert store.read(out)["rocking-spectrum"].overturned
+
+
+def _fail() -> None:
+    raise OSError(errno.EIO, "the disk")
 
 
 def test_round_trip(tmp_path) -> None:

@@ -108,3 +108,14 @@ def test_a_build_apart_holds_no_source_that_is_gone(tmp_path: Path, monkeypatch)
     (root / "python/extrados/gone.py").unlink()
     apart.copy(place)
     assert sorted(place.rglob("*.*")) == sorted([place / "python/extrados/kept.py", *made])
+
+
+def test_every_room_of_the_core_has_tests_that_seeded_faults_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    rooms = tool("tools/seeded_faults.py").ROOMS
+    sources = [path for root in ("fortran", "c") for end in ("f90", "c") for path in (ROOT / root).glob(f"*/*.{end}")]
+    # what hands numbers over holds no mechanics of its own
+    assert {path.parent.relative_to(ROOT).as_posix() for path in sources} - {"fortran/api"} == set(rooms)
+    for native, python, _ in rooms.values():
+        assert all((ROOT / "tests" / name).exists() for name in python)
+        assert all(any((ROOT / "tests").glob(f"*/{name}.*")) for name in native)

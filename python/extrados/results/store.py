@@ -150,11 +150,13 @@ class NewFolder:
                 )  # fmt: skip
             before = _exchange(scratch, self.place)
             self._done = True
-            _sync(out.parent)
-            if before is not None and not written.remove(before):
-                kept = written.beside(out)  # it came while we looked
-                before.rename(kept)
-                log.warning("%s: what was put there while results were written is in %s", out, kept)
+            try:
+                _sync(out.parent)
+            finally:
+                if before is not None and not written.remove(before):
+                    kept = written.beside(out)  # it came while we looked
+                    before.rename(kept)
+                    log.warning("%s: what was put there while results were written is in %s", out, kept)
 
 
 def _refuse_no_folder(out: Path) -> None:

@@ -183,6 +183,13 @@ class Pushover(CrackOptions, BuildingAnalysis):
     solution: ClassVar = "events"
     algorithm: ClassVar = "update"
 
+    def reckons_with(self, building: "Building") -> set[str]:
+        """Walls, floors and shells have materials, and no joints between stones; formulas of piers ask for a strength."""
+        found = {*MATERIAL} - without_effect(building)
+        if self.frame is not None and self.frame.compressive_strength is None:
+            found.add("material.compressive_strength")
+        return found
+
     @model_validator(mode="after")
     def _consistent(self) -> "Pushover":
         if len(set(self.directions)) < len(self.directions):
@@ -200,13 +207,6 @@ class Pushover(CrackOptions, BuildingAnalysis):
         if self.shear_retention is not None and self.cracking == "isotropic":
             raise ValueError("isotropic cracking has no shear retention")
         return self
-
-    def reckons_with(self, building: "Building") -> set[str]:
-        """Walls, floors and shells have materials, and no joints between stones; formulas of piers ask for a strength."""
-        found = {*MATERIAL} - without_effect(building)
-        if self.frame is not None and self.frame.compressive_strength is None:
-            found.add("material.compressive_strength")
-        return found
 
     @property
     def stage_names(self) -> list[str]:

@@ -134,6 +134,30 @@ class Stage(Table):
         return any(load.kind == "displacement" for load in self.reference)
 
 
+#: What finite elements look at of every material, and of joints between stones
+MATERIAL = tuple(f"material.{name}" for name in Material.model_fields)
+ROWS = ("joints.tension", "joints.fracture_energy", "joints.normal_stiffness", "supports.stiffness")
+INTERFACES = (
+    *ROWS, "joints.friction", "joints.cohesion", "joints.shear_energy", "joints.compressive_strength", "joints.crushing_energy",
+    "joints.softening", "joints.shear_stiffness", "joints.shear_ratio",
+)  # fmt: skip
+
+
+def without_effect(building: "Building") -> set[str]:
+    """Keys of its materials that say how something cracks or crushes which none of them lets crack or crush."""
+    given, found = [building.material, *building.materials.values()], set()
+    crush = any(m.crushing_energy is not None for m in given)
+    if not crush and not any(m.lateral_reduction for m in given):
+        found.add("material.compressive_strength")
+    if not crush:
+        found.add("material.crushing")
+    if not any(m.compressive_strength_parallel is not None for m in given):
+        found |= {"material.compressive_coupling", "material.compressive_shear"}
+    if not any(m.tensile_strength is not None for m in given):
+        found |= {"material.softening", "material.lateral_reduction"}
+    return found
+
+
 class CrackOptions(Table):
     """How cracking masonry softens, and how cracks stand, in every analysis that is sequentially linear."""
 
@@ -161,30 +185,6 @@ class CrackOptions(Table):
     shear_retention: Annotated[float, Field(ge=1e-6, le=1)] | None = key(
         None, "constant shear retention of cracked points; default by the smaller modulus", source="Eq. 4.11"
     )
-
-
-#: What finite elements look at of every material, and of joints between stones
-MATERIAL = tuple(f"material.{name}" for name in Material.model_fields)
-ROWS = ("joints.tension", "joints.fracture_energy", "joints.normal_stiffness", "supports.stiffness")
-INTERFACES = (
-    *ROWS, "joints.friction", "joints.cohesion", "joints.shear_energy", "joints.compressive_strength", "joints.crushing_energy",
-    "joints.softening", "joints.shear_stiffness", "joints.shear_ratio",
-)  # fmt: skip
-
-
-def without_effect(building: "Building") -> set[str]:
-    """Keys of its materials that say how something cracks or crushes which none of them lets crack or crush."""
-    given, found = [building.material, *building.materials.values()], set()
-    crush = any(m.crushing_energy is not None for m in given)
-    if not crush and not any(m.lateral_reduction for m in given):
-        found.add("material.compressive_strength")
-    if not crush:
-        found.add("material.crushing")
-    if not any(m.compressive_strength_parallel is not None for m in given):
-        found |= {"material.compressive_coupling", "material.compressive_shear"}
-    if not any(m.tensile_strength is not None for m in given):
-        found |= {"material.softening", "material.lateral_reduction"}
-    return found
 
 
 class Sla(CrackOptions, BuildingAnalysis, Animated):
