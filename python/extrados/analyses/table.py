@@ -44,9 +44,10 @@ class Analysis(Table):
 
     view: what it looks at, "blocks", "rocker" or "mesh", "" where it needs no building; structures: the only kinds
     it takes, None any that has the view. solid: whether it takes solids, where there is no plane section. uses: properties of the building that its answer rests on, which every
-    answer tells; method: what the method itself fixes of them, whatever the deck says; beside: what else it looks at, or refuses, without telling it. starter_structure,
+    answer tells; method: what the method itself fixes of them, whatever the deck says; starter_structure,
     starter_motion: their kinds in the deck that `new` writes, "" no motion unless one is needed. bears: what of
-    Building.special_keys it reckons with; one that looks at a building with more is refused.
+    Building.special_keys it reckons with; one that looks at a building with more is refused. beside: what
+    it looks at, or refuses, beside `uses`, without telling it.
     """
 
     kind: str
@@ -55,9 +56,9 @@ class Analysis(Table):
     solid: ClassVar[bool] = False
     uses: ClassVar[tuple[str, ...]] = ()
     method: ClassVar[dict[str, str]] = {}
-    beside: ClassVar[tuple[str, ...]] = ()
     needs_motion: ClassVar[bool] = False
     bears: ClassVar[tuple[str, ...]] = ()
+    beside: ClassVar[tuple[str, ...]] = ()
     starter_structure: ClassVar[str] = "arch"
     starter_motion: ClassVar[str] = ""
 

@@ -40,15 +40,10 @@ def open_mesh(wall: MeshFile, building: "Building") -> tuple[str, "meshio.Mesh"]
         with file.copied() as copy, contextlib.redirect_stdout(io.StringIO()):
             mesh = meshio.read(copy)
     except (SystemExit, Exception) as error:
-        raise BadGeometry(
-            f"{path.name}: is not a mesh that meshio reads: {str(error) or 'unknown format'}", ("structure", "file")
-        ) from None
+        raise BadGeometry(f"{path.name}: is not a mesh that meshio reads: {str(error) or 'unknown format'}") from None
     points = np.asarray(mesh.points, dtype=float)
     if not np.isfinite(points).all():
-        raise BadGeometry(
-            f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place",
-            ("structure", "file"),
-        )
+        raise BadGeometry(f"{path.name}: node {int(np.argwhere(~np.isfinite(points))[0, 0]) + 1} has no finite place")
     for cells in mesh.cells:
         data = np.asarray(cells.data)
         if data.size and (data.min() < 0 or data.max() >= len(points)):
@@ -68,15 +63,10 @@ def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mes
         if cells.type in KINDS:
             found.setdefault(cells.type, []).append(np.asarray(cells.data))
         elif cells.type not in ("line", "line3", "vertex"):
-            raise BadGeometry(
-                f"{name}: cells of kind '{cells.type}'; expected {', '.join(KINDS)}", ("structure", "file")
-            )
+            raise BadGeometry(f"{name}: cells of kind '{cells.type}'; expected {', '.join(KINDS)}")
     if len(found) != 1:
         kinds = ", ".join(found) or "none"
-        raise BadGeometry(
-            f"{name}: holds plane cells of kind {kinds}; expected exactly one of {', '.join(KINDS)}",
-            ("structure", "file"),
-        )
+        raise BadGeometry(f"{name}: holds plane cells of kind {kinds}; expected exactly one of {', '.join(KINDS)}")
     points = np.asarray(mesh.points, dtype=float)
     if points.shape[1] > 2 and np.ptp(points[:, 2]) > 1e-9 * np.ptp(points[:, :2]):
         raise BadGeometry(
@@ -95,4 +85,4 @@ def read_mesh(wall: MeshFile, building: "Building", options: MeshOptions) -> Mes
 def _refuse_parts(file: File) -> None:
     """BadGeometry where the file draws on others: only what the deck names is read."""
     if file.path.suffix.lower() in IN_PARTS or _INCLUDE.search(file.content):
-        raise BadGeometry(f"{file.path.name}: the mesh lies in several files; save it as one", ("structure", "file"))
+        raise BadGeometry(f"{file.path.name}: the mesh lies in several files; save it as one")
