@@ -56,7 +56,7 @@ WRONG = {
         BLOCK + PULSE + '[supports]\nabutting_wall = "left"\n[initial]\nrotation_ratio = -0.1 # here\n' + ROCKING,
     ),
     "mesh that is not there": ("none.msh", '[structure]\nkind = "mesh"\nfile = "none.msh" # here\nthickness = 0.1\n' + SLA),
-    "outline that is not there": ("none.dxf", '[structure]\nkind = "panel"\noutline = "none.dxf" # here\nthickness = 0.1\n' + SLA + 'mesh.element = "T3"\n'),
+    "outline that is not there": ("none.dxf", '[structure]\nkind = "panel"\noutline = "none.dxf" # here\nthickness = 0.1\n' + SLA + 'mesh.element = "T3"\nmesh.size = 0.2\n'),
     "linear form of an arch": ("is known of blocks", ARCH + PULSE + ROCKING + 'form = "linear" # here\n'),
     "block that slides off its slope": ("falls", BLOCK.replace("[structure]\n", "[structure]\nbase_slope = 30 # here\n") + TILT),
     "typo in a variant": (
