@@ -233,3 +233,17 @@ def test_what_some_analyses_leave_out_is_told_of_what_bears_on_standing_alone() 
 def test_defaults_are_not_told() -> None:
     same = {"cohesion": 0.0, "friction": 0.7, "restitution": "inelastic", "types": []}
     assert left_out(make_deck({"structure": ARCH, "joints": same, "analysis": {"kind": "tilt"}})) == []
+
+
+def test_a_building_that_cannot_be_made_is_told_by_its_analysis(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever goes wrong with it: the other analyses of the deck still count."""
+
+    def fails(*_: object) -> None:
+        raise MemoryError("no room")
+
+    deck = make_deck(
+        {"structure": ARCH, "motion": {**RECORD, "scale": 1.0}, "analysis": [{"kind": "supports"}, {"kind": "motion"}]}
+    )
+    monkeypatch.setattr(type(deck.structure), "assembly", fails)
+    first, second = compute(Context(deck)).results
+    assert first.status == "failed" and "no room" in first.reason and second.status == "ok"

@@ -6,12 +6,13 @@ from extrados import interrupts, kinds
 from extrados.analyses.batches import Unfinished
 from extrados.analyses.conclude import concluded, faulty
 from extrados.analyses.context import Context, Refused
-from extrados.analyses.left_out import left_out
+from extrados.analyses.left_out import LeftOut, left_out
 from extrados.analyses.needs import complaints
 from extrados.analyses.table import Analysis
 from extrados.building.building import Building
 from extrados.building.errors import WHOLE, BadGeometry
 from extrados.core.errors import Cancelled, CoreError
+from extrados.decks.reader import Deck
 from extrados.limit.errors import Immovable, NoAnswer
 from extrados.results.model import Result
 from extrados.results.store import StoreError
@@ -31,7 +32,7 @@ def run_analyses(context: Context) -> list[Result]:
     """All analyses of the deck in order; after Ctrl-C the rest is marked interrupted."""
     results: list[Result] = []
     told: tuple[str, ...] = ()
-    ignored = left_out(context.deck)
+    ignored = _ignored(context.deck)
     for options, building in zip(context.deck.analyses, context.deck.buildings, strict=True):
         if results and results[-1].status == "interrupted":
             results.append(Result(options.kind, "interrupted", "not run: interrupted before"))
@@ -43,6 +44,14 @@ def run_analyses(context: Context) -> list[Result]:
         result.warnings += [remark.text for remark in ignored if remark.analysis == len(results)]
         results.append(result)
     return results
+
+
+def _ignored(deck: Deck) -> list[LeftOut]:
+    """What no analysis reckons with; nothing where the building cannot be made, which the analysis that looks at it says."""
+    try:
+        return left_out(deck)
+    except Exception:
+        return []
 
 
 def run_one(context: Context, options: Analysis, building: Building) -> Result:
