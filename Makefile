@@ -17,7 +17,7 @@ browser: setup  ## chromium and Playwright, where they can be had, for the tests
 	@sh tools/browser.sh
 
 verify: setup  ## long validation and whole trials; writes docs/verification.md
-	@EXTRADOS_TRIALS=1 $(PYTHON) -m pytest -q -m "" -o timeout=0
+	@EXTRADOS_TRIALS=1 $(PYTHON) -m pytest -q -m ""
 	@$(PYTHON) tools/seeded_faults.py
 	@$(PYTHON) tools/verification_book.py
 

@@ -22,6 +22,14 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # a shell's background jo
 ROOT = Path(__file__).resolve().parents[1]
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long validation and whole trials take what they take; all else that waits for ever fails by `timeout`."""
+    whole = float(os.environ.get("EXTRADOS_TRIALS", "0")) > 0.0
+    for item in items:
+        if item.get_closest_marker("verify") or (whole and "trials" in item.path.parts):
+            item.add_marker(pytest.mark.timeout(0))
+
+
 @pytest.fixture(scope="session")
 def records() -> Path:
     """Real records that cannot be shipped; tests that need them skip where the folder is missing."""

@@ -2,11 +2,11 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 import extrados
 from extrados import kinds
@@ -277,3 +277,23 @@ def test_stored_outcomes_are_numbered_as_in_the_core() -> None:
     numbers = lists.numbers("rocking_outcome")
     assert numbers == {word: k for k, word in enumerate(get_args(rocking.RockingOutcome))}
     assert (rocking.NO_HINGING, rocking.RECOVERY, rocking.COLLAPSE) == tuple(numbers.values())
+
+
+def test_the_schema_tells_models_of_one_name_apart() -> None:
+    """Two rooms may each have a Variation: what the schema of all says of a kind is what its own says."""
+
+    def whole(part: Any, definitions: dict[str, Any]) -> Any:
+        if isinstance(part, dict) and "$ref" in part:
+            return whole(definitions[part["$ref"].rpartition("/")[2]], definitions)
+        if isinstance(part, dict):
+            return {key: whole(value, definitions) for key, value in part.items() if key != "$defs"}
+        return [whole(value, definitions) for value in part] if isinstance(part, list) else part
+
+    schema = explain.json_schema()
+    branches = schema["properties"]["analyses"]["items"]["oneOf"]
+    assert len(branches) == len(kinds.ANALYSES)
+    for branch in branches:
+        model = kinds.load(kinds.ANALYSES[branch["properties"]["kind"]["const"]].results)
+        own = TypeAdapter(model).json_schema(mode="serialization")
+        found = whole(branch["properties"]["results"]["anyOf"][0], schema["$defs"])
+        assert found == whole(own, own.get("$defs", {})), branch["properties"]["kind"]

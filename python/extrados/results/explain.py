@@ -58,23 +58,18 @@ def everything() -> ResultFacts:
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema of summary.json."""
-    definitions: dict[str, Any] = {}
-
-    def placed(model: Any) -> dict[str, Any]:
-        schema = TypeAdapter(model).json_schema(ref_template="#/$defs/{model}", mode="serialization")
-        definitions.update(schema.pop("$defs", {}))
-        return schema
-
+    models = {"verdict": Verdict, "assumption": Assumption}
+    models |= {f"results of {kind}": kinds.load(parts.results) for kind, parts in kinds.ANALYSES.items()}
+    # all at once: models of one name in two rooms are told apart
+    placed, shared = TypeAdapter.json_schemas(
+        [(name, "serialization", TypeAdapter(model)) for name, model in models.items()], ref_template="#/$defs/{model}"
+    )
+    definitions: dict[str, Any] = shared.get("$defs", {})
+    schemas = {name: schema for (name, _), schema in placed.items()}
     nothing = {"type": "object", "maxProperties": 0}
-    verdict, assumption = placed(Verdict), placed(Assumption)
     branches = [
-        {
-            "properties": {
-                "kind": {"const": kind},
-                "results": {"anyOf": [placed(kinds.load(parts.results)), nothing]},
-            }
-        }
-        for kind, parts in kinds.ANALYSES.items()
+        {"properties": {"kind": {"const": kind}, "results": {"anyOf": [schemas[f"results of {kind}"], nothing]}}}
+        for kind in kinds.ANALYSES
     ]
     text = {"type": "string"}
     analysis = {
@@ -91,8 +86,8 @@ def json_schema() -> dict[str, Any]:
             "seconds": {"type": "number", "minimum": 0},
             "answer": text,
             "warnings": {"type": "array", "items": text},
-            "verdict": {"anyOf": [verdict, {"type": "null"}]},
-            "assumptions": {"type": "object", "additionalProperties": assumption},
+            "verdict": {"anyOf": [schemas["verdict"], {"type": "null"}]},
+            "assumptions": {"type": "object", "additionalProperties": schemas["assumption"]},
             "results": {"type": "object"},
         },
         "oneOf": branches,
